@@ -1,0 +1,263 @@
+"""What is wrong with a record, as one sentence per complaint.
+
+Pydantic says what it found in terms of Python; here it is said in terms of the file: the key
+as it stands there, what was found, what was expected, in which unit.
+"""
+
+import difflib
+import math
+import types
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+UNITS = {
+    'm': 'metres',
+    'mm': 'millimetres',
+    'm2': 'square metres',
+    'm3': 'cubic metres',
+    'm4': 'metres to the fourth power',
+    'kg': 'kilograms',
+    't': 'tonnes',
+    'n': 'newtons',
+    'kn': 'kilonewtons',
+    'pa': 'pascals',
+    'gpa': 'gigapascals',
+    's': 'seconds',
+    'min': 'minutes',
+    'minutes': 'minutes',
+    'hz': 'hertz',
+    'deg': 'degrees',
+    'rad': 'radians',
+    'deg_s': 'degrees per second',
+    'rad_s': 'radians per second',
+    'm_s': 'metres per second',
+    'm_s2': 'metres per second squared',
+    'kg_m': 'kilograms per metre',
+    'kg_m2': 'kilogram square metres',
+    'kg_m3': 'kilograms per cubic metre',
+    'kg_m4': 'kilograms per cubic metre and metre',
+    'n_m': 'newton metres',
+    'n_m2': 'newtons per square metre',
+}
+"""What the last words of a key say about its unit."""
+
+
+def unit_of(key: str) -> str | None:
+    """Name the unit that the end of a key states: ``'length_m'`` gives ``'metres'``."""
+    words = key.split('_')
+    for start in range(1, len(words)):
+        unit = UNITS.get('_'.join(words[start:]))
+        if unit is not None:
+            return unit
+    return 'minutes' if key == 'minutes' else None
+
+
+_SCALARS = {
+    'float_type': 'a number',
+    'int_type': 'a whole number',
+    'int_from_float': 'a whole number',
+    'string_type': 'text',
+    'bool_type': 'true or false',
+}
+
+
+def complaints(
+    cls: type[BaseModel], data: Any, errors: list[ErrorDetails], prefix: str = ''
+) -> list[str]:
+    """Say what is wrong, unknown keys first.
+
+    Parameters
+    ----------
+    cls
+        The record that was wanted.
+    data
+        What the file says; mappings and tuples.
+    errors
+        What pydantic found.
+    prefix
+        Where in the file ``data`` stands, put before each key.
+
+    Returns
+    -------
+    list of str
+        One sentence per key. A missing key is left out where a look-alike of it was found.
+    """
+    lines: list[str] = []
+    explained: set[str] = set()
+    for detail in errors:
+        if detail['type'] == 'extra_forbidden':
+            line, meant = _unknown_key(cls, data, detail['loc'], prefix)
+            lines.append(line)
+            explained.add(meant)
+    wanted: dict[str, tuple[str, list[str], str]] = {}
+    for detail in errors:
+        loc, kind = detail['loc'], detail['type']
+        key = _key(data, loc, prefix)
+        if kind == 'extra_forbidden' or (kind == 'missing' and key in explained):
+            continue
+        if kind == 'value_error':
+            said = detail['msg'].removeprefix('Value error, ')
+            lines.append(f'{key}: {said}' if key else said)
+        elif not _other_branch(detail, errors):
+            found = 'missing' if kind == 'missing' else f'found {shown(detail["input"])}'
+            unit = unit_of(next((s for s in reversed(loc) if isinstance(s, str)), ''))
+            entry = wanted.setdefault(key, (found, [], f' ({unit})' if unit else ''))
+            entry[1].append(_expected(detail, _annotation(cls, loc)))
+    for key, (found, expected, hint) in wanted.items():
+        start = f'{key}: ' if key else ''
+        lines.append(f'{start}{found}, expected {" or ".join(dict.fromkeys(expected))}{hint}')
+    return lines
+
+
+def shown(value: Any) -> str:
+    """Write a value as a file would have it, shortened to 60 characters."""
+    if isinstance(value, bool | None):
+        return {True: 'true', False: 'false', None: 'nothing'}[value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    text = repr(list(value) if isinstance(value, tuple) else value)
+    return text if len(text) <= 60 else f'{text[:57]}...'
+
+
+def _unknown_key(
+    cls: type[BaseModel], data: Any, loc: tuple[int | str, ...], prefix: str
+) -> tuple[str, str]:
+    """Complain of an unknown key; also name the key that was probably meant, or ''."""
+    unknown = str(loc[-1])
+    key = _key(data, loc, prefix)
+    owners = _records(_annotation(cls, loc[:-1]))
+    known = list(owners[0].model_fields) if owners else []
+    closest = _closest(unknown, known)
+    if closest is None:
+        return f'{key}: unknown key, expected {_any_of(known)}', ''
+    meant = key.removesuffix(unknown) + closest
+    unit = unit_of(closest)
+    return f'{key}: unknown key; did you mean {meant}{f" ({unit})" if unit else ""}?', meant
+
+
+def _other_branch(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
+    """Tell whether a section is refused as text or number only because a union allows both."""
+    loc = detail['loc']
+    return (
+        isinstance(detail['input'], dict)
+        and detail['type'] in _SCALARS
+        and any(e['loc'][: len(loc) - 1] == loc[:-1] and len(e['loc']) > len(loc) for e in errors)
+    )
+
+
+def _key(data: Any, loc: tuple[int | str, ...], prefix: str) -> str:
+    """Write a location as the file's own key; the branches of a union are no part of it."""
+    text = prefix
+    for number, step in enumerate(loc):
+        if isinstance(step, int) and isinstance(data, tuple):
+            text, data = f'{text}[{step}]', data[step] if step < len(data) else None
+        elif isinstance(data, dict) and step in data:
+            text, data = _join(text, str(step)), data[step]
+        elif isinstance(data, dict) and number == len(loc) - 1:
+            text = _join(text, str(step))
+    return text
+
+
+def _join(where: str, key: str) -> str:
+    return f'{where}.{key}' if where else key
+
+
+def _annotation(cls: Any, loc: tuple[int | str, ...]) -> Any:
+    """Follow a location through the record's annotations; None where it leads nowhere."""
+    here = cls
+    for step in loc:
+        records = [r for r in _records(here) if isinstance(step, str) and step in r.model_fields]
+        if records:
+            here = records[0].model_fields[str(step)]
+            continue
+        if isinstance(step, str) and any(r.__name__ == step for r in _records(here)):
+            continue
+        inner = _inside(here, step)
+        if inner is None:
+            return None
+        here = inner
+    return here
+
+
+def _parts(annotation: Any) -> list[Any]:
+    """Unwrap a field, `Annotated` and unions into the plain annotations they allow."""
+    if isinstance(annotation, FieldInfo):
+        return _parts(annotation.annotation)
+    origin = get_origin(annotation)
+    if origin is Annotated:
+        return _parts(get_args(annotation)[0])
+    if origin in (Union, types.UnionType):
+        return [p for arg in get_args(annotation) for p in _parts(arg)]
+    return [] if annotation is type(None) else [annotation]
+
+
+def _records(annotation: Any) -> list[type[BaseModel]]:
+    return [p for p in _parts(annotation) if isinstance(p, type) and issubclass(p, BaseModel)]
+
+
+def _inside(annotation: Any, step: int | str) -> Any:
+    for part in _parts(annotation):
+        args = [arg for arg in get_args(part) if arg is not Ellipsis]
+        if get_origin(part) is dict and len(args) == 2:
+            return args[1]
+        if get_origin(part) in (tuple, list) and args:
+            return args[step] if isinstance(step, int) and 0 < step < len(args) else args[0]
+    return None
+
+
+def _kind_of(annotation: Any) -> str:
+    for part in _parts(annotation):
+        if part in (float, int):
+            return 'a number' if part is float else 'a whole number'
+        if part is str:
+            return 'text'
+        if part is bool:
+            return 'true or false'
+        if isinstance(part, type) and issubclass(part, BaseModel):
+            return 'a section with ' + _any_of(list(part.model_fields), 'and')
+        if get_origin(part) in (tuple, list):
+            return 'a list'
+        if get_origin(part) is dict:
+            return 'keys and values'
+    return 'a value'
+
+
+def _expected(detail: ErrorDetails, annotation: Any) -> str:
+    kind, ctx = detail['type'], detail.get('ctx', {})
+    if kind == 'missing':
+        return _kind_of(annotation)
+    if kind in _SCALARS:
+        return _SCALARS[kind]
+    if kind in ('model_type', 'dict_type', 'tuple_type'):
+        return _kind_of(annotation)
+    if kind == 'too_short':
+        return f'at least {ctx["min_length"]} entries'
+    if kind == 'too_long':
+        return f'at most {ctx["max_length"]} entries'
+    expected = detail['msg'].removeprefix('Input should be ')
+    return f'a number {expected}' if expected.startswith(('greater', 'less')) else expected
+
+
+def _closest(unknown: str, known: list[str]) -> str | None:
+    """Find the key that was meant: same quantity in another unit first, then a misspelling."""
+    stems = {unknown, _without_unit(unknown), unknown.rsplit('_', 1)[0]}
+    same = [name for name in known if unit_of(name) and _without_unit(name) in stems]
+    close = same or difflib.get_close_matches(unknown, known, n=1, cutoff=0.6)
+    return close[0] if close else None
+
+
+def _without_unit(key: str) -> str:
+    words = key.split('_')
+    for start in range(1, len(words)):
+        if '_'.join(words[start:]) in UNITS:
+            return '_'.join(words[:start])
+    return key
+
+
+def _any_of(names: list[str], word: str = 'or') -> str:
+    if len(names) > 12:
+        names = [*names[:11], f'{len(names) - 11} more']
+    return f' {word} '.join(', '.join(names).rsplit(', ', 1)) if names else 'no key at all'
