@@ -1,0 +1,197 @@
+"""Truth becomes messages on every truth topic, and its pieces come back as they were."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from trawl_ros.errors import MessageError
+from trawl_ros.messages.cdr import deserialize, serialize
+from trawl_ros.messages.from_messages import door_truth, net_truth, vessel_truth, winch_truth
+from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
+from trawl_ros.messages.rotations import to_quaternion
+from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.messages.to_messages import clock_message, truth_messages
+from trawl_ros.messages.topics import TOPICS, TRUTH
+from trawl_ros.simulation.truth import (
+    DoorTruth,
+    GearPicture,
+    NetTruth,
+    Polyline,
+    Truth,
+    VesselTruth,
+    WinchTruth,
+)
+
+STAMP = 12_300_000_000
+
+
+def door(y: float) -> DoorTruth:
+    return DoorTruth(
+        position=np.array([-480.0, y, -135.0]),
+        orientation=np.array(to_quaternion(0.1, -0.05, 0.3)),
+        velocity=np.array([2.0, 0.1, -0.02]),
+        angular_velocity=np.array([0.001, 0.002, 0.003]),
+        attack=0.45,
+        slip=-0.02,
+        inclination=0.2,
+        force=np.array([-2e4, 5e4, 3e3]),
+        moment=np.array([1e3, -2e3, 500.0]),
+    )
+
+
+DOORS = (door(60.0), door(-60.0))
+
+TRUTH_RECORD = Truth(
+    stamp=STAMP,
+    doors=DOORS,
+    winches=(WinchTruth(500.0, 0.5, 8e4), WinchTruth(502.0, -0.5, 7.9e4)),
+    net=NetTruth(
+        mouth=np.arange(18.0).reshape(6, 3),
+        horizontal_opening=42.0,
+        vertical_opening=21.0,
+        headrope_depth=140.0,
+        sonar_position=np.array([-620.0, 0.5, -140.0]),
+        sonar_orientation=np.array(to_quaternion(0.0, np.pi / 2, 0.0)),
+    ),
+    vessel=VesselTruth(
+        position=np.array([10.0, 20.0, 2.0]),
+        heading=2.5,
+        yaw_rate=0.01,
+        velocity_ground=np.array([-1.6, 1.2, 0.0]),
+        velocity_water=np.array([2.1, 0.05, 0.0]),
+    ),
+)
+
+
+@pytest.fixture(scope='module')
+def received():
+    return {
+        topic: deserialize(serialize(message), TOPICS[topic].type)
+        for topic, message in truth_messages(TRUTH_RECORD)
+    }
+
+
+def assert_close(record, expected):
+    for field in dataclasses.fields(expected):
+        first, second = getattr(record, field.name), getattr(expected, field.name)
+        np.testing.assert_allclose(first, second, rtol=1e-12, atol=1e-12, err_msg=field.name)
+
+
+def test_every_truth_topic_but_the_markers_is_there(received):
+    assert set(received) == {topic.name for topic in TRUTH} - {'truth/gear'}
+
+
+def test_stamps_and_frames_are_those_of_the_table(received):
+    for topic, message in received.items():
+        assert stamp_of(message) == STAMP
+        assert message.header.frame_id == TOPICS[topic].frame
+
+
+@pytest.mark.parametrize(('side', 'expected'), [('port', DOORS[0]), ('starboard', DOORS[1])])
+def test_doors_come_back(received, side, expected):
+    parts = (received[f'truth/door/{side}/{what}'] for what in ('odom', 'angles', 'wrench'))
+    assert_close(door_truth(f'truth/door/{side}/odom', *parts), expected)
+
+
+def test_a_door_without_its_wrench_does_not_pretend_to_know_it(received):
+    found = door_truth('truth/door/port/odom', received['truth/door/port/odom'])
+    assert np.isnan(found.force).all()
+    assert np.isnan(found.attack)
+    np.testing.assert_allclose(found.position, DOORS[0].position)
+
+
+def test_odometry_names_the_body_it_speaks_of(received):
+    assert received['truth/door/starboard/odom'].child_frame_id == 'door_starboard'
+    assert received['truth/vessel/odom'].child_frame_id == 'vessel'
+
+
+def test_winches_come_back_whatever_their_order(received):
+    message = received['truth/winch']
+    order = [1, 0]
+    shuffled = ros.sensor_msgs__msg__JointState(
+        message.header,
+        [message.name[i] for i in order],
+        message.position[order],
+        message.velocity[order],
+        message.effort[order],
+    )
+    assert winch_truth('truth/winch', message) == TRUTH_RECORD.winches
+    assert winch_truth('truth/winch', shuffled) == TRUTH_RECORD.winches
+
+
+def test_the_net_comes_back(received):
+    found = net_truth(
+        received['truth/net/opening'], received['truth/sonar/pose'], received['truth/net/mouth']
+    )
+    assert_close(found, TRUTH_RECORD.net)
+
+
+def test_the_ship_comes_back(received):
+    found = vessel_truth(received['truth/vessel/odom'], received['truth/vessel/velocity_water'])
+    assert_close(found, TRUTH_RECORD.vessel)
+
+
+def test_the_ships_odometry_has_its_velocity_in_the_ships_frame(received):
+    forward = received['truth/vessel/odom'].twist.twist.linear.x
+    heading, over_ground = TRUTH_RECORD.vessel.heading, TRUTH_RECORD.vessel.velocity_ground
+    assert forward == pytest.approx(over_ground @ [np.cos(heading), np.sin(heading), 0.0])
+
+
+def test_an_uninitialised_orientation_is_refused(received):
+    message = received['truth/door/port/odom']
+    broken = dataclasses.replace(
+        message,
+        pose=ros.geometry_msgs__msg__PoseWithCovariance(
+            ros.geometry_msgs__msg__Pose(
+                message.pose.pose.position, ros.geometry_msgs__msg__Quaternion(0.0, 0.0, 0.0, 0.0)
+            ),
+            message.pose.covariance,
+        ),
+    )
+    with pytest.raises(MessageError, match='truth/door/port/odom: orientation'):
+        door_truth('truth/door/port/odom', broken)
+
+
+def test_the_clock_is_the_stamp():
+    topic, message = clock_message(STAMP)
+    assert topic == '/clock'
+    assert (message.clock.sec, message.clock.nanosec) == (12, 300_000_000)
+
+
+PICTURE = GearPicture(
+    stamp=STAMP,
+    lines=(
+        Polyline('port_warp', np.arange(12.0).reshape(4, 3), 8e4),
+        Polyline('net', np.zeros((3, 3)), 2e3),
+        Polyline('net', np.ones((5, 3)), 1e3),
+    ),
+    doors=DOORS,
+    door_size=(2.14, 4.3),
+)
+
+
+def test_markers_replace_those_of_the_picture_before():
+    names = [[(m.ns, m.id) for m in gear_markers(PICTURE)[1].markers] for _ in range(2)]
+    assert names[0] == names[1]
+    assert len(set(names[0])) == 5
+
+
+def test_markers_survive_the_way_through_bytes():
+    topic, array = gear_markers(PICTURE)
+    back = deserialize(serialize(array), TOPICS[topic].type)
+    warp, *_, port_door, _ = back.markers
+    assert [(p.x, p.y, p.z) for p in warp.points] == [tuple(p) for p in PICTURE.lines[0].points]
+    assert warp.type == ros.visualization_msgs__msg__Marker.LINE_STRIP
+    assert port_door.type == ros.visualization_msgs__msg__Marker.CUBE
+    assert (port_door.scale.x, port_door.scale.z) == PICTURE.door_size
+    assert port_door.pose.position.x == DOORS[0].position[0]
+    assert {marker.header.frame_id for marker in back.markers} == {'map'}
+
+
+def test_tension_runs_from_blue_to_red():
+    slack, full, beyond = (tension_colour(t) for t in (0.0, FULL_SCALE, 2 * FULL_SCALE))
+    assert slack.b > slack.r
+    assert full.r > full.b
+    assert beyond == full

@@ -1,0 +1,32 @@
+"""What can go wrong, each as one sentence a user can act on.
+
+Every message names the file, key or topic, what was found there and what was expected.
+"""
+
+
+class TrawlError(Exception):
+    """Base of all errors that are the input's fault; commands print it and exit with 1."""
+
+
+class GearError(TrawlError):
+    """A gear file that is missing, unreadable or says something impossible."""
+
+
+class ScenarioError(TrawlError):
+    """A scenario file that is missing, unreadable or asks for something impossible."""
+
+
+class MessageError(TrawlError):
+    """A message whose content contradicts what its topic or type promises."""
+
+
+class BagError(TrawlError):
+    """A bag that is missing, damaged, or does not hold what was asked for."""
+
+
+class LogError(TrawlError):
+    """A CSV log or its mapping that cannot be turned into a bag."""
+
+
+class NoSteadyState(TrawlError):
+    """The gear has no usable steady state at the wanted warp length and speed."""

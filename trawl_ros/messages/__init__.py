@@ -1,0 +1,1 @@
+"""The one boundary between the project's records and ROS messages."""

@@ -1,0 +1,57 @@
+"""Messages to bytes and back: CDR as every ROS 2 middleware understands it.
+
+Nodes publish these bytes as they are and bags store them, so there is one encoder.
+"""
+
+import struct
+from typing import Any
+
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, get_typestore
+
+from trawl_ros.errors import MessageError
+
+STORE = get_typestore(Stores.ROS2_JAZZY)
+"""Types are named 'package/msg/Name'; its classes are what the project calls messages."""
+
+_EXAMPLE = 'sensor_msgs/msg/JointState'
+
+DECODING_ERRORS = (SerdeError, struct.error, ValueError, IndexError, MemoryError)
+"""All that generated decoders raise when the bytes are not what the type says."""
+
+
+def serialize(message: Any, type_name: str | None = None) -> bytes:
+    """Encode a message as little-endian CDR with its 4-byte header.
+
+    ``type_name`` may be left out: messages carry their own.
+    """
+    return bytes(STORE.serialize_cdr(message, type_name or message.__msgtype__))
+
+
+def deserialize(data: bytes, type_name: str) -> Any:
+    """Decode CDR bytes of a known type.
+
+    Raises
+    ------
+    MessageError
+        If the type is unknown or the bytes do not hold one message of that type.
+    """
+    if type_name not in STORE.types:
+        raise MessageError(
+            f'{type_name} is not a known message type; expected a name such as {_EXAMPLE}'
+        )
+    try:
+        return STORE.deserialize_cdr(data, type_name)
+    except DECODING_ERRORS as error:
+        raise MessageError(f'{len(data)} bytes are not a {type_name}: {error}') from error
+
+
+def type_hash(type_name: str) -> str:
+    """Give the hash (RIHS01) by which ROS 2 tells whether two definitions are the same."""
+    return STORE.hash_rihs01(type_name)
+
+
+def definition(type_name: str) -> str:
+    """Give the definition with those of all nested types, as bags carry it (ros2msg)."""
+    text, _ = STORE.generate_msgdef(type_name, ros_version=2)
+    return text

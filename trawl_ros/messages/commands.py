@@ -1,0 +1,80 @@
+"""What `sim_node` listens to: wanted warp lengths, and the ship's speed and rate of turn."""
+
+import math
+from typing import Any
+
+import numpy as np
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from trawl_ros.errors import MessageError
+from trawl_ros.messages.from_messages import joint_column
+from trawl_ros.messages.stamps import header
+from trawl_ros.messages.to_messages import TopicMessage
+from trawl_ros.messages.topics import TOPICS, WINCH_NAMES
+
+WINCH_COMMAND = 'command/winch'
+VESSEL_COMMAND = 'command/vessel'
+
+
+def winch_command(stamp: int, port: float, starboard: float) -> TopicMessage:
+    """Ask for warp lengths (m); NaN leaves that winch as it is."""
+    wanted = zip(WINCH_NAMES, (port, starboard), strict=True)
+    lengths = {name: float(length) for name, length in wanted if not math.isnan(length)}
+    return WINCH_COMMAND, ros.sensor_msgs__msg__JointState(
+        header(stamp, TOPICS[WINCH_COMMAND].frame),
+        list(lengths),
+        np.array(list(lengths.values()), dtype=float),
+        np.zeros(0),
+        np.zeros(0),
+    )
+
+
+def vessel_command(stamp: int, speed: float, yaw_rate: float) -> TopicMessage:
+    """Ask for a speed through water (m/s) and a rate of turn (rad/s, positive to port)."""
+    return VESSEL_COMMAND, ros.geometry_msgs__msg__TwistStamped(
+        header(stamp, TOPICS[VESSEL_COMMAND].frame),
+        ros.geometry_msgs__msg__Twist(
+            ros.geometry_msgs__msg__Vector3(float(speed), 0.0, 0.0),
+            ros.geometry_msgs__msg__Vector3(0.0, 0.0, float(yaw_rate)),
+        ),
+    )
+
+
+def read_winch_command(message: Any) -> tuple[float | None, float | None]:
+    """Read the wanted warp lengths (port, starboard), m; None for a winch not named.
+
+    Raises
+    ------
+    MessageError
+        If a name is not a winch's, none is there, or a length is not a positive number.
+    """
+    wanted = joint_column(WINCH_COMMAND, message, 'position')
+    unknown = [name for name in wanted if name not in WINCH_NAMES]
+    if unknown or not wanted:
+        raise MessageError(
+            f'{WINCH_COMMAND}: names {list(message.name)}; expected {" and/or ".join(WINCH_NAMES)}'
+        )
+    for name, length in wanted.items():
+        if not (math.isfinite(length) and length > 0):
+            raise MessageError(
+                f'{WINCH_COMMAND}: position {length:g} of {name}; expected a warp length above 0 m'
+            )
+    port, starboard = (wanted.get(name) for name in WINCH_NAMES)
+    return port, starboard
+
+
+def read_vessel_command(message: Any) -> tuple[float, float]:
+    """Read the wanted speed through water (m/s) and rate of turn (rad/s, positive to port).
+
+    Raises
+    ------
+    MessageError
+        If one of them is not a finite number.
+    """
+    speed, yaw_rate = float(message.twist.linear.x), float(message.twist.angular.z)
+    if not (math.isfinite(speed) and math.isfinite(yaw_rate)):
+        raise MessageError(
+            f'{VESSEL_COMMAND}: linear.x {speed:g}, angular.z {yaw_rate:g}; '
+            'expected finite numbers (m/s, rad/s)'
+        )
+    return speed, yaw_rate

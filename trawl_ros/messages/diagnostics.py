@@ -1,0 +1,60 @@
+"""Diagnostic arrays: what nodes report of themselves, and findings of the identification."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from trawl_ros.messages.stamps import header
+
+OK = ros.diagnostic_msgs__msg__DiagnosticStatus.OK
+WARN = ros.diagnostic_msgs__msg__DiagnosticStatus.WARN
+ERROR = ros.diagnostic_msgs__msg__DiagnosticStatus.ERROR
+STALE = ros.diagnostic_msgs__msg__DiagnosticStatus.STALE
+
+
+@dataclass(frozen=True)
+class Status:
+    """One status: a name, a level (`OK` to `STALE`), a short message, and values by key."""
+
+    name: str
+    level: int
+    message: str
+    values: Mapping[str, str] = field(default_factory=dict)
+    hardware_id: str = ''
+
+
+def diagnostic_array(
+    stamp: int, statuses: Sequence[Status]
+) -> ros.diagnostic_msgs__msg__DiagnosticArray:
+    """Put statuses into one message with a stamp in ns."""
+    return ros.diagnostic_msgs__msg__DiagnosticArray(
+        header(stamp, ''), [_to_message(status) for status in statuses]
+    )
+
+
+def read_statuses(message: Any) -> tuple[Status, ...]:
+    """Read the statuses of a diagnostic array."""
+    return tuple(
+        Status(
+            name=status.name,
+            level=int(status.level),
+            message=status.message,
+            values={pair.key: pair.value for pair in status.values},
+            hardware_id=status.hardware_id,
+        )
+        for status in message.status
+    )
+
+
+def _to_message(status: Status) -> ros.diagnostic_msgs__msg__DiagnosticStatus:
+    return ros.diagnostic_msgs__msg__DiagnosticStatus(
+        level=status.level,
+        name=status.name,
+        message=status.message,
+        hardware_id=status.hardware_id,
+        values=[
+            ros.diagnostic_msgs__msg__KeyValue(key, value) for key, value in status.values.items()
+        ],
+    )

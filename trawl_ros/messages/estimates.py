@@ -1,0 +1,119 @@
+"""What the identification publishes: coefficients, their covariance, and innovations."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from trawl_ros.errors import MessageError
+from trawl_ros.messages.from_messages import joint_column
+from trawl_ros.messages.stamps import header
+from trawl_ros.messages.to_messages import TopicMessage
+
+COEFFICIENTS = ('a1', 'c1', 'a2', 'c2', 'b3', 'c3', 'a4', 'c4', 'b5', 'c5', 'a6', 'c6')
+"""The board's coefficients in the order of eq. 36, which is the order in messages."""
+
+LABEL = ','.join(COEFFICIENTS)
+
+ESTIMATE = 'identification/estimate'
+COVARIANCE = 'identification/covariance'
+INNOVATION = 'identification/innovation'
+
+
+@dataclass(frozen=True)
+class Innovation:
+    """One channel: measured minus predicted, its standard deviation, and the test ratio.
+
+    ``innovation`` and ``std`` are in the channel's unit; a ratio below 0.5 is normal, above
+    1 the measurement is rejected.
+    """
+
+    channel: str
+    innovation: float
+    std: float
+    ratio: float
+
+
+def estimate_message(values: Sequence[float] | np.ndarray) -> TopicMessage:
+    """Turn the twelve coefficients, in the order of `COEFFICIENTS`, into a message."""
+    return ESTIMATE, _array(np.asarray(values, dtype=float), (len(COEFFICIENTS),))
+
+
+def covariance_message(matrix: np.ndarray) -> TopicMessage:
+    """Turn their covariance (12, 12) into a message, row-major."""
+    size = len(COEFFICIENTS)
+    return COVARIANCE, _array(np.asarray(matrix, dtype=float), (size, size))
+
+
+def innovation_message(stamp: int, innovations: Sequence[Innovation]) -> TopicMessage:
+    """Turn the innovations of one window into a message stamped with it (ns)."""
+    columns = (
+        [float(getattr(item, field)) for item in innovations]
+        for field in ('innovation', 'std', 'ratio')
+    )
+    return INNOVATION, ros.sensor_msgs__msg__JointState(
+        header(stamp, ''),
+        [item.channel for item in innovations],
+        *(np.array(column, dtype=float) for column in columns),
+    )
+
+
+def read_estimate(message: Any) -> np.ndarray:
+    """Read the twelve coefficients, shape (12,).
+
+    Raises
+    ------
+    MessageError
+        If size or label are not those of the contract.
+    """
+    return _values(ESTIMATE, message, (len(COEFFICIENTS),))
+
+
+def read_covariance(message: Any) -> np.ndarray:
+    """Read the covariance, shape (12, 12).
+
+    Raises
+    ------
+    MessageError
+        If size or label are not those of the contract.
+    """
+    size = len(COEFFICIENTS)
+    return _values(COVARIANCE, message, (size, size))
+
+
+def read_innovations(message: Any) -> tuple[Innovation, ...]:
+    """Read the innovations of one window.
+
+    Raises
+    ------
+    MessageError
+        If channels repeat or the fields differ in length.
+    """
+    columns = [joint_column(INNOVATION, message, f) for f in ('position', 'velocity', 'effort')]
+    return tuple(Innovation(name, *(column[name] for column in columns)) for name in message.name)
+
+
+def _array(values: np.ndarray, shape: tuple[int, ...]) -> ros.std_msgs__msg__Float64MultiArray:
+    if values.shape != shape:
+        raise ValueError(f'coefficients of shape {values.shape}, expected {shape}')
+    dimensions = [
+        # A stride is the number of values from one entry of the dimension outside to its next.
+        ros.std_msgs__msg__MultiArrayDimension(LABEL, size, int(np.prod(shape[axis:])))
+        for axis, size in enumerate(shape)
+    ]
+    return ros.std_msgs__msg__Float64MultiArray(
+        ros.std_msgs__msg__MultiArrayLayout(dimensions, 0), values.ravel()
+    )
+
+
+def _values(topic: str, message: Any, shape: tuple[int, ...]) -> np.ndarray:
+    sizes = tuple(dimension.size for dimension in message.layout.dim)
+    offset = message.layout.data_offset
+    values = np.asarray(message.data, dtype=float)[offset:]
+    if sizes != shape or values.size != np.prod(shape):
+        raise MessageError(f'{topic}: {values.size} values in dimensions {sizes}; expected {shape}')
+    if message.layout.dim[0].label != LABEL:
+        raise MessageError(f'{topic}: label {message.layout.dim[0].label!r}; expected {LABEL!r}')
+    return values.reshape(shape)
