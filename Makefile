@@ -1,0 +1,94 @@
+# `make demo` and `make test` need Python 3.10 to 3.13, make and a package index; what they
+# install goes into .venv and is done once.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint lock clean
+
+# Any of these may be given on the command line: make PYTHON=python3.12 test
+PYTHON ?=
+DEMO := out/demo
+WORKERS := 2
+
+VENV := .venv
+BIN := $(VENV)/bin
+
+# Nodes of a demo or test talk to nobody outside this machine.
+export ROS_AUTOMATIC_DISCOVERY_RANGE := LOCALHOST
+
+# A shell that has sourced a ROS 2 installation would mix its libraries with those in .venv.
+ifdef ROS_DISTRO
+unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
+unexport RMW_IMPLEMENTATION ROS_DISTRO ROS_PYTHON_VERSION ROS_VERSION
+endif
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+help:
+	@echo 'make demo   tow a sea trial through the ROS graph, replay it, refit the boards: $(DEMO)/'
+	@echo 'make test   check the style and run all tests'
+	@echo 'make lint   style and types only'
+	@echo 'make lock   choose the newest allowed versions anew and write requirements.lock'
+	@echo 'make clean  remove .venv, out/ and what builds and tools leave behind'
+
+demo: $(VENV)/ready
+	@$(BIN)/trawl demo --out $(DEMO)
+
+test: $(VENV)/ready
+	@$(BIN)/ruff check --quiet .
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+
+lint: $(VENV)/ready
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+
+lock: $(VENV)/ready
+	@$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.10 \
+	    --extra ros --extra test --custom-compile-command 'make lock' \
+	    --output-file requirements.lock setup.py
+	@echo 'requirements.lock is written; the next make installs it'
+
+clean:
+	@rm -rf $(VENV) out build install log dist *.egg-info .pytest_cache .ruff_cache .mypy_cache
+	@find trawl_ros test -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The folder of data and the metadata are read from this checkout (an editable install), so
+# only a change of what is declared asks for another installation.
+$(VENV)/ready: $(VENV)/locked setup.py setup.cfg pyproject.toml
+	@echo '.venv: trawl_ros itself'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
+	    --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# uv takes 8 s where pip takes 40, but it does not read pip's configuration; where it cannot
+# reach the package index, pip gets its turn.
+$(VENV)/locked: requirements.lock | $(VENV)/bin/python
+	@echo ".venv: $$(grep -c == requirements.lock) pinned packages (the longest step, 10 to 60 s)"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
+	    --constraint requirements.lock uv
+	@index="$${PIP_INDEX_URL:-$$($(BIN)/python -m pip config get global.index-url 2>/dev/null || true)}"; \
+	if [ -n "$$index" ]; then export UV_DEFAULT_INDEX="$$index"; fi; \
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --requirement requirements.lock || { \
+	    echo '.venv: uv failed, trying pip'; \
+	    $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
+	        --requirement requirements.lock; }
+	@touch $@
+
+$(VENV)/bin/python:
+	@for python in $(or $(PYTHON),python3 python3.12 python3.11 python3.13 python3.10); do \
+	    if "$$python" -c 'import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' \
+	        2>/dev/null; then \
+	        echo ".venv: $$("$$python" --version)"; \
+	        "$$python" -m venv --clear $(VENV) && exit; \
+	        rm -rf $(VENV); \
+	        echo "$$python cannot make a virtual environment (on Debian and Ubuntu that needs" \
+	            "the package python3-venv)" >&2; \
+	        exit 1; \
+	    fi; \
+	done; \
+	echo 'found no Python from 3.10 to 3.13 among:' \
+	    '$(or $(PYTHON),python3 python3.12 python3.11 python3.13 python3.10);' \
+	    'name one with make PYTHON=...' >&2; \
+	exit 1

@@ -1,0 +1,102 @@
+"""Build of the ROS 2 package trawl_ros; the only place that declares dependencies for pip."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'trawl_ros'
+
+NODES = (
+    'sim_node',
+    'winch_node',
+    'door_sensor_node',
+    'trawl_sonar_node',
+    'vessel_node',
+    'identification_node',
+    'bag_recorder',
+    'bag_player',
+)
+
+# ROS 2 itself, for machines that do not have it. It is an extra because a machine with a full
+# ROS 2 brings rclpy and the message packages along, and a second copy of them from the package
+# index would hide the one that the rest of that machine was built against.
+ROS = [
+    f'ros-jazzy-{name}'
+    for name in (
+        'ament-index-python>=1.8,<2',
+        'diagnostic-msgs>=5.3,<6',
+        'geometry-msgs>=5.3,<6',
+        'nav-msgs>=5.3,<6',
+        'rcl-interfaces>=2,<3',
+        'rclpy>=7.1,<8',
+        'rmw-fastrtps-cpp>=8.4,<9',
+        'rosgraph-msgs>=2,<3',
+        'sensor-msgs>=5.3,<6',
+        'std-msgs>=5.3,<6',
+        'std-srvs>=5.3,<6',
+        'visualization-msgs>=5.3,<6',
+    )
+]
+
+TEST = [
+    'colcon-bash>=0.5,<1',
+    'colcon-core>=0.18,<1',
+    'colcon-package-information>=0.4,<1',
+    'colcon-ros>=0.5,<1',
+    'mypy>=1.13,<3',
+    'pytest>=7.4,<10',
+    'pytest-timeout>=2.3,<3',
+    'pytest-xdist>=3.6,<4',
+    'ruff>=0.8,<1',
+    # setup.py is still run as a command by colcon, which setuptools 80 gave up.
+    'setuptools>=64,<80',
+    'types-PyYAML>=6,<7',
+    'uv>=0.5,<1',
+]
+
+
+def tree(folder: str) -> list[tuple[str, list[str]]]:
+    """All files below `folder`, to be installed in the same sub-folders of the share folder."""
+    folders: dict[Path, list[str]] = {}
+    for file in sorted(Path(folder).rglob('*')):
+        if file.is_file() and not any(part.startswith('.') for part in file.parts):
+            folders.setdefault(file.parent, []).append(str(file))
+    return [(f'share/{PACKAGE}/{parent.as_posix()}', files) for parent, files in folders.items()]
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    description='Emulates the instruments of a mid-water trawler and refits the model of its gear',
+    license='Apache-2.0',
+    maintainer='trawl_ros developers',
+    maintainer_email='trawl_ros@example.org',
+    python_requires='>=3.10',
+    packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
+    package_data={PACKAGE: ['py.typed']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (f'share/{PACKAGE}', ['package.xml']),
+        *tree('config'),
+        *tree('bags'),
+    ],
+    install_requires=[
+        'click>=8.1,<9',
+        'matplotlib>=3.6,<4',
+        'mcap>=1.2,<2',
+        'numpy>=1.26,<3',
+        'pydantic>=2.7,<3',
+        'PyYAML>=6,<7',
+        'rich>=13,<16',
+        'rosbags>=0.11.9,<0.12',
+        'scipy>=1.11,<2',
+    ],
+    extras_require={'ros': ROS, 'test': TEST},
+    entry_points={
+        'console_scripts': [
+            *(f'{node} = {PACKAGE}.nodes.{node}:main' for node in NODES),
+            f'trawl = {PACKAGE}.cli.main:main',
+        ],
+    },
+    zip_safe=False,
+)
