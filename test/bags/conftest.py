@@ -1,0 +1,61 @@
+"""A small bag of two topics that the tests of this folder read and damage."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.instruments.samples import PressureSample, WinchSample
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.topics import absolute
+
+SECOND = 1_000_000_000
+START = 1_785_000_000 * SECOND
+SECONDS = 300
+CHUNKS = 5
+
+
+def small_messages():
+    """Give (topic, type, bytes, log time) of winch and door samples, once per second."""
+    random = np.random.default_rng(3)
+    for second in range(SECONDS):
+        stamp = START + second * SECOND
+        lengths, speeds = tuple(random.normal(500, 5, 2)), tuple(random.normal(0, 0.1, 2))
+        for sample in (
+            WinchSample(stamp, lengths, speeds, tuple(random.normal(8e4, 1e3, 2))),
+            PressureSample(stamp, 'port', float(random.normal(1.4e6, 1e3)), 1e3),
+        ):
+            topic, message = sample_message(sample)
+            yield absolute(topic), message.__msgtype__, serialize(message), stamp
+
+
+def write_small_bag(path: Path) -> Path:
+    with BagWriter(path) as bag:
+        for number, message in enumerate(small_messages(), start=1):
+            bag.write(*message)
+            if number % (2 * SECONDS // CHUNKS) == 0:
+                bag.flush()
+    return path
+
+
+@pytest.fixture(scope='session')
+def messages():
+    return list(small_messages())
+
+
+@pytest.fixture(scope='session')
+def sound_bag(tmp_path_factory):
+    return write_small_bag(tmp_path_factory.mktemp('bags') / 'trial')
+
+
+@pytest.fixture
+def bag_path(tmp_path):
+    """Give a fresh copy of the small bag, to be damaged."""
+    return write_small_bag(tmp_path / 'trial')
+
+
+@pytest.fixture
+def mcap_path(bag_path):
+    return bag_path / 'trial_0.mcap'

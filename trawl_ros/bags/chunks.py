@@ -1,0 +1,107 @@
+"""One chunk of an MCAP file, taken apart with care.
+
+Sizes are checked before memory is taken, and checksums before anything is believed.
+"""
+
+import io
+import struct
+import zlib
+from collections.abc import Iterator
+
+import lz4.frame  # type: ignore[import-untyped]
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Channel, Chunk, Message, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
+
+MAX_CHUNK_BYTES = 256 << 20
+"""Largest chunk (and largest single record) that is read; writers make them of about 1 MB."""
+
+DAMAGE = (
+    McapError,
+    struct.error,
+    ValueError,
+    KeyError,
+    zstandard.ZstdError,
+    RuntimeError,
+)
+"""All that is raised by the MCAP records and decompressors when bytes are not what they say."""
+
+Record = Schema | Channel | Message
+
+_STEP = 1 << 20
+
+
+class Damaged(ValueError):
+    """Bytes that are not what they say they are; the text says how."""
+
+
+def parse_records(data: bytes) -> Iterator[object]:
+    """Read records from bytes, up to and with a footer and the magic bytes behind it."""
+    return StreamReader(io.BytesIO(data), skip_magic=True, emit_chunks=True).records
+
+
+def open_chunk(record: bytes) -> list[Record]:
+    """Give schemas, channels and messages of a chunk, in the order in which they stand there.
+
+    Parameters
+    ----------
+    record
+        The whole record with opcode and length.
+
+    Raises
+    ------
+    Damaged
+        If the record is no chunk, too large, or fails its checksum.
+    """
+    try:
+        chunk = next(parse_records(record))
+        if not isinstance(chunk, Chunk):
+            raise Damaged('no chunk starts there')
+        plain = _decompress(chunk)
+        if chunk.uncompressed_crc and zlib.crc32(plain) != chunk.uncompressed_crc:
+            raise Damaged('its checksum does not match')
+        bare = Chunk(
+            compression='',
+            data=plain,
+            message_start_time=chunk.message_start_time,
+            message_end_time=chunk.message_end_time,
+            uncompressed_crc=0,
+            uncompressed_size=len(plain),
+        )
+        return [record for record in breakup_chunk(bare) if isinstance(record, Record)]
+    except Damaged:
+        raise
+    except DAMAGE as reason:
+        raise Damaged(str(reason) or 'its records are cut short') from reason
+
+
+def _decompress(chunk: Chunk) -> bytes:
+    size = chunk.uncompressed_size
+    if size > MAX_CHUNK_BYTES:
+        raise Damaged(f'it claims {size} bytes, more than the {MAX_CHUNK_BYTES} that are read')
+    match chunk.compression:
+        case '':
+            plain = chunk.data
+        case 'zstd':
+            # Step by step, since a frame may claim another size than the chunk does.
+            reader = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES).stream_reader(
+                chunk.data
+            )
+            plain = _read_up_to(reader, size + 1)
+        case 'lz4':
+            plain = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size + 1)
+        case other:
+            raise Damaged(f'its compression is {other!r}, expected zstd, lz4 or none')
+    if len(plain) != size:
+        raise Damaged(f'it claims {size} bytes and holds {"more" if len(plain) > size else "less"}')
+    return plain
+
+
+def _read_up_to(reader: zstandard.ZstdDecompressionReader, limit: int) -> bytes:
+    parts: list[bytes] = []
+    left = limit
+    while left and (part := reader.read(min(left, _STEP))):
+        parts.append(part)
+        left -= len(part)
+    return b''.join(parts)

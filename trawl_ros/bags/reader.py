@@ -1,0 +1,226 @@
+"""Bags read in the order of log times: folders, single MCAP files, and damaged ones.
+
+What is readable is used; what is wrong with the rest is said in `Bag.problems`.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.bags.decoding import Decoder, make_decoder
+from trawl_ros.bags.sources import Source, open_source
+from trawl_ros.errors import BagError
+from trawl_ros.messages.cdr import DECODING_ERRORS
+from trawl_ros.messages.topics import NAMESPACE, find_topic
+
+
+@dataclass(frozen=True)
+class RawMessage:
+    """A message as it lies in the bag: full topic name, type, times in ns, CDR bytes."""
+
+    topic: str
+    type: str
+    log_time: int
+    publish_time: int
+    data: bytes
+
+
+@dataclass(frozen=True)
+class Received:
+    """A decoded message: full topic name, type, log time (ns), and the message."""
+
+    topic: str
+    type: str
+    log_time: int
+    message: Any
+
+
+@dataclass(frozen=True)
+class TopicSummary:
+    """How many messages of which type a topic has."""
+
+    topic: str
+    type: str
+    count: int
+
+
+@dataclass(frozen=True)
+class BagSummary:
+    """What is in a bag; ``start`` and ``end`` are log times in ns, None without messages."""
+
+    path: Path
+    topics: tuple[TopicSummary, ...]
+    count: int
+    start: int | None
+    end: int | None
+    problems: tuple[str, ...]
+
+
+class Bag:
+    """A bag opened for reading.
+
+    Parameters
+    ----------
+    path
+        A bag's folder, or one MCAP file.
+    namespace
+        Where the project's topics live in this bag.
+
+    Attributes
+    ----------
+    topics : dict
+        Type by full topic name.
+    problems : list of str
+        What was found wrong so far, one sentence each; complete once messages were read.
+    custom_data : dict
+        Text by key from ``metadata.yaml``.
+
+    Raises
+    ------
+    BagError
+        If there is no bag, or its metadata and its content disagree.
+    """
+
+    def __init__(self, path: str | Path, *, namespace: str = NAMESPACE) -> None:
+        self.path = Path(path)
+        self.problems: list[str] = []
+        self._namespace = namespace
+        self._source: Source = open_source(self.path, self._report)
+        self.topics = {
+            topic: definition.type for topic, definition in self._source.definitions.items()
+        }
+        self.custom_data = self._source.custom_data
+
+    def raw(self, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
+        """Give messages undecoded, of all topics or of those named in full.
+
+        Raises
+        ------
+        BagError
+            If a topic of the project has another type than it should, or there is not one
+            readable message in the whole bag.
+        """
+        self._check_types(topics)
+        read = 0
+        for topic, type_name, message in self._source.messages():
+            read += 1
+            if topics is None or topic in topics:
+                yield RawMessage(
+                    topic, type_name, message.log_time, message.publish_time, message.data
+                )
+        self._check_count(read)
+
+    def messages(self, topics: Collection[str] | None = None) -> Iterator[Received]:
+        """Give decoded messages, of all topics or of those named in full.
+
+        Messages that cannot be decoded are left out and counted in `problems`.
+
+        Raises
+        ------
+        BagError
+            As `raw`, and if the definition of one of the project's topics is not understood.
+        """
+        decoders = self._decoders(topics)
+        failed: Counter[str] = Counter()
+        for raw in self.raw(decoders):
+            try:
+                message = decoders[raw.topic](raw.data)
+            except DECODING_ERRORS:
+                failed[raw.topic] += 1
+                continue
+            yield Received(raw.topic, raw.type, raw.log_time, message)
+        for topic, count in failed.items():
+            self._report(
+                f'{self.path}: {count} messages on {topic} are not a {self.topics[topic]} '
+                'and were left out'
+            )
+
+    def summary(self) -> BagSummary:
+        """Read through the whole bag and count what is there."""
+        counts: Counter[tuple[str, str]] = Counter()
+        start = end = None
+        for topic, type_name, message in self._source.messages():
+            counts[topic, type_name] += 1
+            time = message.log_time
+            start = time if start is None else min(start, time)
+            end = time if end is None else max(end, time)
+        if not counts:
+            self._report(f'{self.path}: holds no message')
+        return BagSummary(
+            path=self.path,
+            topics=tuple(TopicSummary(*key, counts[key]) for key in sorted(counts)),
+            count=counts.total(),
+            start=start,
+            end=end,
+            problems=tuple(self.problems),
+        )
+
+    def _decoders(self, topics: Collection[str] | None) -> dict[str, Decoder]:
+        decoders = {}
+        for topic, definition in self._source.definitions.items():
+            if topics is not None and topic not in topics:
+                continue
+            try:
+                decoders[topic] = make_decoder(topic, definition)
+            except BagError as reason:
+                sentence = f'{self.path}: {reason}'
+                if find_topic(topic, self._namespace):
+                    raise BagError(sentence) from reason
+                self._report(f'{sentence}; its messages are left out')
+        return decoders
+
+    def _check_types(self, topics: Collection[str] | None) -> None:
+        for topic, found in sorted(self._source.types()):
+            known = find_topic(topic, self._namespace)
+            wanted = topics is None or topic in topics
+            if known and wanted and found != known.type:
+                raise BagError(
+                    f'{self.path}: {topic} has type {found or "unknown"}; expected {known.type}'
+                )
+
+    def _check_count(self, read: int) -> None:
+        if read == 0:
+            known = f' ({"; ".join(self.problems)})' if self.problems else ''
+            raise BagError(f'{self.path}: holds no message that can be read{known}')
+        stated = self._source.stated_count
+        if stated is not None and stated != read:
+            self._report(f'{self.path}: {read} of {stated} messages could be read')
+
+    def _report(self, problem: str) -> None:
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+
+def read_messages(
+    path: str | Path,
+    topics: Collection[str] | None = None,
+    *,
+    problems: list[str] | None = None,
+) -> Iterator[Received]:
+    """Read the messages of a bag in the order of their log times.
+
+    Parameters
+    ----------
+    path
+        A bag's folder, or one MCAP file.
+    topics
+        Full names of the topics wanted; None for all.
+    problems
+        Takes a sentence for each thing found wrong, once all messages were read.
+
+    Raises
+    ------
+    BagError
+        See `Bag`.
+    """
+    bag = Bag(path)
+    yield from bag.messages(topics)
+    if problems is not None:
+        problems.extend(bag.problems)
+
+
+def summarise(path: str | Path) -> BagSummary:
+    """Count what is in a bag; see `Bag.summary`."""
+    return Bag(path).summary()
