@@ -21,6 +21,7 @@ DAMAGE = (
     McapError,
     struct.error,
     ValueError,
+    OverflowError,
     KeyError,
     zstandard.ZstdError,
     RuntimeError,

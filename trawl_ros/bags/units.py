@@ -1,0 +1,37 @@
+"""Units as logs have them, each with its quantity and its size in SI."""
+
+import math
+
+UNITS: dict[str, tuple[str, float]] = {
+    'm': ('length', 1.0),
+    'km': ('length', 1000.0),
+    'ft': ('length', 0.3048),
+    'fathom': ('length', 1.8288),
+    'N': ('force', 1.0),
+    'kN': ('force', 1e3),
+    'kgf': ('force', 9.80665),
+    'tf': ('force', 9806.65),
+    'lbf': ('force', 4.4482216152605),
+    'Pa': ('pressure', 1.0),
+    'hPa': ('pressure', 100.0),
+    'kPa': ('pressure', 1e3),
+    'dbar': ('pressure', 1e4),
+    'bar': ('pressure', 1e5),
+    'MPa': ('pressure', 1e6),
+    'rad': ('angle', 1.0),
+    'deg': ('angle', math.pi / 180),
+    'm/s': ('speed', 1.0),
+    'm/min': ('speed', 1 / 60),
+    'km/h': ('speed', 1 / 3.6),
+    'kn': ('speed', 1852 / 3600),
+    'rad/s': ('rate of turn', 1.0),
+    'deg/s': ('rate of turn', math.pi / 180),
+    'deg/min': ('rate of turn', math.pi / 180 / 60),
+}
+"""Quantity and factor by name. ``kn`` is the knot, ``kN`` the kilonewton, ``tf`` the metric
+ton-force, ``fathom`` the international one."""
+
+
+def units_of(quantity: str) -> list[str]:
+    """Name the units in which a quantity may be given."""
+    return [name for name, (measures, _) in UNITS.items() if measures == quantity]
