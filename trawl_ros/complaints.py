@@ -6,6 +6,7 @@ as it stands there, what was found, what was expected, in which unit.
 
 import difflib
 import math
+import re
 import types
 from typing import Annotated, Any, Union, get_args, get_origin
 
@@ -24,6 +25,7 @@ UNITS = {
     'n': 'newtons',
     'kn': 'kilonewtons',
     'pa': 'pascals',
+    'kpa': 'kilopascals',
     'gpa': 'gigapascals',
     's': 'seconds',
     'min': 'minutes',
@@ -55,6 +57,7 @@ def unit_of(key: str) -> str | None:
     return 'minutes' if key == 'minutes' else None
 
 
+_OWN_KEY = re.compile(r'[\w.\[\]]+: ')
 _SCALARS = {
     'float_type': 'a number',
     'int_type': 'a whole number',
@@ -100,7 +103,9 @@ def complaints(
             continue
         if kind == 'value_error':
             said = detail['msg'].removeprefix('Value error, ')
-            lines.append(f'{key}: {said}' if key else said)
+            # A record's own check starts with the key below the record that it is about.
+            own = not key or _OWN_KEY.match(said)
+            lines.append(_join(key, said) if own else f'{key}: {said}')
         elif not _other_branch(detail, errors):
             found = 'missing' if kind == 'missing' else f'found {shown(detail["input"])}'
             unit = unit_of(next((s for s in reversed(loc) if isinstance(s, str)), ''))

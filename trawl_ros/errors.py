@@ -16,6 +16,10 @@ class ScenarioError(TrawlError):
     """A scenario file that is missing, unreadable or asks for something impossible."""
 
 
+class InstrumentError(TrawlError):
+    """A file of instrument parameters that is missing, unreadable or impossible."""
+
+
 class MessageError(TrawlError):
     """A message whose content contradicts what its topic or type promises."""
 

@@ -1,0 +1,72 @@
+"""Instrument files are checked on load; what is wrong is named."""
+
+from pathlib import Path
+
+import pytest
+
+from trawl_ros.errors import InstrumentError, ScenarioError
+from trawl_ros.instruments.parameters import default_instruments_with, load_instruments
+from trawl_ros.share import share_path
+
+
+def changed(folder: Path, old: str, new: str) -> Path:
+    text = share_path('config', 'instruments', 'default.yaml').read_text()
+    assert old in text
+    path = folder / 'mine.yaml'
+    path.write_text(text.replace(old, new, 1))
+    return path
+
+
+def test_the_packaged_set_is_the_default_and_a_copy_of_it_says_the_same(tmp_path: Path) -> None:
+    copy = changed(tmp_path, 'winch:', 'winch:')
+    assert load_instruments() == load_instruments('default') == load_instruments(copy)
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'sentence'),
+    [
+        ('rate_hz: 2.0', 'rate_hz: 0', 'winch.rate_hz: found 0, expected a number greater than 0'),
+        ('rate_hz: 2.0', 'period_s: 2.0', 'winch.rate_hz: missing, expected a number (hertz)'),
+        (
+            'noise_kn: 1.6',
+            'noise_n: 1600',
+            'winch.tension.noise_n: unknown key; '
+            'did you mean winch.tension.noise_kn (kilonewtons)?',
+        ),
+        ('noise_m: 0.7', 'noise_m: -0.7', 'door.spread.noise_m: found -0.7'),
+        ('min_range_m: 5.0', 'min_range_m: 500', 'max_range_m: found 400.0'),
+        ('correlation_time_s: 600.0', 'correlation_time_s: 0', 'as correlated_m is given'),
+        ('datum_lat_deg: 60.0', 'datum_lat_deg: 95', 'vessel.datum_lat_deg: found 95'),
+    ],
+)
+def test_a_wrong_parameter_is_named(tmp_path: Path, old: str, new: str, sentence: str) -> None:
+    path = changed(tmp_path, old, new)
+    with pytest.raises(InstrumentError) as caught:
+        load_instruments(path)
+    assert str(caught.value).startswith(f'{path}: ')
+    assert sentence in str(caught.value)
+
+
+def test_an_unknown_set_is_refused_with_the_names_there_are() -> None:
+    with pytest.raises(InstrumentError, match=r'there are: default\.yaml'):
+        load_instruments('nosuch')
+
+
+def test_overrides_change_what_they_name_and_nothing_else() -> None:
+    found = default_instruments_with(
+        {'door': {'spread': {'noise_m': 2.0}}}, 'trial.yaml', ScenarioError, prefix='instruments'
+    )
+    default = load_instruments()
+    assert found.door.spread.noise_m == 2.0
+    assert found.door.spread.rate_hz == default.door.spread.rate_hz
+    assert found.winch == default.winch
+
+
+def test_a_wrong_override_is_named_where_it_stands() -> None:
+    with pytest.raises(ScenarioError, match=r'trial\.yaml: instruments\.door\.spread\.noise_ft: '):
+        default_instruments_with(
+            {'door': {'spread': {'noise_ft': 2.0}}},
+            'trial.yaml',
+            ScenarioError,
+            prefix='instruments',
+        )

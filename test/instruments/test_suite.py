@@ -1,0 +1,171 @@
+"""The suite and its groups give the same data, whatever else is on board."""
+
+import math
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.instruments.doors import DoorInstruments
+from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
+from trawl_ros.instruments.samples import (
+    AttitudeSample,
+    FixSample,
+    HeadingSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
+from trawl_ros.instruments.sampling import SECOND
+from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.instruments.trawl_sonar import SonarInstruments
+from trawl_ros.instruments.vessel import VesselInstruments
+from trawl_ros.instruments.winch import WinchInstruments
+from trawl_ros.model.water import Water
+from trawl_ros.simulation.truth import DoorTruth, NetTruth, Truth, VesselTruth, WinchTruth
+
+PRESSURE = Water().pressure
+DRAWS = Draws(seed=3)
+LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def door(y: float) -> DoorTruth:
+    nothing = np.zeros(3)
+    return DoorTruth(
+        np.array([-400.0, y, -110.0]), LEVEL, nothing, nothing, 0.3, 0.0, 0.2, nothing, nothing
+    )
+
+
+TRUTH = Truth(
+    stamp=0,
+    doors=(door(60.0), door(-60.0)),
+    winches=(WinchTruth(500.0, 0.0, 160e3), WinchTruth(500.0, 0.0, 160e3)),
+    net=NetTruth(np.zeros((2, 3)), 30.0, 20.0, 130.0, np.array([-600.0, 0.0, -130.0]), LEVEL),
+    vessel=VesselTruth(np.zeros(3), 0.0, 0.0, np.array([2.1, 0.0, 0.0]), np.array([2.1, 0.0, 0.0])),
+)
+
+
+def tow(seconds: int, start: int = 0) -> list[Truth]:
+    return [replace(TRUTH, stamp=start + k * SECOND // 10) for k in range(10 * seconds + 1)]
+
+
+def observed(instruments: object, truths: list[Truth]) -> list[Sample]:
+    return [sample for truth in truths for sample in instruments.observe(truth)]  # type: ignore[attr-defined]
+
+
+def suite(draws: Draws = DRAWS, parameters: InstrumentParameters | None = None) -> InstrumentSuite:
+    return InstrumentSuite(parameters or load_instruments(), pressure_at=PRESSURE, draws=draws)
+
+
+def kind(sample: Sample) -> str:
+    match sample:
+        case PressureSample():
+            return f'pressure {sample.place}'
+        case AttitudeSample():
+            return f'attitude {sample.side}'
+        case RangeSample():
+            return sample.what
+        case VelocitySample():
+            return f'velocity {sample.over}'
+        case WinchSample() | HeadingSample() | FixSample():
+            return type(sample).__name__
+
+
+def test_a_minute_at_sea_has_as_many_samples_as_the_rates_say() -> None:
+    counts = Counter(kind(sample) for sample in observed(suite(), tow(60)))
+    assert counts == {
+        'WinchSample': 121,
+        'pressure port': 61,
+        'pressure starboard': 61,
+        'attitude port': 31,
+        'attitude starboard': 31,
+        'spread': 31,
+        'pressure sonar': 61,
+        'opening_height': 7,
+        'opening_width': 7,
+        'velocity water': 61,
+        'velocity ground': 61,
+        'FixSample': 61,
+        'HeadingSample': 61,
+    }
+
+
+def test_all_samples_carry_the_stamp_of_their_truth() -> None:
+    boat = suite()
+    for truth in tow(5, start=17):
+        assert {sample.stamp for sample in boat.observe(truth)} <= {truth.stamp}
+
+
+def test_a_group_alone_gives_what_the_whole_suite_gives() -> None:
+    parameters, draws = load_instruments(), Draws(seed=3, state_changes=(10.0,))
+    groups = (
+        WinchInstruments(parameters.winch, draws),
+        DoorInstruments(parameters.door, draws, pressure_at=PRESSURE),
+        SonarInstruments(parameters.sonar, draws, pressure_at=PRESSURE),
+        VesselInstruments(parameters.vessel, draws),
+    )
+    alone = [repr(s) for group in groups for s in observed(group, tow(30))]
+    whole = [repr(s) for s in observed(suite(draws), tow(30))]
+    assert sorted(alone) == sorted(whole)
+
+
+def test_a_change_to_one_sensor_changes_no_other() -> None:
+    parameters = load_instruments()
+    spread = parameters.door.spread.model_copy(update={'noise_m': 9.0, 'rate_hz': 5.0})
+    changed = parameters.model_copy(
+        update={'door': parameters.door.model_copy(update={'spread': spread})}
+    )
+    before = [s for s in observed(suite(), tow(30)) if kind(s) != 'spread']
+    after = [s for s in observed(suite(parameters=changed), tow(30)) if kind(s) != 'spread']
+    assert list(map(repr, before)) == list(map(repr, after))
+
+
+def test_the_seed_decides_on_all_data() -> None:
+    one, again = (list(map(repr, observed(suite(), tow(10)))) for _ in range(2))
+    other = list(map(repr, observed(suite(Draws(seed=4)), tow(10))))
+    assert one == again
+    assert one != other
+
+
+def test_a_backward_jump_gives_the_data_of_a_new_ship() -> None:
+    boat = suite(Draws(seed=3, state_changes=(5.0,)))
+    first = list(map(repr, observed(boat, tow(10))))
+    second = list(map(repr, observed(boat, tow(10))))
+    assert first == second
+
+
+def test_biases_change_with_the_states_of_the_tow_and_only_then() -> None:
+    parameters = load_instruments()
+    pressure = parameters.door.pressure.model_copy(
+        update={'noise_kpa': 0.0, 'resolution_kpa': 0.0, 'bias_per_state_kpa': 5.0}
+    )
+    biased = parameters.model_copy(
+        update={'door': parameters.door.model_copy(update={'pressure': pressure})}
+    )
+    start = 1_000 * SECOND
+    samples = observed(suite(Draws(3, (20.0, 40.0)), biased), tow(60, start))
+    port = [s for s in samples if isinstance(s, PressureSample) and s.place == 'port']
+    by_state = [
+        {s.pressure for s in port if low <= (s.stamp - start) / SECOND < high}
+        for low, high in ((0, 20), (20, 40), (40, 61))
+    ]
+    assert [len(values) for values in by_state] == [1, 1, 1]
+    assert len(set.union(*by_state)) == 3
+    assert all(abs(v - PRESSURE(110.0)) < 25e3 for v in set.union(*by_state))
+
+
+def test_the_default_errors_are_those_of_real_sensors() -> None:
+    samples = observed(suite(), tow(600))
+    port = np.array(
+        [s.pressure for s in samples if isinstance(s, PressureSample) and s.place == 'port']
+    )
+    tension = np.array([s.tensions[0] for s in samples if isinstance(s, WinchSample)])
+    spread = np.array([s.distance for s in samples if kind(s) == 'spread'])  # type: ignore[union-attr]
+    assert port.std() / 1e4 == pytest.approx(0.2, rel=0.15)
+    assert tension.std() / 160e3 == pytest.approx(0.01, rel=0.15)
+    assert spread.std() == pytest.approx(0.7, rel=0.15)
+    assert math.isclose(spread.mean(), 120.0, abs_tol=0.2)

@@ -1,0 +1,1 @@
+"""Truth in, sample out: what the instruments of a trawler report, with their errors. No ROS."""

@@ -1,0 +1,43 @@
+"""From ``map`` to latitude and longitude.
+
+``map`` is the plane that touches the ellipsoid WGS 84 at the datum (NIMA TR8350.2). A point
+goes to geocentric coordinates by the rotation of east, north, up at the datum, and on to
+latitude by Bowring's formula (1976), which near the surface is good to far below a millimetre.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+SEMI_MAJOR = 6_378_137.0
+FLATTENING = 1 / 298.257_223_563
+_SEMI_MINOR = SEMI_MAJOR * (1 - FLATTENING)
+_ECCENTRICITY_2 = FLATTENING * (2 - FLATTENING)
+_SECOND_ECCENTRICITY_2 = _ECCENTRICITY_2 / (1 - _ECCENTRICITY_2)
+
+
+@dataclass(frozen=True)
+class Datum:
+    """Where on Earth ``map`` has its origin: degrees, WGS 84."""
+
+    latitude: float
+    longitude: float
+
+
+def to_latitude_longitude(position: np.ndarray, datum: Datum) -> tuple[float, float]:
+    """Give latitude and longitude (degrees) of a position (3,) in ``map``, m."""
+    east, north, up = (float(part) for part in position)
+    lat, lon = math.radians(datum.latitude), math.radians(datum.longitude)
+    curvature = SEMI_MAJOR / math.sqrt(1 - _ECCENTRICITY_2 * math.sin(lat) ** 2)
+    # In the meridian plane of the datum, then turned about the Earth's axis.
+    outward = (curvature + up) * math.cos(lat) - north * math.sin(lat)
+    axial = (curvature * (1 - _ECCENTRICITY_2) + up) * math.sin(lat) + north * math.cos(lat)
+    longitude = lon + math.atan2(east, outward)
+    distance = math.hypot(outward, east)
+    parametric = math.atan2(axial * SEMI_MAJOR, distance * _SEMI_MINOR)
+    latitude = math.atan2(
+        axial + _SECOND_ECCENTRICITY_2 * _SEMI_MINOR * math.sin(parametric) ** 3,
+        distance - _ECCENTRICITY_2 * SEMI_MAJOR * math.cos(parametric) ** 3,
+    )
+    return math.degrees(latitude), math.degrees(math.remainder(longitude, 2 * math.pi))

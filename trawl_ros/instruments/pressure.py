@@ -1,0 +1,35 @@
+"""Pressure sensors: at a given depth of the water, in a given place."""
+
+from collections.abc import Callable
+
+from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.parameters import PressureParameters
+from trawl_ros.instruments.samples import PressureSample
+
+PressureAt = Callable[[float], float]
+"""Absolute pressure (Pa) at a depth (m), as `trawl_ros.model.water.Water.pressure`."""
+
+
+class PressureInstrument(Instrument[float, PressureSample]):
+    """Sees its own depth (m, positive down) and reports absolute pressure.
+
+    Above the surface it reports the pressure there.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        place: str,
+        parameters: PressureParameters,
+        pressure_at: PressureAt,
+        draws: Draws,
+    ) -> None:
+        super().__init__(name, parameters.rate_hz, {'pressure': parameters.model()}, draws)
+        self._place = place
+        self._pressure_at = pressure_at
+
+    def _read(self, part: float, stamp: int) -> PressureSample:
+        # Comparing this way round keeps NaN: an unknown depth is no surface reading.
+        depth = 0.0 if part < 0.0 else part
+        pressure = self._measure('pressure', float(self._pressure_at(depth)), stamp)
+        return PressureSample(stamp, self._place, pressure, self._stated_std('pressure'))

@@ -1,0 +1,48 @@
+"""When a sensor samples: by the stamps of truth alone, so results do not depend on the machine."""
+
+SECOND = 1_000_000_000
+
+TOLERANCE = 1_000
+"""Stamps made from seconds in floating point are off by less than this (ns)."""
+
+
+class Sampler:
+    """Tells whether a sample is due at a stamp.
+
+    The first stamp is due; after it the multiples of the period since the first, each at the
+    first stamp that reaches it. So the mean rate is kept however truth is paced, and truth
+    slower than the sensor gives a sample at each stamp.
+
+    Parameters
+    ----------
+    rate
+        Samples per second.
+    """
+
+    def __init__(self, rate: float) -> None:
+        self._rate = rate
+        self._first = 0
+        self._latest: int | None = None
+        self._next = 0
+
+    @property
+    def first(self) -> int:
+        """Stamp of the first sample (ns)."""
+        return self._first
+
+    def started_anew(self, stamp: int) -> bool:
+        """Take note of a stamp (ns); tell whether it is the first, or lies before the last one."""
+        anew = self._latest is None or stamp < self._latest
+        self._latest = stamp
+        if anew:
+            self._first = stamp
+            self._next = 0
+        return anew
+
+    def due(self, stamp: int) -> bool:
+        """Tell whether to sample at ``stamp`` (ns), which `started_anew` has been told of."""
+        since = stamp + TOLERANCE - self._first
+        if since < round(self._next * SECOND / self._rate):
+            return False
+        self._next = int(since * self._rate / SECOND) + 1
+        return True

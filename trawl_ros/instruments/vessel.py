@@ -1,0 +1,112 @@
+"""The ship's own sensors: speed log, GPS, compass."""
+
+import math
+
+import numpy as np
+
+from trawl_ros.instruments.geodesy import Datum, to_latitude_longitude
+from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.parameters import (
+    FixParameters,
+    HeadingParameters,
+    VelocityParameters,
+    VesselParameters,
+)
+from trawl_ros.instruments.samples import FixSample, HeadingSample, Sample, VelocitySample
+from trawl_ros.simulation.truth import Truth
+
+Moving = tuple[np.ndarray, float]
+"""A velocity (3,) in m/s and the rate of turn in rad/s."""
+
+
+class _Velocity(Instrument[Moving, VelocitySample]):
+    """Two horizontal components with errors of their own; the vertical one is reported as 0."""
+
+    def __init__(self, over: str, parameters: VelocityParameters, draws: Draws) -> None:
+        speed = parameters.velocity.model()
+        errors = {'x': speed, 'y': speed, 'yaw_rate': parameters.yaw_rate.model()}
+        super().__init__(f'vessel/velocity_{over}', parameters.rate_hz, errors, draws)
+        self._over = over
+
+    def _read(self, part: Moving, stamp: int) -> VelocitySample:
+        velocity, yaw_rate = part
+        measured = np.array(
+            [
+                self._measure('x', float(velocity[0]), stamp),
+                self._measure('y', float(velocity[1]), stamp),
+                0.0,
+            ]
+        )
+        turn = self._measure('yaw_rate', yaw_rate, stamp)
+        return VelocitySample(stamp, self._over, measured, turn)
+
+
+class SpeedLog(_Velocity):
+    """A two-axis log with a rate-of-turn indicator. Sees velocity through the water, `Moving`."""
+
+    def __init__(self, parameters: VelocityParameters, draws: Draws) -> None:
+        super().__init__('water', parameters, draws)
+
+
+class GpsVelocity(_Velocity):
+    """Velocity over ground with the rate of turn. Sees velocity in ``map``, `Moving`."""
+
+    def __init__(self, parameters: VelocityParameters, draws: Draws) -> None:
+        super().__init__('ground', parameters, draws)
+
+
+class GpsFix(Instrument[np.ndarray, FixSample]):
+    """Position on Earth. Sees the ship's position (3,) in ``map``."""
+
+    def __init__(self, parameters: FixParameters, datum: Datum, draws: Draws) -> None:
+        errors = {'east': parameters.model(), 'north': parameters.model()}
+        super().__init__('vessel/fix', parameters.rate_hz, errors, draws)
+        self._datum = datum
+
+    def _read(self, part: np.ndarray, stamp: int) -> FixSample:
+        measured = np.array(
+            [
+                self._measure('east', float(part[0]), stamp),
+                self._measure('north', float(part[1]), stamp),
+                float(part[2]),
+            ]
+        )
+        latitude, longitude = to_latitude_longitude(measured, self._datum)
+        return FixSample(stamp, latitude, longitude, self._stated_std('east'))
+
+
+class Heading(Instrument[float, HeadingSample]):
+    """The compass. Sees the heading as ENU yaw (rad) and reports it within ±π."""
+
+    def __init__(self, parameters: HeadingParameters, draws: Draws) -> None:
+        super().__init__(
+            'vessel/heading', parameters.rate_hz, {'heading': parameters.model()}, draws
+        )
+
+    def _read(self, part: float, stamp: int) -> HeadingSample:
+        measured = self._measure('heading', part, stamp)
+        return HeadingSample(
+            stamp, math.remainder(measured, 2 * math.pi), self._stated_std('heading')
+        )
+
+
+class VesselInstruments:
+    """All that the ship herself measures, but for her winches."""
+
+    def __init__(self, parameters: VesselParameters, draws: Draws) -> None:
+        datum = Datum(parameters.datum_lat_deg, parameters.datum_lon_deg)
+        self.velocity_water = SpeedLog(parameters.velocity_water, draws)
+        self.velocity_ground = GpsVelocity(parameters.velocity_ground, draws)
+        self.fix = GpsFix(parameters.fix, datum, draws)
+        self.heading = Heading(parameters.heading, draws)
+
+    def observe(self, truth: Truth) -> list[Sample]:
+        """Give the samples that are due."""
+        vessel, stamp = truth.vessel, truth.stamp
+        samples = (
+            self.velocity_water.observe((vessel.velocity_water, vessel.yaw_rate), stamp),
+            self.velocity_ground.observe((vessel.velocity_ground, vessel.yaw_rate), stamp),
+            self.fix.observe(vessel.position, stamp),
+            self.heading.observe(vessel.heading, stamp),
+        )
+        return [sample for sample in samples if sample is not None]

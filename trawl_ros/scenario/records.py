@@ -1,0 +1,142 @@
+"""The scenario file as records: every key carries its unit, every value is checked on load."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from trawl_ros.gear.records import CurrentAt
+from trawl_ros.validation import Record
+
+Length = Annotated[float, Field(gt=0, lt=3000)]
+Speed = Annotated[float, Field(ge=0.5, le=4)]
+Factor = Annotated[int, Field(ge=1, le=8)]
+Name = Annotated[str, Field(min_length=1, max_length=100)]
+
+MAX_HOURS = 48
+MAX_TRUTH_HZ = 10.0
+"""The simulation gives truth at this rate."""
+
+
+def _check_lengths(record: 'StartRecord | StepRecord', *, needed: bool) -> None:
+    both = record.warp_length_m is not None
+    sides = [record.port_warp_length_m, record.starboard_warp_length_m]
+    given = sum(side is not None for side in sides)
+    if both and given:
+        raise ValueError(
+            'warp_length_m: found beside port_warp_length_m or starboard_warp_length_m, '
+            'expected either one length or one per side'
+        )
+    if needed and not both and given < 2:
+        raise ValueError(
+            'warp_length_m: missing, expected a length (metres), or port_warp_length_m and '
+            'starboard_warp_length_m'
+        )
+
+
+class StartRecord(Record):
+    """The steady tow a trial starts from."""
+
+    warp_length_m: Length | None = None
+    port_warp_length_m: Length | None = None
+    starboard_warp_length_m: Length | None = None
+    speed_m_s: Speed
+
+    @model_validator(mode='after')
+    def _lengths(self) -> 'StartRecord':
+        _check_lengths(self, needed=True)
+        return self
+
+
+class StepRecord(Record):
+    """A stage of a trial: for so many minutes, with new targets for what is named.
+
+    What is not named stays as it was, the rate of turn too.
+    """
+
+    name: Name
+    minutes: Annotated[float, Field(gt=0, le=60 * MAX_HOURS)]
+    warp_length_m: Length | None = None
+    port_warp_length_m: Length | None = None
+    starboard_warp_length_m: Length | None = None
+    speed_m_s: Speed | None = None
+    turn_deg_s: Annotated[float, Field(ge=-3, le=3)] | None = None
+
+    @model_validator(mode='after')
+    def _lengths(self) -> 'StepRecord':
+        _check_lengths(self, needed=False)
+        return self
+
+
+class RefineRecord(Record):
+    """By which factors the plant is cut finer than the gear file says."""
+
+    warp: Factor = 1
+    bridle: Factor = 1
+    net: Factor = 1
+
+
+class WaterOverrides(Record):
+    """What differs from the gear file's water."""
+
+    density_kg_m3: Annotated[float, Field(ge=990, le=1060)] | None = None
+    density_gradient_kg_m4: Annotated[float, Field(ge=0, le=0.1)] | None = None
+    current: Annotated[tuple[CurrentAt, ...], Field(max_length=200)] | None = None
+
+
+class CoefficientOverrides(Record):
+    """What differs from the gear file's board coefficients (eq. 14)."""
+
+    a1: float | None = None
+    c1: float | None = None
+    a2: float | None = None
+    c2: float | None = None
+    b3: float | None = None
+    c3: float | None = None
+    a4: float | None = None
+    c4: float | None = None
+    b5: float | None = None
+    c5: float | None = None
+    a6: float | None = None
+    c6: float | None = None
+
+
+class ScenarioRecord(Record):
+    """A trial, as its YAML file has it.
+
+    ``record`` says which topics go into the bag and ``truth_rate_hz`` how often truth does;
+    instruments look at every truth there is.
+    """
+
+    description: Annotated[str, Field(min_length=1, max_length=300)]
+    gear: Name
+    refine: RefineRecord = RefineRecord()
+    coefficients: CoefficientOverrides = CoefficientOverrides()
+    water: WaterOverrides = WaterOverrides()
+    instruments: str | dict[str, Any] = 'default'
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    heading_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
+    start: StartRecord
+    steps: Annotated[tuple[StepRecord, ...], Field(min_length=1, max_length=1000)]
+    truth_rate_hz: Annotated[float, Field(ge=0.1, le=MAX_TRUTH_HZ)] = MAX_TRUTH_HZ
+    record: Annotated[
+        tuple[Literal['instruments', 'truth'], ...], Field(min_length=1, max_length=2)
+    ] = ('instruments', 'truth')
+
+    @model_validator(mode='after')
+    def _whole_decimation(self) -> 'ScenarioRecord':
+        every = MAX_TRUTH_HZ / self.truth_rate_hz
+        if abs(every - round(every)) > 1e-9 * every:
+            raise ValueError(
+                f'truth_rate_hz: found {self.truth_rate_hz:g}, expected {MAX_TRUTH_HZ:g} '
+                'divided by a whole number (hertz)'
+            )
+        return self
+
+    @model_validator(mode='after')
+    def _not_endless(self) -> 'ScenarioRecord':
+        minutes = sum(step.minutes for step in self.steps)
+        if minutes > 60 * MAX_HOURS:
+            raise ValueError(
+                f'steps: found {minutes:g} minutes in all, expected at most {60 * MAX_HOURS}'
+            )
+        return self

@@ -1,0 +1,156 @@
+"""A trial: which gear is towed, what ship and winches do, and what is recorded."""
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from pathlib import Path
+
+from trawl_ros.errors import InstrumentError, ScenarioError, TrawlError
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.parameters import (
+    InstrumentParameters,
+    default_instruments_with,
+    load_instruments,
+)
+from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
+from trawl_ros.simulation.simulation import Command
+from trawl_ros.validation import load_yaml, validated
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A scenario file together with the files it names.
+
+    ``path`` is the file, ``gear`` what it says of the gear as it stands in the gear file,
+    ``plant`` that gear with the scenario's refinement, coefficients and water: the truth.
+    """
+
+    path: Path
+    record: ScenarioRecord
+    gear: GearRecord
+    plant: GearRecord
+    instruments: InstrumentParameters
+
+    @property
+    def heading(self) -> float:
+        """First heading, ENU yaw, rad."""
+        return math.radians(self.record.heading_deg)
+
+    @cached_property
+    def commands(self) -> tuple[tuple[float, Command], ...]:
+        """When (s since the start) each step begins, and what it asks for."""
+        command = self.start
+        begin = 0.0
+        listed = []
+        for step in self.record.steps:
+            command = _after(command, step)
+            listed.append((begin, command))
+            begin += 60 * step.minutes
+        return tuple(listed)
+
+    @property
+    def start(self) -> Command:
+        """The steady tow before the first step."""
+        first = self.record.start
+        port, starboard = _lengths(first)
+        if port is None or starboard is None:
+            raise ScenarioError(f'{self.path}: start.warp_length_m: missing, expected a length')
+        return Command(port, starboard, first.speed_m_s)
+
+    @property
+    def duration_s(self) -> float:
+        """How long the trial takes, s."""
+        return sum(60 * step.minutes for step in self.record.steps)
+
+    @property
+    def state_changes_s(self) -> tuple[float, ...]:
+        """When something new is asked for (s since the start), after the start itself."""
+        steps = self.commands
+        return tuple(begin for (_, before), (begin, after) in pairwise(steps) if after != before)
+
+    @property
+    def draws(self) -> Draws:
+        """Seed and changes of state, as instruments want them."""
+        return Draws(self.record.seed, self.state_changes_s)
+
+    def step_at(self, time: float) -> StepRecord:
+        """Give the step that is under way at a time (s since the start)."""
+        return self.record.steps[self._number(time)]
+
+    def commands_at(self, time: float) -> Command:
+        """Give what is asked for at a time (s since the start); after the end, the last."""
+        return self.commands[self._number(time)][1]
+
+    def _number(self, time: float) -> int:
+        begins = [begin for begin, _ in self.commands]
+        # A step begins with the instant that rounding may have put just before it.
+        return max(0, bisect_right(begins, time + 1e-6) - 1)
+
+
+def load_scenario(path: str | Path) -> Scenario:
+    """Read and check a scenario file and all that it names.
+
+    Parameters
+    ----------
+    path
+        The file. The gear and instrument files that it names are sought beside it if their
+        names end in ``.yaml``, else among those that come with the package.
+
+    Raises
+    ------
+    ScenarioError
+        Naming file, key, what was found and what was expected.
+    """
+    path = Path(path)
+    record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)
+    try:
+        gear = load_gear(_beside(path, record.gear))
+    except TrawlError as reason:
+        raise ScenarioError(
+            f"{path}: gear: '{record.gear}' is no usable gear: {reason}"
+        ) from reason
+    return Scenario(path, record, gear, _plant(gear, record, path), _instruments(record, path))
+
+
+def _beside(path: Path, name: str) -> str | Path:
+    return path.parent / name if name.endswith(('.yaml', '.yml')) else name
+
+
+def _instruments(record: ScenarioRecord, path: Path) -> InstrumentParameters:
+    wanted = record.instruments
+    if isinstance(wanted, dict):
+        return default_instruments_with(wanted, path, ScenarioError, prefix='instruments')
+    try:
+        return load_instruments(_beside(path, wanted))
+    except InstrumentError as reason:
+        raise ScenarioError(f"{path}: instruments: '{wanted}' cannot be used: {reason}") from reason
+
+
+def _plant(gear: GearRecord, record: ScenarioRecord, path: Path) -> GearRecord:
+    factors = record.refine
+    finer = gear.refined(warp=factors.warp, bridle=factors.bridle, net=factors.net)
+    data = finer.model_dump()
+    data['board']['coefficients'] |= record.coefficients.model_dump(exclude_none=True)
+    data['water'] |= record.water.model_dump(exclude_none=True)
+    # Checked again: what differs must fit what stayed.
+    return validated(GearRecord, data, path, ScenarioError, prefix='plant')
+
+
+def _after(command: Command, step: StepRecord) -> Command:
+    port, starboard = _lengths(step)
+    return Command(
+        command.port_length if port is None else port,
+        command.starboard_length if starboard is None else starboard,
+        command.speed if step.speed_m_s is None else step.speed_m_s,
+        command.turn_rate if step.turn_deg_s is None else math.radians(step.turn_deg_s),
+    )
+
+
+def _lengths(record: StartRecord | StepRecord) -> tuple[float | None, float | None]:
+    if record.warp_length_m is not None:
+        return record.warp_length_m, record.warp_length_m
+    return record.port_warp_length_m, record.starboard_warp_length_m
