@@ -1,0 +1,219 @@
+"""The estimate after a window: values, what they are worth, and what the data leave open."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.model.board import COEFFICIENTS
+
+DETERMINED_FRACTION = 0.2
+DETERMINED_SHRINK = 0.5
+NAMED_SHARE = 0.4
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A direction among the coefficients that the data do not determine.
+
+    ``names`` have the largest part in it; ``weights`` (12,) is its unit vector in units of
+    the prior's std, and ``std`` what the data alone know of it in these units (1 = as much
+    as was known before).
+    """
+
+    names: tuple[str, ...]
+    weights: np.ndarray
+    std: float
+
+    def __str__(self) -> str:
+        return ' with '.join(self.names)
+
+
+@dataclass(frozen=True)
+class Innovation:
+    """Measured minus predicted before the window was used, per channel (SI).
+
+    ``std`` counts the reading, the inputs and the coefficients as they were known;
+    ``test_ratio`` is innovation² over (3 std)²: below 0.5 is ordinary, above 1 is beyond
+    what the stated errors allow.
+    """
+
+    channels: tuple[str, ...]
+    values: np.ndarray
+    stds: np.ndarray
+    test_ratios: np.ndarray
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """What prior and data together say about the coefficients, from whitened rows.
+
+    ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
+    by the prior's std, in descending order; ``data_parameters`` is how many parameters the
+    data, rather than the prior, have settled.
+    """
+
+    covariance: np.ndarray
+    singular: np.ndarray
+    directions: np.ndarray
+    data_parameters: float
+
+    @property
+    def condition_number(self) -> float:
+        """Largest over smallest singular value, infinite where something is not seen at all."""
+        smallest = self.singular[-1]
+        if smallest <= 1e-12 * self.singular[0]:
+            return float('inf')
+        return float(self.singular[0] / smallest)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The coefficients (12,), in the order of eq. 36, after ``windows`` windows.
+
+    Attributes
+    ----------
+    revision
+        Counts estimates since the last reset.
+    stamp
+        End (ns) of the newest window.
+    values, std, covariance
+        Estimate (12,), standard deviations (12,), covariance (12, 12). The noise scale is in
+        them.
+    low, high
+        95 % interval (12,) by Student's t, cut at the bounds.
+    shrink
+        1 − std/prior std (12,): 0 where the data said nothing, 1 where they said all.
+    determined
+        Whether the data determine each coefficient: std at most 20 % of the value or of the
+        prior's std, whichever is more, and at most half the prior's std, so that a narrow
+        prior alone determines nothing.
+    active_bounds
+        Bounds the estimate rests on, by name.
+    condition_number
+        Of the sensitivities, in units of readings' std per prior std, from the data alone.
+    undetermined
+        Combinations that the data know less well than the prior did.
+    noise_scale
+        Factor by which residuals exceed the stated noise, at least 1; a few imagined readings
+        as stated steady it, and intervals are widened by it.
+    freedom
+        Degrees of freedom of Student's t.
+    cost
+        Robust cost with the prior; ``objective`` is eq. 35.
+    innovation
+        Of the newest window; None after a fit of all windows together.
+    converged, reason
+        Whether the iteration has come to rest, and how one knows.
+    """
+
+    revision: int
+    stamp: int
+    windows: int
+    values: np.ndarray
+    std: np.ndarray
+    covariance: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    shrink: np.ndarray
+    determined: tuple[bool, ...]
+    active_bounds: tuple[str, ...]
+    condition_number: float
+    undetermined: tuple[Combination, ...]
+    noise_scale: float
+    freedom: float
+    cost: float
+    objective: float
+    innovation: Innovation | None
+    converged: bool
+    reason: str
+
+
+def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowledge:
+    """Covariance and singular directions.
+
+    Parameters
+    ----------
+    rows
+        Whitened sensitivities (m, 12), columns already scaled by ``prior_std``.
+    prior_std
+        Standard deviations (12,) of the prior.
+    prior_weight
+        1 for the prior as stated, 0 for none.
+    """
+    n = len(prior_std)
+    padded = np.vstack((rows, np.zeros((max(0, n - len(rows)), n))))
+    triangle = np.linalg.qr(padded, mode='r')
+    _, singular, directions = np.linalg.svd(triangle)
+    # Where neither data nor prior say anything, the std is a million times the scale.
+    information = singular**2 + max(prior_weight, 1e-12)
+    scaled = (directions.T / information) @ directions
+    return Knowledge(
+        covariance=scaled * np.outer(prior_std, prior_std),
+        singular=singular,
+        directions=directions,
+        data_parameters=float(np.sum(singular**2 / information)),
+    )
+
+
+def undetermined(knowledge: Knowledge) -> tuple[Combination, ...]:
+    """Directions the data know less well than the prior, turned to few coefficients each."""
+    weak = knowledge.singular < 1.0
+    if not np.any(weak):
+        return ()
+    basis = _varimax(knowledge.directions[weak].T)
+    seen = knowledge.singular[:, None] * (knowledge.directions @ basis)
+    found = []
+    for column, weights in enumerate(basis.T):
+        order = np.argsort(-np.abs(weights))
+        names = [COEFFICIENTS[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
+        information = float(seen[:, column] @ seen[:, column])
+        std = information**-0.5 if information > 1e-24 else float('inf')
+        found.append(Combination(tuple(names or [COEFFICIENTS[order[0]]]), weights, std))
+    return tuple(sorted(found, key=lambda combination: -combination.std))
+
+
+def _varimax(basis: np.ndarray) -> np.ndarray:
+    """Rotate the columns (12, k) of a basis so that each rests on few coefficients.
+
+    Singular vectors of like singular values are arbitrary mixtures; this makes them readable.
+    """
+    rotated = basis
+    previous = 0.0
+    for _ in range(200):
+        cubed = rotated**3 - rotated * np.mean(rotated**2, axis=0)
+        left, size, right = np.linalg.svd(basis.T @ cubed)
+        rotated = basis @ (left @ right)
+        total = float(size.sum())
+        if total <= previous * (1.0 + 1e-10):
+            break
+        previous = total
+    return rotated
+
+
+def is_determined(values: np.ndarray, std: np.ndarray, prior: BoardPrior) -> tuple[bool, ...]:
+    """Whether the data determine each coefficient; the rule stands at `Estimate`."""
+    scale = np.maximum(np.abs(values), prior.std)
+    well = (std <= DETERMINED_FRACTION * scale) & (std <= DETERMINED_SHRINK * prior.std)
+    return tuple(bool(flag) for flag in well)
+
+
+def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
+    """The bounds that the values rest on, by name."""
+    near = 1e-9 * (prior.high - prior.low)
+    found = []
+    for i, name in enumerate(COEFFICIENTS):
+        if values[i] <= prior.low[i] + near[i]:
+            found.append(f'{name} at its lower bound {prior.low[i]:g}')
+        elif values[i] >= prior.high[i] - near[i]:
+            found.append(f'{name} at its upper bound {prior.high[i]:g}')
+    return tuple(found)
+
+
+def interval(
+    values: np.ndarray, std: np.ndarray, freedom: float, confidence: float, prior: BoardPrior
+) -> tuple[np.ndarray, np.ndarray]:
+    """Student's interval (12,), (12,) around the values, cut at the bounds."""
+    half = float(student.ppf(0.5 + 0.5 * confidence, freedom)) * std
+    return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

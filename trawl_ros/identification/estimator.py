@@ -1,0 +1,311 @@
+"""Robust bounded Gauss–Newton over steady windows, in square-root information form.
+
+For constant parameters this is an iterated Kalman filter: every window stays in memory with
+its linearisation, and is solved anew when the estimate has moved so far that first order
+would no longer do. There is no forgetting: without excitation it would wind up.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.identification.estimate import (
+    Estimate,
+    Innovation,
+    active_bounds,
+    interval,
+    is_determined,
+    undetermined,
+)
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.linearised import Linearised, linearise
+from trawl_ros.identification.objective import PAPER_CHANNELS, paper_values, stack
+from trawl_ros.identification.prediction import Predictor
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.window_records import SteadyWindow
+
+GATE = 3.0
+"""Standard deviations at which an innovation's test ratio is 1."""
+
+NEGLIGIBLE_GAIN = 1e-4
+"""A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """One accepted step: ``windows`` in the fit, its cost, and the objective of eq. 35."""
+
+    windows: int
+    cost: float
+    objective: float
+
+
+@dataclass(frozen=True)
+class _Step:
+    """``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken."""
+
+    size: float
+    gain: float
+    obstacle: str | None = None
+
+
+class Estimator:
+    """Fits the twelve coefficients to steady windows.
+
+    Parameters
+    ----------
+    predictor
+        The model of the gear.
+    prior
+        Start, std and bounds.
+    observables
+        Names of the predictor's values, in their order.
+    options
+        How the estimate is found.
+
+    Attributes
+    ----------
+    estimate : Estimate or None
+        The newest estimate.
+    history : list of Progress
+        One entry per accepted step.
+    """
+
+    def __init__(
+        self,
+        predictor: Predictor,
+        prior: BoardPrior,
+        observables: Sequence[str],
+        options: EstimatorOptions | None = None,
+    ) -> None:
+        self.predictor = predictor
+        self.prior = prior
+        self.observables = tuple(observables)
+        self.options = options or EstimatorOptions()
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all windows."""
+        self.estimate: Estimate | None = None
+        self.history: list[Progress] = []
+        self._fit = Fit((), np.array(self.prior.start), 1.0, self.prior, self.options)
+        self._without: list[SteadyWindow] = []
+        self._revision = 0
+
+    @property
+    def windows(self) -> tuple[SteadyWindow, ...]:
+        """The windows in the fit."""
+        return tuple(part.window for part in self._fit.windows)
+
+    @property
+    def coefficients(self) -> np.ndarray:
+        """The present coefficients (12,)."""
+        return self._fit.coefficients
+
+    @property
+    def without_steady_state(self) -> int:
+        """How many windows the model has no steady state for; `finish` tries them again."""
+        return len(self._without)
+
+    def add(self, window: SteadyWindow) -> Estimate | None:
+        """Use one more window; None when the model has no steady state there."""
+        try:
+            part = self._linearise(window, self.coefficients)
+        except NoSteadyState:
+            self._without.append(window)
+            return None
+        innovation = self._innovation(part)
+        self._fit = replace(self._fit, windows=(*self._fit.windows, part))
+        for _ in range(self.options.iterations_per_window):
+            step = self._step(self.options.relinearise)
+            if step.obstacle or step.size < self.options.tolerance:
+                break
+        self._fit = self._fit.rescaled()
+        moved = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
+        return self._publish(innovation, False, step.obstacle or moved)
+
+    def finish(self) -> Estimate | None:
+        """Solve all windows anew until the estimate rests; None when no window can be used."""
+        before = len(self._without)
+        self._solve_all()
+        if self._without and not self._fit.windows:
+            # First order has led the estimate where the gear has no steady state at all.
+            self._fit = replace(self._fit, coefficients=np.array(self.prior.start))
+            self._solve_all()
+        converged, reason = self._rest()
+        if before and self._fit.windows:
+            # What had no steady state on the way may have one where the estimate rests.
+            number = len(self._fit.windows)
+            self._solve_all()
+            if len(self._fit.windows) != number:
+                converged, reason = self._rest()
+        return self._publish(None, converged, reason) if self._fit.windows else None
+
+    def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
+        """An estimator with the windows of some states only, starting from this estimate."""
+        part = Estimator(self.predictor, self.prior, self.observables, options or self.options)
+        chosen = tuple(fit for fit in self._fit.windows if fit.window.state in states)
+        part._fit = replace(self._fit, windows=chosen, options=part.options)
+        return part
+
+    def predictions(
+        self, coefficients: np.ndarray, windows: Sequence[SteadyWindow] | None = None
+    ) -> np.ndarray:
+        """The four channels of eq. 35, solved at each window's inputs.
+
+        Returns
+        -------
+        (n, 4) array in the order of `PAPER_CHANNELS`, NaN where there is no steady state.
+        """
+        rows = []
+        for window in self.windows if windows is None else windows:
+            try:
+                part = self._linearise(window, coefficients)
+            except NoSteadyState:
+                rows.append(np.full(len(PAPER_CHANNELS), np.nan))
+            else:
+                rows.append(paper_values(dict(zip(part.channels, part.values, strict=True))))
+        return stack(rows)
+
+    def _linearise(self, window: SteadyWindow, coefficients: np.ndarray) -> Linearised:
+        def distance(part: Linearised) -> float:
+            return sum(
+                abs(window.means[name] / part.window.means[name] - 1.0)
+                for name in ('port_length', 'starboard_length', 'speed')
+            )
+
+        starts: list[Any] = [None]
+        if self._fit.windows:
+            starts.insert(0, min(self._fit.windows, key=distance).state)
+        return linearise(self.predictor, self.observables, window, coefficients, starts)
+
+    def _solve_all(self) -> None:
+        """Solve what is not at the present coefficients; set aside what has no state there."""
+        solved = {part.window.index: part for part in self._fit.windows}
+        windows = sorted((*self.windows, *self._without), key=lambda window: window.index)
+        self._without = []
+        parts = []
+        for window in windows:
+            part = solved.get(window.index)
+            if part is None or self._far(part, self.coefficients, self.options.relinearise_final):
+                try:
+                    part = self._linearise(window, self.coefficients)
+                except NoSteadyState:
+                    self._without.append(window)
+                    continue
+            parts.append(part)
+        self._fit = replace(self._fit, windows=tuple(parts))
+
+    def _far(self, part: Linearised, coefficients: np.ndarray, threshold: float) -> bool:
+        """Whether a window is to be solved anew at other coefficients."""
+        change = part.by_coefficients @ (coefficients - part.at)
+        return bool(np.max(np.abs(change) / (self._fit.scale * part.std(1))) > threshold)
+
+    def _rest(self) -> tuple[bool, str]:
+        """Iterate to the end; whether it converged and how one knows."""
+        if not self._fit.windows:
+            return False, 'no window has a steady state in the model'
+        limit = self.options.iterations_final
+        for iteration in range(1, limit + 1):
+            step = self._step(self.options.relinearise_final)
+            if step.obstacle:
+                if step.gain > NEGLIGIBLE_GAIN:
+                    return False, f'{step.obstacle}, {step.size:.2g} std from rest'
+                return True, f'after {iteration} iterations no step can lower the cost noticeably'
+            before = self._fit.scale
+            self._fit = self._fit.rescaled()
+            settled = abs(self._fit.scale / before - 1.0) < 0.01
+            if step.size < self.options.tolerance and settled:
+                return True, (
+                    f'after {iteration} iterations the step is below '
+                    f'{self.options.tolerance:g} of every std'
+                )
+        return False, f'still moving by {step.size:.2g} std after {limit} iterations'
+
+    def _step(self, relinearise: float) -> _Step:
+        """Take one Gauss–Newton step inside the bounds, halved until it lowers the cost."""
+        prior, options, fit = self.prior, self.options, self._fit
+        triangle, right = fit.system
+        low = (prior.low - fit.coefficients) / prior.std
+        high = (prior.high - fit.coefficients) / prior.std
+        reach, obstacle = options.largest_step, None
+        for _ in range(options.halvings + 1):
+            box = (np.maximum(low, -reach), np.minimum(high, reach))
+            move = lsq_linear(triangle, right, box, 'bvls', max_iter=200).x
+            size = float(np.max(np.abs(move) * prior.std / fit.std))
+            rest = triangle @ move - right
+            gain = float(0.5 * (right @ right - rest @ rest))
+            if size < options.tolerance:
+                break
+            trial = np.clip(fit.coefficients + move * prior.std, prior.low, prior.high)
+            try:
+                moved = self._moved(trial, relinearise)
+            except NoSteadyState:
+                obstacle = 'every further step leads to a gear without a steady state'
+            else:
+                if moved.cost_beside(fit) <= fit.cost * (1.0 + 1e-12):
+                    self._fit = moved
+                    self.history.append(Progress(len(moved.windows), moved.cost, moved.objective))
+                    return _Step(size, gain)
+                obstacle = 'no step lowers the cost'
+            reach = 0.5 * float(np.max(np.abs(move)))
+        return _Step(size, gain, obstacle)
+
+    def _moved(self, coefficients: np.ndarray, threshold: float) -> Fit:
+        """The fit at other coefficients, solved anew where first order would not do.
+
+        The newest window always is, lest many small steps walk out of the steady states.
+        """
+        parts = []
+        newest = self._fit.windows[-1]
+        for part in self._fit.windows:
+            if part is newest or self._far(part, coefficients, threshold):
+                part = linearise(
+                    self.predictor, self.observables, part.window, coefficients, (part.state,)
+                )
+            parts.append(part)
+        return replace(self._fit, windows=tuple(parts), coefficients=coefficients)
+
+    def _innovation(self, part: Linearised) -> Innovation:
+        known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
+        by_inputs = part.by_inputs * part.input_std(1)
+        noise = np.diag(part.std(1) ** 2) + by_inputs @ by_inputs.T
+        spread = part.by_coefficients @ known @ part.by_coefficients.T
+        std = np.sqrt(np.diag(self._fit.scale**2 * noise + spread))
+        difference = part.measured - part.values
+        return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
+
+    def _publish(self, innovation: Innovation | None, converged: bool, reason: str) -> Estimate:
+        fit, prior = self._fit, self.prior
+        values = np.array(fit.coefficients)
+        freedom = fit.freedom + self.options.stated_noise_readings
+        low, high = interval(values, fit.std, freedom, self.options.confidence, prior)
+        self._revision += 1
+        self.estimate = Estimate(
+            revision=self._revision,
+            stamp=max(part.window.end_ns for part in fit.windows),
+            windows=len(fit.windows),
+            values=values,
+            std=fit.std,
+            covariance=fit.knowledge.covariance,
+            low=low,
+            high=high,
+            shrink=1.0 - fit.std / prior.std,
+            determined=is_determined(values, fit.std, prior),
+            active_bounds=active_bounds(values, prior),
+            condition_number=fit.knowledge.condition_number,
+            undetermined=undetermined(fit.knowledge),
+            noise_scale=fit.scale,
+            freedom=freedom,
+            cost=fit.cost,
+            objective=fit.objective,
+            innovation=innovation,
+            converged=converged,
+            reason=reason,
+        )
+        return self.estimate

@@ -1,0 +1,54 @@
+"""How the estimate is found."""
+
+from dataclasses import dataclass, fields
+
+from trawl_ros.errors import TrawlError
+
+
+@dataclass(frozen=True)
+class EstimatorOptions:
+    """Settings of the estimator.
+
+    Attributes
+    ----------
+    huber
+        Standard deviations from where a reading's pull no longer grows (1.345 keeps 95 % of
+        the efficiency on normal noise).
+    confidence
+        Probability of the intervals.
+    prior_weight
+        1 uses the prior as stated, 0 leaves it out.
+    stated_noise_readings
+        How many imagined readings speak for the stated noise when the noise scale is found.
+    iterations_per_window, iterations_final
+        Gauss–Newton steps at most after each window and at the end.
+    halvings
+        How often a step that fails is halved before giving up.
+    largest_step
+        Largest change of a coefficient in one step, in prior std.
+    relinearise, relinearise_final
+        A window is solved anew when a predicted reading has moved by this many std, on the
+        way and at the end.
+    tolerance
+        A step below this part of every coefficient's std is the end.
+    """
+
+    huber: float = 1.345
+    confidence: float = 0.95
+    prior_weight: float = 1.0
+    stated_noise_readings: float = 4.0
+    iterations_per_window: int = 3
+    iterations_final: int = 25
+    halvings: int = 6
+    largest_step: float = 1.0
+    relinearise: float = 0.5
+    relinearise_final: float = 0.02
+    tolerance: float = 1e-3
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not value >= 0.0 or (value == 0.0 and field.name != 'prior_weight'):
+                raise TrawlError(f'{field.name} is {value}, expected a positive number')
+        if self.confidence >= 1.0:
+            raise TrawlError(f'confidence is {self.confidence}, expected a number below 1')

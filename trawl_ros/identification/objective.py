@@ -1,0 +1,66 @@
+"""The objective of eq. 35 and the errors in its four channels."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class PaperChannel:
+    """One of the four quantities of eq. 35: the mean of its ``observables``, in ``unit``."""
+
+    name: str
+    unit: str
+    observables: tuple[str, ...]
+
+
+PAPER_CHANNELS = (
+    PaperChannel('door_spread', 'm', ('door_spread',)),
+    PaperChannel('door_depth', 'm', ('port_door_depth', 'starboard_door_depth')),
+    PaperChannel('warp_tension', 'N', ('port_tension', 'starboard_tension')),
+    PaperChannel('net_depth', 'm', ('net_depth',)),
+)
+
+
+def paper_values(values: Mapping[str, float]) -> np.ndarray:
+    """The four quantities (4,) from observables or means by name."""
+    return np.array([np.mean([values[name] for name in row.observables]) for row in PAPER_CHANNELS])
+
+
+def mnae(predicted: np.ndarray, measured: np.ndarray) -> np.ndarray:
+    """Mean absolute error over mean measured value, per channel.
+
+    Parameters
+    ----------
+    predicted, measured
+        Shape (n, 4); rows whose prediction is NaN (no steady state) are left out.
+
+    Returns
+    -------
+    (4,) array, NaN where no row is left.
+    """
+    usable = np.all(np.isfinite(predicted), axis=1) if len(predicted) else np.zeros(0, bool)
+    if not np.any(usable):
+        return np.full(len(PAPER_CHANNELS), np.nan)
+    error = np.abs(predicted[usable] - measured[usable]).mean(axis=0)
+    return error / np.abs(measured[usable]).mean(axis=0)
+
+
+def weights(measured: np.ndarray) -> np.ndarray:
+    """The λ (4,) of eq. 35: 1/(n · mean measured value), so every channel counts alike."""
+    return 1.0 / (len(measured) * np.abs(measured).mean(axis=0))
+
+
+def objective(predicted: np.ndarray, measured: np.ndarray) -> float:
+    """Eq. 35 with these weights: the sum of the four channels' errors as given by `mnae`."""
+    usable = np.all(np.isfinite(predicted), axis=1) if len(predicted) else np.zeros(0, bool)
+    if not np.any(usable):
+        return float('nan')
+    deviation = np.abs(predicted[usable] - measured[usable])
+    return float(np.sum(weights(measured[usable]) * deviation))
+
+
+def stack(rows: Sequence[np.ndarray]) -> np.ndarray:
+    """Rows (4,) as one array (n, 4), also for n = 0."""
+    return np.array(rows).reshape(-1, len(PAPER_CHANNELS))

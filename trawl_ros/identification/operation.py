@@ -1,0 +1,118 @@
+"""How the gear is driven, block by block: has the ship held it still for long enough?"""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.channels import CHANNELS, INPUTS
+from trawl_ros.identification.window_records import WindowOptions
+
+
+@dataclass(frozen=True)
+class Block:
+    """Medians over one block of the grid; None where a channel said nothing.
+
+    ``inputs`` are port and starboard warp length (m) and speed (m/s); ``heading`` rad,
+    ``yaw_rate`` rad/s.
+    """
+
+    index: int
+    inputs: tuple[float | None, float | None, float | None]
+    heading: float | None
+    yaw_rate: float | None
+
+
+@dataclass(frozen=True)
+class Unheld:
+    """Why the operation is not held: a reason of `REASONS` and what was found."""
+
+    reason: str
+    detail: str
+
+
+def circular_median(angles: np.ndarray) -> float:
+    """Median of angles (n,) in rad that may lie on both sides of ±π."""
+    middle = math.atan2(float(np.sin(angles).sum()), float(np.cos(angles).sum()))
+    return middle + float(np.median(_wrap(angles - middle)))
+
+
+def _wrap(angles: np.ndarray) -> np.ndarray:
+    return (angles + math.pi) % (2.0 * math.pi) - math.pi
+
+
+class Operation:
+    """The blocks of the last settling time and window, and the verdict on them."""
+
+    def __init__(self, options: WindowOptions) -> None:
+        self._options = options
+        self.settle_blocks = math.ceil(options.settle_s / options.block_s)
+        self.window_blocks = math.ceil(options.window_s / options.block_s)
+        self._blocks: deque[Block] = deque(maxlen=self.settle_blocks + self.window_blocks)
+
+    def add(self, block: Block) -> None:
+        """Append the next block; one that does not follow the last starts afresh."""
+        if self._blocks and block.index != self._blocks[-1].index + 1:
+            self._blocks.clear()
+        self._blocks.append(block)
+
+    @property
+    def full(self) -> bool:
+        """Whether settling time and window are both covered."""
+        return len(self._blocks) == self._blocks.maxlen
+
+    def inputs(self) -> np.ndarray:
+        """Mean inputs (3,) over the window's blocks; only after `unheld` gave None."""
+        window = list(self._blocks)[self.settle_blocks :]
+        return np.mean(np.array([block.inputs for block in window], dtype=float), axis=0)
+
+    def unheld(self) -> Unheld | None:
+        """Why inputs or heading were not held over settling time and window, or None."""
+        blocks = list(self._blocks)
+        for i, name in enumerate(INPUTS):
+            silent = sum(block.inputs[i] is None for block in blocks)
+            if silent:
+                missing = silent == len(blocks)
+                return Unheld(
+                    'missing channel' if missing else 'gap',
+                    f'{name} ({CHANNELS[name].topic}) is silent for '
+                    f'{silent * self._options.block_s:g} s',
+                )
+        mean = self.inputs()
+        tolerance = (self._options.length_tolerance,) * 2 + (self._options.speed_tolerance,)
+        values = np.array([block.inputs for block in blocks], dtype=float)
+        departure = np.max(np.abs(values - mean), axis=0)
+        for i, name in enumerate(INPUTS):
+            if departure[i] > tolerance[i]:
+                unit = CHANNELS[name].unit
+                return Unheld(
+                    'unsteady',
+                    f'{name} moves by {departure[i]:.2f} {unit} in settling time and window, '
+                    f'at most {tolerance[i]:g} {unit} is steady',
+                )
+        return self._turning(blocks)
+
+    def _turning(self, blocks: list[Block]) -> Unheld | None:
+        limit = self._options.heading_tolerance
+        headings = np.array([block.heading for block in blocks if block.heading is not None])
+        if len(headings):
+            window = [b.heading for b in blocks[self.settle_blocks :] if b.heading is not None]
+            middle = circular_median(np.array(window)) if window else headings[-1]
+            turn = float(np.max(np.abs(_wrap(headings - middle))))
+            if turn > limit:
+                return Unheld(
+                    'turning',
+                    f'heading changes by {turn:.2f} rad in settling time and window, '
+                    f'at most {limit:g} rad is straight',
+                )
+        rates = [b.yaw_rate for b in blocks if b.yaw_rate is not None]
+        if rates:
+            turn = abs(float(np.mean(rates))) * self._options.window_s
+            if turn > limit:
+                return Unheld(
+                    'turning',
+                    f'the yaw rate turns the ship by {turn:.2f} rad in one window, '
+                    f'at most {limit:g} rad is straight',
+                )
+        return None

@@ -1,0 +1,152 @@
+"""From samples to estimates: what the node and ``trawl identify`` both are inside."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from trawl_ros.identification.channels import CHANNELS, REQUIRED
+from trawl_ros.identification.estimate import Estimate
+from trawl_ros.identification.estimator import Estimator
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.prediction import Predictor
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.window_records import (
+    REASONS,
+    RejectedWindow,
+    SteadyWindow,
+    WindowOptions,
+)
+from trawl_ros.identification.windows import NANO, SteadyWindowFinder
+from trawl_ros.instruments.samples import Sample
+
+ONE_CLOCK_S = 3600.0
+"""Channels whose newest stamps lie further apart than this (s) are on different clocks."""
+
+
+@dataclass(frozen=True)
+class WindowUsed:
+    """A steady window and the estimate after it."""
+
+    window: SteadyWindow
+    estimate: Estimate
+
+
+Event = WindowUsed | RejectedWindow
+
+
+class Identification:
+    """The whole estimator behind one method, `feed`.
+
+    Parameters
+    ----------
+    predictor, prior, observables
+        The model of the gear, where its coefficients start, and the names of what it predicts.
+    pressure_to_depth
+        Depth (m) for an absolute pressure (Pa).
+    window_options, estimator_options
+        When a window is steady; how the estimate is found.
+    """
+
+    def __init__(
+        self,
+        predictor: Predictor,
+        prior: BoardPrior,
+        observables: Sequence[str],
+        pressure_to_depth: Callable[[float], float],
+        window_options: WindowOptions | None = None,
+        estimator_options: EstimatorOptions | None = None,
+    ) -> None:
+        self.window_options = window_options or WindowOptions()
+        self.finder = SteadyWindowFinder(pressure_to_depth, self.window_options)
+        self.estimator = Estimator(predictor, prior, observables, estimator_options)
+
+    def reset(self) -> None:
+        """Forget all: time has jumped back."""
+        self.finder.reset()
+        self.estimator.reset()
+
+    def feed(self, sample: Sample) -> list[Event]:
+        """Take one sample; return the windows it decided, with the estimates they led to."""
+        return self._use(self.finder.feed(sample))
+
+    def finish(self) -> list[Event]:
+        """Decide the windows that are left and bring the estimate to rest."""
+        events = self._use(self.finder.finish())
+        self.estimator.finish()
+        return events
+
+    @property
+    def estimate(self) -> Estimate | None:
+        """The newest estimate."""
+        return self.estimator.estimate
+
+    @property
+    def rejected(self) -> dict[str, int]:
+        """Reason → count, without zeros, in the order of `REASONS`."""
+        counts = Counter(self.finder.rejected)
+        counts['no steady state'] += self.estimator.without_steady_state
+        return {reason: counts[reason] for reason in REASONS if counts[reason]}
+
+    def missing_channels(self) -> tuple[str, ...]:
+        """Needed channels from which not one usable reading has come."""
+        return tuple(name for name in REQUIRED if not self.finder.readings[name])
+
+    def why_not(self) -> str | None:
+        """One sentence on why there is no estimate; None when there is one."""
+        if self.estimate is not None:
+            return None
+        if missing := self.missing_channels():
+            return self._about_missing(missing)
+        if clocks := self._about_clocks():
+            return clocks
+        counts = ', '.join(f'{reason} {count}' for reason, count in self.rejected.items())
+        options = self.window_options
+        return (
+            f'no steady window was found, so nothing is estimated: one needs '
+            f'{options.settle_s:g} s with warp lengths, speed and heading held and then '
+            f'{options.window_s:g} s of steady readings (rejected: {counts or "none"})'
+        )
+
+    def _about_missing(self, missing: Sequence[str]) -> str:
+        parts = []
+        for name in missing:
+            arrived = self.finder.arrived[name]
+            state = f'{arrived} readings, none usable' if arrived else 'no readings'
+            parts.append(f'{name} from {CHANNELS[name].topic} ({state})')
+        return (
+            f'without {", ".join(parts)} a steady state cannot be compared with the model, '
+            f'so nothing is estimated; needed are {", ".join(REQUIRED)}'
+        )
+
+    def _about_clocks(self) -> str | None:
+        stamps = {name: self.finder.newest(name) or 0 for name in REQUIRED}
+        first, last = min(stamps, key=stamps.__getitem__), max(stamps, key=stamps.__getitem__)
+        apart = (stamps[last] - stamps[first]) / NANO
+        if apart < ONE_CLOCK_S:
+            return None
+        return (
+            f'{CHANNELS[first].topic} is stamped {apart:.0f} s before {CHANNELS[last].topic}: '
+            f'two clocks, expected one, so nothing is estimated'
+        )
+
+    def _use(self, found: Sequence[SteadyWindow | RejectedWindow]) -> list[Event]:
+        events: list[Event] = []
+        for item in found:
+            if isinstance(item, RejectedWindow):
+                events.append(item)
+                continue
+            estimate = self.estimator.add(item)
+            if estimate is None:
+                lengths = f'{item.means["port_length"]:.0f} m'
+                speed = f'{item.means["speed"]:.2f} m/s'
+                events.append(
+                    RejectedWindow(
+                        'no steady state',
+                        item.start_ns,
+                        item.end_ns,
+                        f'the model finds none at {lengths} of warp and {speed}',
+                    )
+                )
+            else:
+                events.append(WindowUsed(item, estimate))
+        return events

@@ -1,0 +1,45 @@
+"""What the estimator asks of a model of the gear."""
+
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Prediction(Protocol):
+    """A steady state."""
+
+    @property
+    def values(self) -> np.ndarray:
+        """The observables (n,), SI."""
+        ...
+
+    @property
+    def jacobian(self) -> np.ndarray:
+        """Their derivatives (n, 15) by the coefficients, both warp lengths and speed."""
+        ...
+
+    @property
+    def state(self) -> Any:
+        """Where a near-by solution may start from."""
+        ...
+
+
+class Predictor(Protocol):
+    """Finds the steady state of the gear."""
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Any = None,
+    ) -> Prediction:
+        """Solve for coefficients (12,), warp lengths (m) and speed (m/s).
+
+        Raises
+        ------
+        NoSteadyState
+            When there is none.
+        """
+        ...

@@ -1,0 +1,54 @@
+"""What is known of the board before any tow: start values, their std, and bounds."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.errors import GearError
+from trawl_ros.model.board import COEFFICIENTS
+
+
+@dataclass(frozen=True)
+class BoardPrior:
+    """Start, standard deviation and bounds of the coefficients, in the order of eq. 36.
+
+    All four arrays have shape (12,) and no unit; ``low < high``, ``std > 0`` and the start
+    lies within the bounds. ``std`` is also the scale against which sensitivities, shrink
+    and condition number are measured.
+
+    Raises
+    ------
+    GearError
+        When an array has the wrong length, is not finite or contradicts the others.
+    """
+
+    start: np.ndarray
+    std: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+    def __post_init__(self) -> None:
+        for field in ('start', 'std', 'low', 'high'):
+            array = np.array(getattr(self, field), dtype=float)
+            if array.shape != (len(COEFFICIENTS),) or not np.all(np.isfinite(array)):
+                raise GearError(
+                    f'identification.{field} has shape {array.shape} or values that are not '
+                    f'finite; expected {len(COEFFICIENTS)} finite numbers'
+                )
+            array.flags.writeable = False
+            object.__setattr__(self, field, array)
+        for i, name in enumerate(COEFFICIENTS):
+            if self.std[i] <= 0.0:
+                raise GearError(
+                    f'identification: the std of {name} is {self.std[i]:g}, expected more than 0'
+                )
+            if not self.low[i] < self.high[i]:
+                raise GearError(
+                    f'identification: the bounds of {name} are {self.low[i]:g} to '
+                    f'{self.high[i]:g}, expected the lower one first'
+                )
+            if not self.low[i] <= self.start[i] <= self.high[i]:
+                raise GearError(
+                    f'identification: the start of {name} is {self.start[i]:g}, expected it '
+                    f'within its bounds {self.low[i]:g} to {self.high[i]:g}'
+                )

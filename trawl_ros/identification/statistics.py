@@ -1,0 +1,88 @@
+"""Means of correlated readings, their errors, trends, outliers and stuck sensors."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+MAD_TO_STD = 1.4826
+
+
+def effective_number(values: np.ndarray) -> float:
+    """Number of independent readings that ``values`` (n,) are worth.
+
+    From the lag-1 autocorrelation ρ as n (1 − ρ)/(1 + ρ), with Kendall's correction of the
+    estimate's bias in short series. Negative ρ is not credited.
+    """
+    n = len(values)
+    if n < 4:
+        return float(n)
+    deviation = values - values.mean()
+    power = float(deviation @ deviation)
+    # A constant is a sensor's quantum, not evidence of correlation.
+    if power <= 1e-24 * n * (1.0 + float(np.max(np.abs(values))) ** 2):
+        return float(n)
+    rho = float(deviation[1:] @ deviation[:-1]) / power
+    rho += (1.0 + 4.0 * rho) / n
+    rho = min(max(rho, 0.0), 0.98)
+    return max(1.0, n * (1.0 - rho) / (1.0 + rho))
+
+
+def error_of_mean(values: np.ndarray, stated: float) -> float:
+    """Standard error of the mean of ``values`` (n,), ``stated`` std used when they are few."""
+    n = len(values)
+    scatter = float(np.std(values, ddof=1)) if n > 1 else 0.0
+    if n < 8 or scatter == 0.0:
+        scatter = max(scatter, stated)
+    return scatter / math.sqrt(effective_number(values))
+
+
+@dataclass(frozen=True)
+class Trend:
+    """Change over the whole series by its fitted slope, and the two-sided p-value."""
+
+    drift: float
+    p_value: float
+
+
+def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
+    """Straight line through ``values`` (n,) at ``seconds`` (n,), tested against its noise.
+
+    The degrees of freedom and the slope's error use the effective number of readings of the
+    residual, so a slow wander of the sensor is not taken for a trend of the gear.
+    """
+    n = len(values)
+    span = float(seconds[-1] - seconds[0]) if n else 0.0
+    if n < 6 or span <= 0.0:
+        return Trend(0.0, 1.0)
+    time = seconds - seconds.mean()
+    slope = float(time @ values) / float(time @ time)
+    residual = values - values.mean() - slope * time
+    number = effective_number(residual)
+    freedom = max(number - 2.0, 1.0)
+    variance = float(residual @ residual) / n * number / freedom
+    error = math.sqrt(variance * n / number / float(time @ time))
+    if error <= 1e-12 * (abs(slope) + 1e-300):
+        return Trend(slope * span, 0.0 if slope else 1.0)
+    return Trend(slope * span, float(2.0 * student.sf(abs(slope) / error, freedom)))
+
+
+def outliers(values: np.ndarray, stated: float, limit: float) -> np.ndarray:
+    """Mask (n,) of values further than ``limit`` robust std from the median (Hampel).
+
+    Half the stated std is the least spread assumed: a quantised sensor has a median
+    absolute deviation of 0.
+    """
+    distance = np.abs(values - np.median(values))
+    spread = max(MAD_TO_STD * float(np.median(distance)), 0.5 * stated)
+    return distance > limit * spread
+
+
+def longest_run(values: np.ndarray) -> int:
+    """Length of the longest run of exactly equal successive values."""
+    if len(values) == 0:
+        return 0
+    changes = np.flatnonzero(np.diff(values) != 0.0)
+    edges = np.concatenate(([-1], changes, [len(values) - 1]))
+    return int(np.max(np.diff(edges)))

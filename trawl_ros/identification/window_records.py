@@ -1,0 +1,121 @@
+"""Steady windows, rejections, and the rules by which both are decided."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+from trawl_ros.errors import TrawlError
+
+REASONS = {
+    'not finite': 'readings that are NaN or infinite',
+    'out of range': 'readings outside what the channel or the sensor can say',
+    'outlier': 'readings far from the median of their window',
+    'out of order': 'readings stamped before what was already decided or seen',
+    'frozen': 'stretches with a sensor that repeats one value',
+    'gap': 'stretches with a sensor that falls silent',
+    'missing channel': 'stretches without a channel that is needed',
+    'turning': 'stretches while or soon after the ship turns',
+    'unsteady': 'stretches while the gear is moved, settles or drifts',
+    'no steady state': 'windows for which the model finds no steady state',
+}
+"""Every reason for a rejection, and what its count counts."""
+
+
+@dataclass(frozen=True)
+class WindowOptions:
+    """When a window counts as steady.
+
+    Attributes
+    ----------
+    settle_s
+        Time (s) the gear is given after the last change of warp length, speed or heading.
+    window_s
+        Length (s) of a window.
+    block_s
+        Grid (s) on which windows lie; commands are judged by medians over one block.
+    max_windows_per_state
+        Windows taken of one long steady state; they do not overlap.
+    length_tolerance
+        Largest departure (m) of a block's warp length from the window's mean.
+    speed_tolerance
+        Largest departure (m/s) of a block's speed.
+    heading_tolerance
+        Largest departure (rad) of a block's heading; also the turn (rad) that a steady yaw
+        rate may make in one window.
+    drift_fraction
+        A drift over the window beyond this part of the mean, and significant, is a trend.
+    significance
+        p-value below which a trend counts as significant.
+    outlier_limit
+        Robust standard deviations from the median at which a reading is an outlier.
+    outlier_fraction
+        Part of a window's readings that may be outliers; beyond it the channel is not used.
+    frozen_count
+        Identical successive readings, at least, that make a sensor frozen, if they are also
+        half of its readings or more.
+    reorder_s
+        Lateness (s) up to which readings may come in any order.
+    patience_s
+        A window is decided without a channel that lags the winch by more than this (s).
+    """
+
+    settle_s: float = 120.0
+    window_s: float = 60.0
+    block_s: float = 10.0
+    max_windows_per_state: int = 2
+    length_tolerance: float = 1.0
+    speed_tolerance: float = 0.15
+    heading_tolerance: float = 0.06
+    drift_fraction: float = 0.005
+    significance: float = 0.001
+    outlier_limit: float = 6.0
+    outlier_fraction: float = 0.2
+    frozen_count: int = 10
+    reorder_s: float = 2.0
+    patience_s: float = 60.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not value >= 0.0 or (value == 0.0 and field.name not in ('settle_s', 'reorder_s')):
+                raise TrawlError(f'{field.name} is {value}, expected a positive number')
+        if self.window_s < 2.0 * self.block_s:
+            raise TrawlError(
+                f'window_s is {self.window_s:g}, expected at least two blocks of {self.block_s:g} s'
+            )
+
+
+@dataclass(frozen=True)
+class SteadyWindow:
+    """One stretch of steady towing.
+
+    ``index`` counts windows, ``state`` the steady states they belong to; ``start_ns`` and
+    ``end_ns`` are header stamps. Per channel (SI): ``means``, ``noise`` the standard error of
+    the mean from scatter and autocorrelation, ``bias`` the standard deviation of what stays
+    wrong through the state, ``counts`` of readings in the mean.
+    """
+
+    index: int
+    state: int
+    start_ns: int
+    end_ns: int
+    means: Mapping[str, float]
+    noise: Mapping[str, float]
+    bias: Mapping[str, float]
+    counts: Mapping[str, int]
+
+    def std(self, channel: str, windows_in_state: int = 1) -> float:
+        """Standard deviation of a channel's mean as one of several windows of a state.
+
+        The bias is common to all windows of a state, so their number must not wear it down.
+        """
+        return float((self.noise[channel] ** 2 + windows_in_state * self.bias[channel] ** 2) ** 0.5)
+
+
+@dataclass(frozen=True)
+class RejectedWindow:
+    """A stretch that was not used, why (a key of `REASONS`), and what exactly was found."""
+
+    reason: str
+    start_ns: int
+    end_ns: int
+    detail: str

@@ -1,0 +1,263 @@
+"""Finds steady windows in a stream of samples.
+
+Windows lie on a grid of header stamps, and a window is decided only when all required
+channels have passed its end, so the result does not depend on when samples arrive or how
+channels interleave, as long as none is late by more than the stated slack. Memory is bounded
+by one window of readings per channel.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+
+from trawl_ros.identification.buffers import ChannelBuffer
+from trawl_ros.identification.channels import CHANNELS, INPUTS, REQUIRED, STEERING, readings
+from trawl_ros.identification.operation import Block, Operation, Unheld, circular_median
+from trawl_ros.identification.statistics import error_of_mean, longest_run, outliers, trend
+from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow, WindowOptions
+from trawl_ros.instruments.samples import Sample
+
+NANO = 1_000_000_000
+
+
+class SteadyWindowFinder:
+    """Streaming finder of steady windows.
+
+    Parameters
+    ----------
+    pressure_to_depth
+        Depth (m) for an absolute pressure (Pa).
+    options
+        When a window is steady.
+
+    Attributes
+    ----------
+    rejected : Counter
+        Reason → count: readings for 'not finite', 'out of range', 'outlier', 'out of order';
+        for all others stretches of time.
+    arrived, readings : Counter
+        Channel → readings that came, and those of them that were accepted.
+    """
+
+    def __init__(
+        self,
+        pressure_to_depth: Callable[[float], float],
+        options: WindowOptions | None = None,
+    ) -> None:
+        self._pressure_to_depth = pressure_to_depth
+        self._options = options or WindowOptions()
+        self._block_ns = round(self._options.block_s * NANO)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything: time has jumped back."""
+        self.rejected: Counter[str] = Counter()
+        self.arrived: Counter[str] = Counter()
+        self.readings: Counter[str] = Counter()
+        reorder_ns = round(self._options.reorder_s * NANO)
+        self._buffers = {
+            name: ChannelBuffer(channel, reorder_ns, self.rejected)
+            for name, channel in CHANNELS.items()
+        }
+        self._operation = Operation(self._options)
+        self._next_block: int | None = None
+        self._windows = 0
+        self._state = -1
+        self._in_state = 0
+        self._held = False
+        self._reference: np.ndarray | None = None
+        self._last_end = 0
+        self._stretch: tuple[str, bool] | None = None
+
+    def newest(self, channel: str) -> int | None:
+        """Newest stamp (ns) accepted on a channel."""
+        return self._buffers[channel].newest
+
+    def feed(self, sample: Sample) -> list[SteadyWindow | RejectedWindow]:
+        """Take one sample; return what could be decided with it, in order of time."""
+        for reading in readings(sample, self._pressure_to_depth):
+            # Most ships have no yaw rate on the log: NaN there is no fault to be counted.
+            if reading.channel == 'yaw_rate' and not math.isfinite(reading.value):
+                continue
+            self.arrived[reading.channel] += 1
+            if self._buffers[reading.channel].add(reading):
+                self.readings[reading.channel] += 1
+        return self._advance(self._watermark())
+
+    def finish(self) -> list[SteadyWindow | RejectedWindow]:
+        """Decide what is left: no more samples will come."""
+        lead = self._lead()
+        return [] if lead is None else self._advance(lead + 1)
+
+    def _lead(self) -> int | None:
+        # Without warp lengths there are no windows, so the winch tells how far time is.
+        stamps = [self._buffers[name].newest for name in INPUTS[:2]]
+        known = [stamp for stamp in stamps if stamp is not None]
+        return max(known) if known else None
+
+    def _watermark(self) -> int | None:
+        lead = self._lead()
+        if lead is None:
+            return None
+        floor = lead - round(self._options.patience_s * NANO)
+        passed = min(
+            lead if newest is None else newest
+            for newest in (self._buffers[name].newest for name in REQUIRED)
+        )
+        if any(self._buffers[name].newest is None for name in REQUIRED):
+            passed = floor
+        return max(passed, floor) - round(self._options.reorder_s * NANO)
+
+    def _advance(self, watermark: int | None) -> list[SteadyWindow | RejectedWindow]:
+        if watermark is None:
+            return []
+        if self._next_block is None:
+            oldest = self._buffers['port_length'].between(0, watermark)[0]
+            if len(oldest) == 0:
+                return []
+            self._next_block = int(oldest[0]) // self._block_ns
+        found: list[SteadyWindow | RejectedWindow] = []
+        end_block = watermark // self._block_ns
+        history = self._operation.settle_blocks + self._operation.window_blocks
+        if end_block - self._next_block > 2 * history:
+            # A hole longer than any look-back needs no block by block walk.
+            stamps = self._buffers['port_length'].between(
+                self._next_block * self._block_ns, end_block * self._block_ns
+            )[0]
+            if len(stamps) == 0:
+                self._next_block = end_block - history
+        while self._next_block < end_block:
+            found.extend(self._block(self._next_block))
+            self._next_block += 1
+        return found
+
+    def _block(self, index: int) -> list[SteadyWindow | RejectedWindow]:
+        end_ns = (index + 1) * self._block_ns
+        self._operation.add(self._summary(index))
+        start_ns = end_ns - self._operation.window_blocks * self._block_ns
+        found = self._decide(start_ns, end_ns) if self._operation.full else []
+        for buffer in self._buffers.values():
+            buffer.decided = end_ns
+            buffer.drop_before(start_ns + self._block_ns)
+        return found
+
+    def _summary(self, index: int) -> Block:
+        def values(name: str) -> np.ndarray:
+            start_ns = index * self._block_ns
+            return self._buffers[name].between(start_ns, start_ns + self._block_ns)[1]
+
+        def median(name: str) -> float | None:
+            return float(np.median(found)) if len(found := values(name)) else None
+
+        heading = values('heading')
+        return Block(
+            index,
+            (median(INPUTS[0]), median(INPUTS[1]), median(INPUTS[2])),
+            circular_median(heading) if len(heading) else None,
+            median('yaw_rate'),
+        )
+
+    def _decide(self, start_ns: int, end_ns: int) -> list[SteadyWindow | RejectedWindow]:
+        unheld = self._operation.unheld()
+        if unheld is not None:
+            self._held = False
+            return self._reject(unheld, False, start_ns, end_ns)
+        inputs = self._operation.inputs()
+        known = self._held and self._in_state > 0 and self._same_state(inputs)
+        if known and (
+            self._in_state >= self._options.max_windows_per_state or start_ns < self._last_end
+        ):
+            return []
+        window = self._window(start_ns, end_ns, self._state if known else self._state + 1)
+        if isinstance(window, Unheld):
+            return self._reject(window, True, start_ns, end_ns)
+        if not known:
+            self._state += 1
+            self._in_state = 0
+            self._reference = inputs
+        self._held = True
+        self._stretch = None
+        self._in_state += 1
+        self._windows += 1
+        self._last_end = end_ns
+        return [window]
+
+    def _same_state(self, inputs: np.ndarray) -> bool:
+        tolerance = np.array(
+            [*(self._options.length_tolerance,) * 2, self._options.speed_tolerance]
+        )
+        return bool(np.all(np.abs(inputs - self._reference) <= tolerance))
+
+    def _reject(
+        self, why: Unheld, held: bool, start_ns: int, end_ns: int
+    ) -> list[SteadyWindow | RejectedWindow]:
+        # What goes on for the same reason counts once, however many windows it would fill.
+        stretch = (why.reason, held)
+        if stretch == self._stretch:
+            return []
+        self._stretch = stretch
+        self.rejected[why.reason] += 1
+        return [RejectedWindow(why.reason, start_ns, end_ns, why.detail)]
+
+    def _heard(self, name: str, end_ns: int) -> bool:
+        # By stamps, not by what has arrived: the verdict must not depend on arrival.
+        first = self._buffers[name].first
+        return first is not None and first < end_ns
+
+    def _window(self, start_ns: int, end_ns: int, state: int) -> SteadyWindow | Unheld:
+        means: dict[str, float] = {}
+        noise: dict[str, float] = {}
+        bias: dict[str, float] = {}
+        counts: dict[str, int] = {}
+        dropped: Counter[str] = Counter()
+        for name, channel in CHANNELS.items():
+            if name in STEERING or not (channel.required or self._heard(name, end_ns)):
+                continue
+            result = self._channel(name, start_ns, end_ns)
+            if isinstance(result, Unheld):
+                if channel.required:
+                    return result
+                dropped[result.reason] += 1
+                continue
+            values, stated, excluded = result
+            means[name] = float(values.mean())
+            noise[name] = error_of_mean(values, stated)
+            bias[name] = channel.bias_std(means[name])
+            counts[name] = len(values)
+            dropped['outlier'] += excluded
+        self.rejected.update(+dropped)
+        return SteadyWindow(self._windows, state, start_ns, end_ns, means, noise, bias, counts)
+
+    def _channel(
+        self, name: str, start_ns: int, end_ns: int
+    ) -> tuple[np.ndarray, float, int] | Unheld:
+        """Readings for the mean, their stated std and how many were left out, or why none."""
+        options, channel = self._options, CHANNELS[name]
+        where = f'{name} ({channel.topic})'
+        stamps, values, stds = self._buffers[name].between(start_ns, end_ns)
+        if not self._heard(name, end_ns):
+            return Unheld('missing channel', f'{where} has not been heard')
+        silence = np.max(np.diff(np.concatenate(([start_ns], stamps, [end_ns])))) / NANO
+        if len(stamps) == 0 or silence > channel.longest_gap:
+            return Unheld('gap', f'{where} is silent for {silence:.1f} s')
+        stated = float(np.median(stds))
+        run = longest_run(values)
+        if channel.lively and run >= options.frozen_count and 2 * run >= len(values):
+            return Unheld('frozen', f'{where} repeats {values[-1]:g} {run} times')
+        off = outliers(values, stated, options.outlier_limit)
+        excluded = int(np.count_nonzero(off))
+        if excluded > options.outlier_fraction * len(values):
+            return Unheld('outlier', f'{where} has {excluded} outliers in {len(values)} readings')
+        stamps, values = stamps[~off], values[~off]
+        if channel.settles:
+            change = trend((stamps - start_ns) / NANO, values)
+            limit = max(options.drift_fraction * abs(float(values.mean())), channel.bias)
+            if change.p_value < options.significance and abs(change.drift) > limit:
+                return Unheld(
+                    'unsteady',
+                    f'{where} drifts by {change.drift:.3g} {channel.unit} in one window, '
+                    f'at most {limit:.3g} {channel.unit} is steady',
+                )
+        return values, stated, excluded
