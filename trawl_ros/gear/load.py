@@ -1,0 +1,26 @@
+"""Loading a gear file."""
+
+from pathlib import Path
+
+from trawl_ros.errors import GearError
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.share import share_path
+from trawl_ros.validation import load_yaml, validated
+
+
+def load_gear(path: str | Path) -> GearRecord:
+    """Read and check a gear file.
+
+    Parameters
+    ----------
+    path
+        A file, or the name of a gear that comes with the package, such as ``'kaifuha'``.
+
+    Raises
+    ------
+    GearError
+        Naming file, key, what was found and what was expected.
+    """
+    if not str(path).endswith(('.yaml', '.yml')) and not Path(path).exists():
+        path = share_path('config', 'gear', f'{path}.yaml')
+    return validated(GearRecord, load_yaml(path, GearError), path, GearError)

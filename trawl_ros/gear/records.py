@@ -1,0 +1,270 @@
+"""The gear file as records: every key carries its unit, every value is checked on load."""
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from trawl_ros.validation import Record
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+Degrees = Annotated[float, Field(ge=-60, le=60)]
+Vector = tuple[float, float, float]
+
+
+class CurrentAt(Record):
+    """Current at one depth, to the east and the north."""
+
+    depth_m: NotNegative
+    east_m_s: Annotated[float, Field(ge=-3, le=3)]
+    north_m_s: Annotated[float, Field(ge=-3, le=3)]
+
+
+class WaterRecord(Record):
+    """The sea: density rises linearly with depth, the current follows the given depths."""
+
+    density_kg_m3: Annotated[float, Field(ge=990, le=1060)]
+    density_gradient_kg_m4: Annotated[float, Field(ge=0, le=0.1)] = 0.0
+    gravity_m_s2: Annotated[float, Field(ge=9.7, le=9.9)] = 9.80665
+    current: tuple[CurrentAt, ...] = ()
+
+    @model_validator(mode='after')
+    def _depths_rise(self) -> 'WaterRecord':
+        depths = [level.depth_m for level in self.current]
+        if any(b <= a for a, b in pairwise(depths)):
+            raise ValueError(f'current: depths must rise, found {depths}')
+        return self
+
+
+class ShipRecord(Record):
+    """Where the warps leave the ship, and how fast she changes speed and course."""
+
+    block_spacing_m: Annotated[float, Field(gt=0, le=50)]
+    max_acceleration_m_s2: Annotated[float, Field(gt=0, le=1)]
+    max_turn_acceleration_deg_s2: Annotated[float, Field(gt=0, le=5)]
+
+
+class WinchRecord(Record):
+    """How fast a winch can pay out and haul."""
+
+    max_speed_m_s: Annotated[float, Field(gt=0, le=5)]
+    max_acceleration_m_s2: Annotated[float, Field(gt=0, le=5)]
+
+
+class RopeRecord(Record):
+    """A rope of one make. ``segments`` is how many numerical bars it is cut into."""
+
+    diameter_m: Annotated[float, Field(gt=0, le=0.5)]
+    weight_in_water_n_m: float
+    stiffness_n: Positive
+    damping_time_s: NotNegative
+    normal_drag: NotNegative
+    tangential_drag: NotNegative
+    added_mass_normal: NotNegative
+    added_mass_tangential: NotNegative
+
+
+class WarpRecord(RopeRecord):
+    """A warp: its length is the winch's affair."""
+
+    segments: Annotated[int, Field(ge=2, le=500)]
+
+
+class BridleRecord(RopeRecord):
+    """A bridle from a board to a wing tip."""
+
+    length_m: Positive
+    segments: Annotated[int, Field(ge=2, le=200)]
+
+
+class FrameRopeRecord(RopeRecord):
+    """Headrope or footrope, from wing tip to wing tip."""
+
+    length_m: Positive
+
+
+class StartRecord(Record):
+    """Where identification starts: values, spread and bounds in the order of eq. 36."""
+
+    start: tuple[Annotated[float, Field(ge=-10, le=10)], ...]
+    std: tuple[Positive, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+    @model_validator(mode='after')
+    def _twelve(self) -> 'StartRecord':
+        for name in ('start', 'std', 'low', 'high'):
+            if len(getattr(self, name)) != 12:
+                raise ValueError(f'{name}: needs 12 numbers, found {len(getattr(self, name))}')
+        for i, (low, start, high) in enumerate(zip(self.low, self.start, self.high, strict=True)):
+            if not low < high or not low <= start <= high:
+                raise ValueError(
+                    f'number {i + 1}: needs low <= start <= high and low < high, '
+                    f'found {low}, {start}, {high}'
+                )
+        return self
+
+
+class CoefficientsRecord(Record):
+    """The twelve coefficients of eq. 14, in the order of eq. 36; angles in radians."""
+
+    a1: float
+    c1: float
+    a2: float
+    c2: float
+    b3: float
+    c3: float
+    a4: float
+    c4: float
+    b5: float
+    c5: float
+    a6: float
+    c6: float
+
+
+class InertiaRecord(Record):
+    """Moments and products of inertia about the board's axes (Table 1)."""
+
+    xx_kg_m2: Positive
+    yy_kg_m2: Positive
+    zz_kg_m2: Positive
+    xy_kg_m2: float
+    xz_kg_m2: float
+    yz_kg_m2: float
+
+
+class FasteningRecord(Record):
+    """Fastening points in the outward board frame, origin in the centre of gravity."""
+
+    warp_m: Vector
+    upper_bridle_m: Vector
+    lower_bridle_m: Vector
+
+
+class InstallationRecord(Record):
+    """Installation angles: turns of the board about its z, y, x axes against its rigging."""
+
+    epsilon_deg: Degrees = 0.0
+    zeta_deg: Degrees = 0.0
+    eta_deg: Degrees = 0.0
+
+
+class BoardRecord(Record):
+    """An otter board; both sides are the same board, mirrored."""
+
+    mass_kg: Positive
+    volume_m3: Positive
+    inertia: InertiaRecord
+    area_m2: Positive
+    span_m: Positive
+    chord_m: Positive
+    coefficients: CoefficientsRecord
+    force_axes: Literal['flow', 'board']
+    moment_signs: tuple[Literal[-1, 1], Literal[-1, 1], Literal[-1, 1]]
+    slip_sign: Literal[-1, 1]
+    rotary_slope: NotNegative
+    fastening: FasteningRecord
+    installation: InstallationRecord = InstallationRecord()
+    added_mass_kg: tuple[NotNegative, NotNegative, NotNegative]
+
+
+class SectionRecord(Record):
+    """A section of netting, from front to back; its stretched circumference tapers linearly."""
+
+    name: str
+    length_m: Positive
+    front_circumference_m: Positive
+    back_circumference_m: Positive
+    mesh_m: Positive
+    twine_diameter_m: Annotated[float, Field(gt=0, le=0.1)]
+    twine_density_kg_m3: Annotated[float, Field(ge=500, le=8000)]
+    twine_modulus_pa: Positive
+
+
+class NettingRecord(Record):
+    """The net: sections of diamond mesh, a codend, and how they are grouped.
+
+    ``around`` numerical meshes stand for the real ones of every row; a numerical row is as
+    long as keeps the angle of the meshes. ``body`` sections become netting, the ``codend``
+    sections one line of ``codend_segments`` with the drag of its twine at the stated angle.
+    """
+
+    around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
+    body: Annotated[tuple[SectionRecord, ...], Field(min_length=1, max_length=30)]
+    codend: Annotated[tuple[SectionRecord, ...], Field(min_length=1, max_length=10)]
+    codend_segments: Annotated[int, Field(ge=2, le=100)]
+    codend_mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)]
+    damping_time_s: NotNegative
+    normal_drag: NotNegative
+    friction: NotNegative
+    added_mass_normal: NotNegative
+    knot_diameters: NotNegative
+    knot_drag: NotNegative
+    knot_added_mass: NotNegative
+    wing_end_m: Positive
+    wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)]
+
+
+class KiteRecord(Record):
+    """The canvas kite on the headrope's centre."""
+
+    area_m2: Positive
+    mass_kg: NotNegative
+    volume_m3: NotNegative
+    setting_deg: Degrees
+    lift_slope: NotNegative
+    drag_base: NotNegative
+    drag_growth: NotNegative
+
+
+class ClumpRecord(Record):
+    """A weight at each lower wing tip."""
+
+    weight_in_water_n: NotNegative
+    density_kg_m3: Annotated[float, Field(gt=1100)]
+    drag_area_m2: NotNegative
+
+
+class FloatRecord(Record):
+    """Floats at each upper wing tip."""
+
+    buoyancy_n: NotNegative
+    density_kg_m3: Annotated[float, Field(gt=0, lt=900)]
+    drag_area_m2: NotNegative
+
+
+class GearRecord(Record):
+    """A whole gear, as its YAML file has it."""
+
+    name: str
+    water: WaterRecord
+    ship: ShipRecord
+    winch: WinchRecord
+    warp: WarpRecord
+    bridle: BridleRecord
+    board: BoardRecord
+    headrope: FrameRopeRecord
+    footrope: FrameRopeRecord
+    netting: NettingRecord
+    kite: KiteRecord
+    clump: ClumpRecord
+    floats: FloatRecord
+    identification: StartRecord
+
+    def refined(self, *, warp: int = 1, bridle: int = 1, net: int = 1) -> 'GearRecord':
+        """The same gear, cut finer by whole factors."""
+        return self.model_copy(
+            update={
+                'warp': self.warp.model_copy(update={'segments': self.warp.segments * warp}),
+                'bridle': self.bridle.model_copy(
+                    update={'segments': self.bridle.segments * bridle}
+                ),
+                'netting': self.netting.model_copy(
+                    update={
+                        'around': self.netting.around * net,
+                        'codend_segments': self.netting.codend_segments * net,
+                    }
+                ),
+            }
+        )

@@ -1,0 +1,1 @@
+"""The paper's equations: water, lines, boards, kite and netting, and their assembly."""

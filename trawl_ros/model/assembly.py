@@ -1,0 +1,310 @@
+"""One assembly of all forces on the gear, with its exact Jacobian and its mass matrix.
+
+`forces` is the whole right-hand side of eq. 15, 25 and 29 as a function of state, towing
+boundary and parameters; it accepts complex arguments. `linearised` gives the same
+forces with K = -∂F/∂q and C = -∂F/∂v on the model's sparsity pattern: bars analytically
+(`line.linearised`), boards and kite by the complex step, which is exact to rounding.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.model import board as board_physics
+from trawl_ros.model import kite as kite_physics
+from trawl_ros.model import line
+from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.line import STILL, BarMotion
+from trawl_ros.model.numerics import STEP, length, outer, rotation, skew
+from trawl_ros.model.state import State, Tow
+
+
+def rest_lengths(model: GearModel, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
+    """Unstretched lengths of all bars and their rates; a warp is cut into equal bars."""
+    warp = model.warp_side >= 0
+    side = np.maximum(model.warp_side, 0)
+    rest = np.where(warp, tow.lengths[side] / model.warp_segments, model.rest)
+    rate = np.where(warp, tow.length_rates[side] / model.warp_segments, 0.0)
+    return rest, rate
+
+
+def fastening(model: GearModel) -> np.ndarray:
+    """Fastening points (2, 3, 3) of both boards in their door frames."""
+    points = model.board.fastening_points()
+    return np.stack([points, points * np.array([1.0, -1.0, 1.0])])
+
+
+@dataclass(frozen=True)
+class Points:
+    """Positions and velocities (p, 3) of nodes, fastening points and blocks; ``arms``
+    (2, 3, 3) from the boards' centres of gravity to their fastening points, fixed axes.
+    """
+
+    positions: np.ndarray
+    velocities: np.ndarray
+    arms: np.ndarray
+
+
+def points_of(model: GearModel, state: State, tow: Tow) -> Points:
+    """All points that bars can end at."""
+    arms = np.einsum('sij,spj->spi', state.board_rotations, fastening(model))
+    positions = state.board_positions[:, None] + arms
+    velocities = state.board_velocities[:, None] + np.cross(state.board_rates[:, None], arms)
+    return Points(
+        np.concatenate([state.nodes, positions.reshape(6, 3), tow.blocks]),
+        np.concatenate([state.node_velocities, velocities.reshape(6, 3), tow.block_velocities]),
+        arms,
+    )
+
+
+def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
+    """How all bars lie and move."""
+    i, j = model.ends.T
+    rest, rate = rest_lengths(model, tow)
+    x, v = points.positions, points.velocities
+    return BarMotion(
+        vector=x[j] - x[i],
+        stretching=v[j] - v[i],
+        velocity=0.5 * (v[i] + v[j]),
+        height=0.5 * (x[i, 2] + x[j, 2]),
+        rest=rest,
+        rest_rate=rate,
+    )
+
+
+def lump_forces(model: GearModel, state: State) -> np.ndarray:
+    """Drag (eq. 22), weight and buoyancy (eq. 28) of knots, floats and weights, (n, 3) N."""
+    z = state.nodes[:, 2]
+    density = model.water.density_at(z)
+    flow = model.water.current(z) - state.node_velocities
+    force = (0.5 * density * model.lump_drag_area * length(flow, STILL))[:, None] * flow
+    heavy = (model.lump_mass - density * model.lump_volume) * model.water.gravity
+    return force - heavy[:, None] * np.array([0.0, 0.0, 1.0])
+
+
+def board_loads(model: GearModel, state: State) -> np.ndarray:
+    """Force and moment (2, 6) on both boards that do not come from ropes."""
+    return board_physics.own_load(
+        model.board,
+        model.coefficients,
+        OUTWARD,
+        state.board_positions,
+        state.board_rotations,
+        state.board_velocities,
+        state.board_rates,
+        model.water,
+    )
+
+
+def kite_load(model: GearModel, state: State) -> np.ndarray:
+    """Force (3,) on the kite."""
+    front, rear = model.layout.kite
+    x, v = state.nodes, state.node_velocities
+    return kite_physics.load(model.kite, x[front], x[rear], v[front], v[rear], model.water)
+
+
+def bar_end_forces(model: GearModel, points: Points, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
+    """Forces (m, 3) that bars put on the points at their two ends: pull and half the load."""
+    motion = motion_of(model, points, tow)
+    force, along = line.tension(model.bars, motion)
+    load = line.drag(model.bars, motion, along, model.water)
+    load = load + line.weight(model.bars, motion, model.water)[:, None] * np.array([0, 0, 1.0])
+    pull = force[:, None] * along
+    return pull + 0.5 * load, -pull + 0.5 * load
+
+
+def forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+    """Generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
+    points = points_of(model, state, tow)
+    at_start, at_end = bar_end_forces(model, points, tow)
+    n, size = model.nodes, len(points.positions)
+    total = np.zeros((size, 3), dtype=at_start.dtype)
+    np.add.at(total, model.ends[:, 0], at_start)
+    np.add.at(total, model.ends[:, 1], at_end)
+    total[:n] += lump_forces(model, state)
+    total[list(model.layout.kite)] += 0.5 * kite_load(model, state)
+    ropes = total[n : n + 6].reshape(2, 3, 3)
+    boards = board_loads(model, state)
+    boards = boards + np.concatenate([ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1)
+    return np.concatenate([total[:n].ravel(), boards.ravel()])
+
+
+def block_forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+    """Force (2, 3) of each warp on its towing block, N.
+
+    With the half segment of load that a lumped line hangs on its fixed end, so that the
+    tension at the block does not depend on how finely the warp is cut.
+    """
+    at_start, _ = bar_end_forces(model, points_of(model, state, tow), tow)
+    return at_start[model.layout.top_warp_bars]
+
+
+def bar_tensions(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+    """Tension (m,) of every bar, N."""
+    return line.tension(model.bars, motion_of(model, points_of(model, state, tow), tow))[0]
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Forces (dof,), K = -∂F/∂q and C = -∂F/∂v as data on the model's pattern."""
+
+    force: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+
+
+def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
+    """Forces with their exact derivatives at one state."""
+    points = points_of(model, state, tow)
+    motion = motion_of(model, points, tow)
+    slopes = line.linearised(model.bars, motion, model.water)
+    up = np.array([0.0, 0.0, 1.0])
+    by_height = 0.25 * outer(slopes.load_by_height, np.broadcast_to(up, slopes.load.shape))
+    half = 0.5 * slopes.load_by_vector
+    pull, damp = slopes.pull_by_vector, slopes.pull_by_stretching
+    flow = 0.25 * slopes.load_by_velocity
+    k = -np.block(
+        [
+            [-pull - half + by_height, pull + half + by_height],
+            [pull - half + by_height, -pull + half + by_height],
+        ]
+    )
+    c = -np.block([[-damp + flow, damp + flow], [damp + flow, -damp + flow]])
+
+    rig_k, rig_c = _rigged_blocks(model, state, points, slopes, k, c)
+    body_k, body_c, body_force = _board_blocks(model, state)
+    kite_k, kite_c, kite_force = _kite_blocks(model, state)
+    node_k, node_c = _lump_blocks(model, state)
+    hung = model.pattern.hung
+    stiffness = model.pattern.gather(
+        [k[model.pattern.plain], k[hung][:, 3:, 3:], rig_k, body_k, node_k, kite_k]
+    )
+    damping = model.pattern.gather(
+        [c[model.pattern.plain], c[hung][:, 3:, 3:], rig_c, body_c, node_c, kite_c]
+    )
+
+    n = model.nodes
+    total = np.zeros((len(points.positions), 3))
+    np.add.at(total, model.ends[:, 0], slopes.pull + 0.5 * slopes.load)
+    np.add.at(total, model.ends[:, 1], -slopes.pull + 0.5 * slopes.load)
+    total[:n] += lump_forces(model, state)
+    total[list(model.layout.kite)] += 0.5 * kite_force
+    ropes = total[n : n + 6].reshape(2, 3, 3)
+    boards = body_force + np.concatenate(
+        [ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1
+    )
+    return Linearised(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
+
+
+def _lift(model: GearModel, points: Points) -> np.ndarray:
+    """B of `_rigged_blocks` beside the identity of the bar's other end, (r, 6, 9)."""
+    lift = np.zeros((len(model.pattern.rigged), 6, 9))
+    lift[:, :3, :3] = np.eye(3)
+    lift[:, :3, 3:6] = -skew(points.arms[model.pattern.rig_board, model.pattern.rig_point])
+    lift[:, 3:, 6:] = np.eye(3)
+    return lift
+
+
+def _rigged_blocks(
+    model: GearModel,
+    state: State,
+    points: Points,
+    slopes: line.BarSlopes,
+    k: np.ndarray,
+    c: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Bars that start at a fastening point p = X + a: δp = B (δX, δθ), B = [I, -S(a)]."""
+    count = len(model.pattern.rigged)
+    arm = skew(points.arms[model.pattern.rig_board, model.pattern.rig_point])
+    spin = skew(state.board_rates[model.pattern.rig_board])
+    force = skew((slopes.pull + 0.5 * slopes.load)[model.pattern.rigged])
+    lift = _lift(model, points)
+    # The velocity of the point, v + ω × a, turns with the board as well.
+    turning = np.zeros((count, 6, 9))
+    turning[:, :3, 3:6] = -spin @ arm
+    back = np.swapaxes(lift, 1, 2)
+    own_k, own_c = k[model.pattern.rigged], c[model.pattern.rigged]
+    rig_k = back @ (own_k @ lift + own_c @ turning)
+    # The moment a × f changes with a even where f does not.
+    rig_k[:, 3:6, 3:6] -= force @ arm
+    return rig_k, back @ own_c @ lift
+
+
+def _board_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Boards' own loads by the complex step in their 12 positions and velocities."""
+    turn = np.zeros((12, 1, 3), complex)
+    shift = np.zeros((12, 1, 3), complex)
+    velocity = np.zeros((12, 1, 3), complex)
+    rate = np.zeros((12, 1, 3), complex)
+    for axis in range(3):
+        shift[axis, 0, axis] = turn[3 + axis, 0, axis] = 1j * STEP
+        velocity[6 + axis, 0, axis] = rate[9 + axis, 0, axis] = 1j * STEP
+    load = board_physics.own_load(
+        model.board,
+        model.coefficients,
+        OUTWARD,
+        state.board_positions + shift,
+        rotation(turn) @ state.board_rotations,
+        state.board_velocities + velocity,
+        state.board_rates + rate,
+        model.water,
+    )
+    slopes = np.moveaxis(load.imag / STEP, 0, -1)
+    return -slopes[..., :6], -slopes[..., 6:], load[0].real
+
+
+def _kite_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The kite's load by the complex step in its two nodes' positions and velocities."""
+    ends = list(model.layout.kite)
+    steps = (1j * STEP * np.eye(12)).reshape(12, 2, 2, 3)
+    x = state.nodes[ends] + steps[:, 0]
+    v = state.node_velocities[ends] + steps[:, 1]
+    load = kite_physics.load(model.kite, x[:, 0], x[:, 1], v[:, 0], v[:, 1], model.water)
+    slopes = 0.5 * (load.imag / STEP).T
+    both = np.concatenate([slopes, slopes])
+    return -both[None, :, :6], -both[None, :, 6:], load[0].real
+
+
+def _lump_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray]:
+    z = state.nodes[:, 2]
+    density = model.water.density_at(z)
+    flow = model.water.current(z) - state.node_velocities
+    speed = length(flow, STILL)
+    factor = 0.5 * density * model.lump_drag_area
+    by_flow = factor[:, None, None] * (
+        speed[:, None, None] * np.eye(3) + outer(flow, flow) / speed[:, None, None]
+    )
+    by_height = np.einsum('nij,nj->ni', by_flow, model.water.current_slope(z))
+    thinning = model.water.density_gradient / density
+    by_height -= (thinning * factor * speed)[:, None] * flow
+    by_height[:, 2] -= model.water.gravity * model.water.density_gradient * model.lump_volume
+    stiffness = np.zeros((len(z), 3, 3))
+    stiffness[:, :, 2] = -by_height
+    return stiffness, by_flow
+
+
+def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+    """Mass matrix with added mass (eq. 15, 16, 25-27, 29) as data on the pattern.
+
+    Bars give half of their mass to either end, boards their inertia in fixed axes, and
+    their added mass where the gear file switches it on.
+    """
+    points = points_of(model, state, tow)
+    motion = motion_of(model, points, tow)
+    half = 0.5 * line.mass(model.bars, motion, model.water)
+    zero = np.zeros_like(half)
+    bars = np.block([[half, zero], [zero, half]])
+    lift = _lift(model, points)
+    rigged = np.swapaxes(lift, 1, 2) @ bars[model.pattern.rigged] @ lift
+    body = np.zeros((2, 6, 6))
+    turn = state.board_rotations
+    added = turn * model.board.added_mass @ np.swapaxes(turn, 1, 2)
+    body[:, :3, :3] = model.board.mass * np.eye(3) + added
+    body[:, 3:, 3:] = board_physics.world_inertia(model.board, OUTWARD, turn)
+    density = model.water.density_at(state.nodes[:, 2])
+    lumps = (model.lump_mass + density * model.lump_added)[:, None, None] * np.eye(3)
+    canvas = 0.5 * model.kite.mass * np.eye(6)[None]
+    hung = model.pattern.hung
+    return model.pattern.gather(
+        [bars[model.pattern.plain], half[hung], rigged, body, lumps, canvas]
+    )

@@ -1,0 +1,127 @@
+"""What can be seen of a gear: the numbers that people and instruments look at."""
+
+from dataclasses import astuple, dataclass, fields
+
+import numpy as np
+
+from trawl_ros.model.assembly import block_forces
+from trawl_ros.model.board import flow_at, inclination, pitch_and_roll
+from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.numerics import angle, distance, length
+from trawl_ros.model.state import State, Tow
+
+
+@dataclass(frozen=True)
+class Observables:
+    """One look at the gear; lengths in m, tensions in N, angles in rad.
+
+    ``net_depth`` is that of the headrope's centre; ``vertical_opening`` is headrope above
+    footrope at the centre, ``horizontal_opening`` the distance between the upper wing tips.
+    Tension, ``divergence`` (outward positive, against the ship's course) and ``declination``
+    (down positive) belong to the warp at its block. ``pitch`` is nose down and ``roll`` top to
+    starboard positive in the door frame; ``attack``, ``slip``, ``inclination`` are α, β, δ.
+    """
+
+    door_spread: float
+    port_door_depth: float
+    starboard_door_depth: float
+    port_tension: float
+    starboard_tension: float
+    net_depth: float
+    vertical_opening: float
+    horizontal_opening: float
+    port_pitch: float
+    starboard_pitch: float
+    port_roll: float
+    starboard_roll: float
+    port_divergence: float
+    starboard_divergence: float
+    port_declination: float
+    starboard_declination: float
+    port_attack: float
+    starboard_attack: float
+    port_slip: float
+    starboard_slip: float
+    port_inclination: float
+    starboard_inclination: float
+
+    def array(self) -> np.ndarray:
+        """All values in the order of `OBSERVABLES`."""
+        return np.array(astuple(self))
+
+    @property
+    def door_depth(self) -> float:
+        """Mean depth of both doors, m."""
+        return 0.5 * (self.port_door_depth + self.starboard_door_depth)
+
+    @property
+    def warp_tension(self) -> float:
+        """Mean tension of both warps at the block, N."""
+        return 0.5 * (self.port_tension + self.starboard_tension)
+
+
+OBSERVABLES = tuple(field.name for field in fields(Observables))
+"""Names of the observables, in order."""
+
+
+def observe(model: GearModel, state: State, tow: Tow) -> Observables:
+    """Read the observables off a state; complex states give complex values."""
+    port, starboard = state.board_positions
+    flow = flow_at(
+        model.board,
+        OUTWARD,
+        state.board_positions,
+        state.board_rotations,
+        state.board_velocities,
+        state.board_rates,
+        model.water,
+    )
+    pitch, roll = pitch_and_roll(state.board_rotations)
+    lean = inclination(state.board_rotations)
+    pull = block_forces(model, state, tow)
+    tension = length(pull)
+    # Warps leave over the stern: their angles count from straight astern.
+    to_port = tow.blocks[0, :2] - tow.blocks[1, :2]
+    to_port = to_port / length(to_port)
+    astern = pull[:, 1] * to_port[0] - pull[:, 0] * to_port[1]
+    divergence = angle((pull[:, :2] @ to_port) * OUTWARD, astern)
+    declination = angle(-pull[:, 2], length(pull[:, :2]))
+    head, foot = model.layout.headrope, model.layout.footrope
+    centre, below = head[len(head) // 2], foot[len(foot) // 2]
+    top = state.nodes[centre]
+    return Observables(
+        door_spread=distance(port, starboard),
+        port_door_depth=-port[2],
+        starboard_door_depth=-starboard[2],
+        port_tension=tension[0],
+        starboard_tension=tension[1],
+        net_depth=-top[2],
+        vertical_opening=top[2] - state.nodes[below][2],
+        horizontal_opening=distance(state.nodes[head[0]], state.nodes[head[-1]]),
+        port_pitch=pitch[0],
+        starboard_pitch=pitch[1],
+        port_roll=roll[0],
+        starboard_roll=roll[1],
+        port_divergence=divergence[0],
+        starboard_divergence=divergence[1],
+        port_declination=declination[0],
+        starboard_declination=declination[1],
+        port_attack=flow.attack[0],
+        starboard_attack=flow.attack[1],
+        port_slip=flow.slip[0],
+        starboard_slip=flow.slip[1],
+        port_inclination=lean[0],
+        starboard_inclination=lean[1],
+    )
+
+
+def outward_normal_lift(state: State) -> np.ndarray:
+    """Vertical part (2,) of the boards' outward unit normals; positive points up."""
+    return state.board_rotations[:, 2, 1] * OUTWARD
+
+
+def highest_point(model: GearModel, state: State) -> float:
+    """Height (m) of the highest node or board edge; above zero means out of the water."""
+    half = 0.5 * model.board.span
+    tops = state.board_positions[:, 2] + half * np.abs(state.board_rotations[:, 2, 2])
+    return float(max(state.nodes[:, 2].max(), tops.max()))

@@ -1,0 +1,73 @@
+"""The sparsity pattern of a gear's matrices, found once when its model is built."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Where the blocks of bars, boards, nodes and kite go in a (dof, dof) matrix.
+
+    ``plain``, ``hung`` and ``rigged`` are the numbers of the bars between two nodes, from a
+    towing block to a node, and from a fastening point to a node; ``rig_board`` and
+    ``rig_point`` say at which board and point (warp, upper, lower bridle) the latter start.
+    """
+
+    dof: int
+    plain: np.ndarray
+    hung: np.ndarray
+    rigged: np.ndarray
+    rig_board: np.ndarray
+    rig_point: np.ndarray
+    slot: np.ndarray
+    indices: np.ndarray
+    indptr: np.ndarray
+
+    def matrix(self, data: np.ndarray) -> sp.csc_matrix:
+        """A matrix of data on this pattern."""
+        return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.dof, self.dof))
+
+    def gather(self, blocks: list[np.ndarray]) -> np.ndarray:
+        """Sum the blocks of plain, hung and rigged bars, boards, nodes and kite, in this
+        order, into data on the pattern.
+        """
+        values = np.concatenate([block.ravel() for block in blocks])
+        return np.bincount(self.slot, weights=values, minlength=len(self.indices))
+
+
+def build_pattern(nodes: int, ends: np.ndarray, kite: tuple[int, int]) -> Pattern:
+    """The pattern of a gear with ``nodes`` free nodes and bars between the points ``ends``."""
+    i, j = ends.T
+    dof = 3 * nodes + 12
+    free_i, free_j = i < nodes, j < nodes
+    plain = np.flatnonzero(free_i & free_j)
+    hung = np.flatnonzero((i >= nodes + 6) & free_j)
+    rigged = np.flatnonzero((i >= nodes) & (i < nodes + 6))
+    board, point = np.divmod(i[rigged] - nodes, 3)
+    node = 3 * np.arange(nodes)[:, None] + np.arange(3)
+    body = 3 * nodes + 6 * np.arange(2)[:, None] + np.arange(6)
+    groups = [
+        np.concatenate([node[i[plain]], node[j[plain]]], 1),
+        node[j[hung]],
+        np.concatenate([body[board], node[j[rigged]]], 1),
+        body,
+        node,
+        node[list(kite)].reshape(1, 6),
+    ]
+    rows = np.concatenate([np.repeat(g, g.shape[1], 1).ravel() for g in groups])
+    cols = np.concatenate([np.tile(g, (1, g.shape[1])).ravel() for g in groups])
+    slots, slot = np.unique(cols.astype(np.int64) * dof + rows, return_inverse=True)
+    counts = np.bincount(slots // dof, minlength=dof)
+    return Pattern(
+        dof=dof,
+        plain=plain,
+        hung=hung,
+        rigged=rigged,
+        rig_board=board,
+        rig_point=point,
+        slot=slot.ravel(),
+        indices=(slots % dof).astype(np.int32),
+        indptr=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+    )

@@ -1,0 +1,96 @@
+"""Where every part of the gear is and how it moves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.model.numerics import rotation
+
+
+@dataclass(frozen=True)
+class Tow:
+    """What ship and winches impose at one instant.
+
+    ``blocks`` (2, 3) positions and ``block_velocities`` (2, 3) of the towing blocks, port and
+    starboard, in ``map`` axes (m, m/s); ``lengths`` (2,) unstretched warp lengths (m) and
+    ``length_rates`` (2,) their rates (m/s, out positive).
+    """
+
+    blocks: np.ndarray
+    block_velocities: np.ndarray
+    lengths: np.ndarray
+    length_rates: np.ndarray
+
+
+@dataclass(frozen=True)
+class State:
+    """Positions and velocities in ``map`` axes.
+
+    ``nodes`` (n, 3), ``board_positions`` (2, 3) of the centres of gravity, ``board_rotations``
+    (2, 3, 3) from the right-handed door frame (x forward, y port, z up), and the velocities
+    ``node_velocities``, ``board_velocities``, ``board_rates`` (rad/s).
+    """
+
+    nodes: np.ndarray
+    board_positions: np.ndarray
+    board_rotations: np.ndarray
+    node_velocities: np.ndarray
+    board_velocities: np.ndarray
+    board_rates: np.ndarray
+
+    def moved(self, step: np.ndarray) -> 'State':
+        """The state displaced by ``step`` (dof,): metres, and rotation vectors for boards."""
+        n = len(self.nodes)
+        board = step[3 * n :].reshape(2, 6)
+        return State(
+            nodes=self.nodes + step[: 3 * n].reshape(n, 3),
+            board_positions=self.board_positions + board[:, :3],
+            board_rotations=rotation(board[:, 3:]) @ self.board_rotations,
+            node_velocities=self.node_velocities,
+            board_velocities=self.board_velocities,
+            board_rates=self.board_rates,
+        )
+
+    def with_velocity(self, velocity: np.ndarray) -> 'State':
+        """The state with generalised velocity ``velocity`` (dof,)."""
+        n = len(self.nodes)
+        board = velocity[3 * n :].reshape(2, 6)
+        return State(
+            nodes=self.nodes,
+            board_positions=self.board_positions,
+            board_rotations=self.board_rotations,
+            node_velocities=velocity[: 3 * n].reshape(n, 3),
+            board_velocities=board[:, :3],
+            board_rates=board[:, 3:],
+        )
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Generalised velocity (dof,)."""
+        board = np.concatenate([self.board_velocities, self.board_rates], axis=1)
+        return np.concatenate([self.node_velocities.ravel(), board.ravel()])
+
+    def shifted(self, offset: np.ndarray) -> 'State':
+        """The whole gear displaced by ``offset`` (3,), m."""
+        return State(
+            nodes=self.nodes + offset,
+            board_positions=self.board_positions + offset,
+            board_rotations=self.board_rotations,
+            node_velocities=self.node_velocities,
+            board_velocities=self.board_velocities,
+            board_rates=self.board_rates,
+        )
+
+
+def mirrored(state: State, permutation: np.ndarray) -> State:
+    """The mirror image in the x-z plane; ``permutation`` says which node becomes which."""
+    flip = np.array([1.0, -1.0, 1.0])
+    swap = [1, 0]
+    return State(
+        nodes=(state.nodes * flip)[permutation],
+        board_positions=(state.board_positions * flip)[swap],
+        board_rotations=(flip[:, None] * state.board_rotations * flip)[swap],
+        node_velocities=(state.node_velocities * flip)[permutation],
+        board_velocities=(state.board_velocities * flip)[swap],
+        board_rates=(-state.board_rates * flip)[swap],
+    )

@@ -1,0 +1,112 @@
+"""Reads a state as `Truth`: the seam between the model and everything that looks at it."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from trawl_ros.model.assembly import bar_tensions, points_of
+from trawl_ros.model.board import flow_at, hydrodynamics
+from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.numerics import transpose
+from trawl_ros.model.observables import observe
+from trawl_ros.model.state import State, Tow
+from trawl_ros.simulation.ship import Ship, Winch
+from trawl_ros.simulation.truth import (
+    SIDES,
+    DoorTruth,
+    GearPicture,
+    NetTruth,
+    Polyline,
+    Truth,
+    VesselTruth,
+    WinchTruth,
+)
+
+
+def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
+    flow = flow_at(
+        model.board,
+        OUTWARD,
+        state.board_positions,
+        state.board_rotations,
+        state.board_velocities,
+        state.board_rates,
+        model.water,
+    )
+    force, moment = hydrodynamics(model.board, model.coefficients, flow)
+    mirror = np.stack([np.ones(2), OUTWARD, np.ones(2)], 1)
+    turn = state.board_rotations
+    back = transpose(turn)
+    lean = np.arccos(np.clip(turn[:, 2, 2], -1.0, 1.0))
+    quaternions = Rotation.from_matrix(turn).as_quat(canonical=True)
+    return tuple(
+        DoorTruth(
+            position=state.board_positions[k],
+            orientation=quaternions[k],
+            velocity=back[k] @ state.board_velocities[k],
+            angular_velocity=back[k] @ state.board_rates[k],
+            attack=float(flow.attack[k]),
+            slip=float(flow.slip[k]),
+            inclination=float(lean[k]),
+            force=mirror[k] * force[k],
+            moment=OUTWARD[k] * mirror[k] * moment[k],
+        )
+        for k in range(len(SIDES))
+    )  # type: ignore[return-value]
+
+
+def _sonar_orientation(model: GearModel, state: State) -> np.ndarray:
+    """Frame ``sonar``: z forward along the mouth's normal, x down in the mouth, y port."""
+    layout = model.layout
+    head, foot = layout.headrope, layout.footrope
+    port = state.nodes[head[0]] - state.nodes[head[-1]]
+    down = state.nodes[foot[len(foot) // 2]] - state.nodes[head[len(head) // 2]]
+    down = down - (down @ port) / (port @ port) * port
+    x, y = down / np.linalg.norm(down), port / np.linalg.norm(port)
+    return Rotation.from_matrix(np.column_stack([x, y, np.cross(x, y)])).as_quat(canonical=True)
+
+
+def read_truth(
+    model: GearModel, stamp: int, ship: Ship, winches: tuple[Winch, Winch], state: State, tow: Tow
+) -> Truth:
+    """Everything instruments may look at."""
+    seen = observe(model, state, tow)
+    head, foot = model.layout.headrope, model.layout.footrope
+    tensions = (seen.port_tension, seen.starboard_tension)
+    return Truth(
+        stamp=stamp,
+        doors=_doors(model, state),
+        winches=tuple(
+            WinchTruth(winch.length, winch.speed, float(tension))
+            for winch, tension in zip(winches, tensions, strict=True)
+        ),  # type: ignore[arg-type]
+        net=NetTruth(
+            mouth=np.concatenate([state.nodes[head], state.nodes[foot[::-1]]]),
+            horizontal_opening=float(seen.horizontal_opening),
+            vertical_opening=float(seen.vertical_opening),
+            headrope_depth=float(seen.net_depth),
+            sonar_position=state.nodes[head[len(head) // 2]],
+            sonar_orientation=_sonar_orientation(model, state),
+        ),
+        vessel=VesselTruth(
+            position=ship.position,
+            heading=ship.heading,
+            yaw_rate=ship.yaw_rate,
+            velocity_ground=ship.speed * ship.ahead + model.water.current(np.array(0.0)),
+            velocity_water=np.array([ship.speed, 0.0, 0.0]),
+        ),
+    )
+
+
+def read_picture(model: GearModel, stamp: int, state: State, tow: Tow) -> GearPicture:
+    """Every rope and bar with its tension, for drawing."""
+    points = points_of(model, state, tow).positions
+    tensions = bar_tensions(model, state, tow)
+    return GearPicture(
+        stamp=stamp,
+        lines=tuple(
+            Polyline(name, points[numbers], float(tensions[bars].mean()))
+            for name, numbers, bars in model.layout.lines
+        ),
+        doors=_doors(model, state),
+        door_size=(model.board.chord, model.board.span),
+    )

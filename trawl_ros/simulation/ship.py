@@ -1,0 +1,66 @@
+"""Ship and winches: what moves the gear, within what they can do."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.gear.records import ShipRecord, WinchRecord
+
+
+def _approach(value: float, target: float, most: float) -> float:
+    return value + min(max(target - value, -most), most)
+
+
+@dataclass(frozen=True)
+class Ship:
+    """Position (m) midway between the blocks, heading (ENU yaw, rad), speed through the
+    water (m/s), rate of turn (rad/s, to port positive).
+    """
+
+    position: np.ndarray
+    heading: float
+    speed: float
+    yaw_rate: float
+
+    @property
+    def ahead(self) -> np.ndarray:
+        """Unit vector (3,) of the heading."""
+        return np.array([np.cos(self.heading), np.sin(self.heading), 0.0])
+
+    def advanced(
+        self, limits: ShipRecord, speed: float, yaw_rate: float, current: np.ndarray, dt: float
+    ) -> 'Ship':
+        """After ``dt`` seconds of approaching a wanted speed and rate of turn in a current."""
+        new_speed = _approach(self.speed, speed, limits.max_acceleration_m_s2 * dt)
+        most = np.radians(limits.max_turn_acceleration_deg_s2) * dt
+        new_rate = _approach(self.yaw_rate, yaw_rate, most)
+        turned = self.heading + 0.5 * (self.yaw_rate + new_rate) * dt
+        middle = 0.5 * (self.heading + turned)
+        mean = 0.5 * (self.speed + new_speed)
+        course = np.array([np.cos(middle), np.sin(middle), 0.0])
+        return Ship(
+            position=self.position + (mean * course + current) * dt,
+            heading=float(turned),
+            speed=new_speed,
+            yaw_rate=new_rate,
+        )
+
+
+@dataclass(frozen=True)
+class Winch:
+    """One winch: warp length out (m) and pay-out speed (m/s)."""
+
+    length: float
+    speed: float
+
+    def advanced(self, limits: WinchRecord, length: float, dt: float) -> 'Winch':
+        """After ``dt`` seconds of paying out or hauling towards a wanted length."""
+        left = length - self.length
+        most = limits.max_acceleration_m_s2
+        # The speed from which the drum still stops in time.
+        wanted = np.sign(left) * min(limits.max_speed_m_s, np.sqrt(2 * most * abs(left)))
+        speed = _approach(self.speed, float(wanted), most * dt)
+        moved = 0.5 * (self.speed + speed) * dt
+        if abs(left) <= abs(moved) and abs(self.speed) <= most * dt:
+            return Winch(length, 0.0)
+        return Winch(self.length + moved, speed)

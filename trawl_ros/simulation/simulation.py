@@ -1,0 +1,154 @@
+"""The tow in time: ship, winches and gear, from an equilibrium onward."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.errors import ScenarioError
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.state import Tow
+from trawl_ros.simulation.reading import read_picture, read_truth
+from trawl_ros.simulation.ship import Ship, Winch
+from trawl_ros.simulation.truth import GearPicture, Truth
+from trawl_ros.solver.equilibrium import find_equilibrium, require_usable
+from trawl_ros.solver.operating_point import OperatingPoint, block_offsets
+from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
+
+NANOSECONDS = 1_000_000_000
+HALVINGS = 6
+
+
+@dataclass(frozen=True)
+class Command:
+    """What ship and winches are asked for: warp lengths (m), speed through the water (m/s),
+    rate of turn (rad/s, to port positive).
+    """
+
+    port_length: float
+    starboard_length: float
+    speed: float
+    turn_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Instant:
+    """Everything that moves, at one time (ns)."""
+
+    stamp: int
+    ship: Ship
+    winches: tuple[Winch, Winch]
+    motion: Motion
+
+
+def tow_of(model: GearModel, ship: Ship, winches: tuple[Winch, Winch]) -> Tow:
+    """What ship and winches impose on the gear at one instant."""
+    offsets = block_offsets(model, ship.heading)
+    velocity = ship.speed * ship.ahead + model.water.current(np.array(0.0))
+    spin = np.array([0.0, 0.0, ship.yaw_rate])
+    return Tow(
+        blocks=ship.position + offsets,
+        block_velocities=velocity + np.cross(spin, offsets),
+        lengths=np.array([winch.length for winch in winches]),
+        length_rates=np.array([winch.speed for winch in winches]),
+    )
+
+
+class Simulation:
+    """A gear under tow. It starts in equilibrium at the first command.
+
+    Parameters
+    ----------
+    model
+        From `build_model`.
+    command
+        Where it starts.
+    heading
+        First heading, ENU yaw, rad.
+    stamp
+        Time of the start, ns.
+    time_step
+        Step of the solver, s. Truth may be read at any multiple of it.
+    """
+
+    def __init__(
+        self,
+        model: GearModel,
+        command: Command,
+        *,
+        heading: float = 0.0,
+        stamp: int = 0,
+        time_step: float = 0.1,
+    ) -> None:
+        if command.turn_rate:
+            raise ScenarioError(
+                'a tow starts on a straight course, found a rate of turn of '
+                f'{command.turn_rate} rad/s'
+            )
+        self.model = model
+        self.command = command
+        self._start = (command, heading, stamp)
+        self._time_step = round(time_step * NANOSECONDS)
+        self._stepper = Stepper(model)
+        self.now = self._first(command, heading, stamp)
+
+    def _first(self, command: Command, heading: float, stamp: int) -> Instant:
+        point = OperatingPoint(
+            command.port_length, command.starboard_length, command.speed, heading
+        )
+        found = require_usable(self.model, find_equilibrium(self.model, point)).equilibrium
+        return Instant(
+            stamp=stamp,
+            ship=Ship(np.zeros(3), heading, command.speed, 0.0),
+            winches=(Winch(command.port_length, 0.0), Winch(command.starboard_length, 0.0)),
+            motion=at_rest(found.state),
+        )
+
+    def reset(self) -> None:
+        """Back to the start."""
+        command, heading, stamp = self._start
+        self.command = command
+        # A new one, for what the old one has kept would change the last digits.
+        self._stepper = Stepper(self.model)
+        self.now = self._first(command, heading, stamp)
+
+    def advance(self) -> Instant:
+        """One time step towards the present command."""
+        self.now = self._advanced(self.now, self._time_step, HALVINGS)
+        return self.now
+
+    def _advanced(self, now: Instant, span: int, halvings: int) -> Instant:
+        dt = span / NANOSECONDS
+        gear, wanted = self.model.gear, self.command
+        surface = self.model.water.current(np.array(0.0))
+        ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
+        winches = (
+            now.winches[0].advanced(gear.winch, wanted.port_length, dt),
+            now.winches[1].advanced(gear.winch, wanted.starboard_length, dt),
+        )
+        try:
+            motion = self._stepper.step(now.motion, tow_of(self.model, ship, winches), dt)
+        except StepFailed:
+            if halvings == 0:
+                raise
+            half = self._advanced(now, span // 2, halvings - 1)
+            return self._advanced(half, span - span // 2, halvings - 1)
+        return Instant(now.stamp + span, ship, winches, motion)
+
+    def truth(self) -> Truth:
+        """The present instant as instruments see it."""
+        now = self.now
+        return read_truth(
+            self.model,
+            now.stamp,
+            now.ship,
+            now.winches,
+            now.motion.state,
+            tow_of(self.model, now.ship, now.winches),
+        )
+
+    def picture(self) -> GearPicture:
+        """The present instant as it is drawn."""
+        now = self.now
+        return read_picture(
+            self.model, now.stamp, now.motion.state, tow_of(self.model, now.ship, now.winches)
+        )

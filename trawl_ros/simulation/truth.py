@@ -1,0 +1,104 @@
+"""What the simulation knows at one instant: the record every instrument looks at.
+
+All positions are in ``map`` (ENU, z = 0 at the mean surface, m), all angles in radians,
+all stamps in integer nanoseconds. Door frames are x forward, y port, z up on both sides.
+Quaternions are ``(x, y, z, w)``.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SIDES = ('port', 'starboard')
+
+
+@dataclass(frozen=True)
+class DoorTruth:
+    """One otter board as a rigid body.
+
+    ``velocity`` (m/s), ``angular_velocity`` (rad/s), ``force`` (N) and ``moment`` (N m, about
+    the centre of gravity) are given in the door frame; ``attack``, ``slip`` and
+    ``inclination`` are α, β, δ of eq. 1, 2 and 38 (rad).
+    """
+
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    attack: float
+    slip: float
+    inclination: float
+    force: np.ndarray
+    moment: np.ndarray
+
+
+@dataclass(frozen=True)
+class WinchTruth:
+    """One winch: warp length out (m), pay-out speed (m/s, out positive), block tension (N)."""
+
+    length: float
+    speed: float
+    tension: float
+
+
+@dataclass(frozen=True)
+class NetTruth:
+    """The net's mouth.
+
+    ``mouth`` holds N points of the headrope from port to starboard, then N of the footrope
+    back, shape (2 N, 3); openings and ``headrope_depth`` are in m, depth positive down.
+    ``sonar_position`` and ``sonar_orientation`` are the pose of frame ``sonar`` (x down,
+    y port, z forward) in ``map``.
+    """
+
+    mouth: np.ndarray
+    horizontal_opening: float
+    vertical_opening: float
+    headrope_depth: float
+    sonar_position: np.ndarray
+    sonar_orientation: np.ndarray
+
+
+@dataclass(frozen=True)
+class VesselTruth:
+    """The ship: position midway between the blocks, heading as ENU yaw, yaw rate (rad/s).
+
+    ``velocity_ground`` is in ``map``, ``velocity_water`` relative to the water at the
+    surface in frame ``vessel`` (x forward, y port, z up), m/s.
+    """
+
+    position: np.ndarray
+    heading: float
+    yaw_rate: float
+    velocity_ground: np.ndarray
+    velocity_water: np.ndarray
+
+
+@dataclass(frozen=True)
+class Truth:
+    """One instant of the tow. ``doors`` and ``winches`` are in the order of `SIDES`."""
+
+    stamp: int
+    doors: tuple[DoorTruth, DoorTruth]
+    winches: tuple[WinchTruth, WinchTruth]
+    net: NetTruth
+    vessel: VesselTruth
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """A rope or a row of netting to be drawn: points (n, 3) in ``map``, tension (N)."""
+
+    name: str
+    points: np.ndarray
+    tension: float
+
+
+@dataclass(frozen=True)
+class GearPicture:
+    """All that is to be drawn of the gear at ``stamp``."""
+
+    stamp: int
+    lines: tuple[Polyline, ...]
+    doors: tuple[DoorTruth, DoorTruth]
+    door_size: tuple[float, float]

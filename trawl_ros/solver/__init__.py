@@ -1,0 +1,1 @@
+"""Steady states, their stability and sensitivities, motion in time, and trim."""

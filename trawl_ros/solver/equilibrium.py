@@ -1,0 +1,261 @@
+"""Quasi-steady states: roots of the forces, found by Newton with pseudo-transient continuation.
+
+Each step is one implicit Euler step from rest, (M/τ² + C/τ + K) δ = F, with a time step τ that
+grows while steps stay small; at τ = ∞ it is Newton's. Real mass and drag let the gear drift to
+a state it would also reach at sea, rather than to any root near the start.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.model.assembly import linearised, mass
+from trawl_ros.model.board import LAW_RANGE
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import (
+    Observables,
+    highest_point,
+    observe,
+    outward_normal_lift,
+)
+from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.first_guess import first_guess, shifted_to
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.stability import Stability, stability
+
+TOLERANCE = 1e-4
+"""Largest force (N) or moment (N m) left at a root; the last Newton step goes far below."""
+
+WARM_LIMIT = 60
+"""Iterations after which a warm start is given up for a cold one."""
+
+LIMIT_METRES, LIMIT_RADIANS = 10.0, 0.1
+"""Largest step of a node or board, and of a board's attitude."""
+
+COLLAPSED_NORMAL = -0.2
+"""Vertical part of a board's outward normal below which it has fallen on its face."""
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A root of the forces.
+
+    ``state`` is in ``map`` axes with the ship at the origin; ``outside_law`` says that a board
+    works outside the range of eq. 14; ``highest`` is the height (m) of the gear's highest
+    point, positive when it breaks the surface.
+    """
+
+    point: OperatingPoint
+    tow: Tow
+    state: State
+    observables: Observables
+    iterations: int
+    residual: float
+    outside_law: bool
+    highest: float
+
+    @property
+    def surfaced(self) -> bool:
+        """Whether gear breaks the surface."""
+        return self.highest > 0.0
+
+
+def find_equilibrium(
+    model: GearModel,
+    point: OperatingPoint,
+    start: Equilibrium | None = None,
+    *,
+    near: State | None = None,
+) -> Equilibrium:
+    """Find the root at an operating point: warm from ``start``, from the shape ``near``
+    at this very point, or cold.
+
+    Raises
+    ------
+    NoSteadyState
+        When none is found, or only a collapsed one.
+    """
+    tow = steady_tow(model, point)
+    if near is not None:
+        state, iterations, residual = relax(model, near, tow, tolerance=TOLERANCE, time_step=10.0)
+    elif start is not None:
+        state, iterations, residual = relax(
+            model,
+            shifted_to(model, start.state, start.tow, tow),
+            tow,
+            tolerance=TOLERANCE,
+            time_step=10.0,
+            limit=WARM_LIMIT,
+        )
+    if (near is None and start is None) or residual > TOLERANCE:
+        state, iterations, residual = _cold(model, point, tow)
+    where = _where(point)
+    if residual > TOLERANCE:
+        raise NoSteadyState(
+            f'{where}: no steady state found in {iterations} iterations, {residual:.3g} N left'
+        )
+    seen = observe(model, state, tow)
+    attack = np.array([seen.port_attack, seen.starboard_attack])
+    if outward_normal_lift(state).min() < COLLAPSED_NORMAL or attack.min() < 0.0:
+        angles = ', '.join(f'{np.degrees(a):.1f}' for a in attack)
+        raise NoSteadyState(f'{where}: only a collapsed state was found, attack angles {angles}°')
+    return Equilibrium(
+        point=point,
+        tow=tow,
+        state=state,
+        observables=seen,
+        iterations=iterations,
+        residual=residual,
+        outside_law=bool(attack.max() > LAW_RANGE[1]),
+        highest=highest_point(model, state),
+    )
+
+
+def _cold(model: GearModel, point: OperatingPoint, tow: Tow) -> tuple[State, int, float]:
+    """From a first guess: boards keep their attitude until ropes and net have found a shape."""
+    state = first_guess(model, tow, point.heading)
+    state, _, _ = relax(
+        model, state, tow, tolerance=100.0, time_step=2.0, free=without_attitude(model), limit=120
+    )
+    return relax(model, state, tow, tolerance=TOLERANCE, time_step=1.0)
+
+
+@dataclass(frozen=True)
+class SteadyState:
+    """An equilibrium that was found usable: stable, under water, within the board's law."""
+
+    equilibrium: Equilibrium
+    stability: Stability
+
+    @property
+    def observables(self) -> Observables:
+        """What can be seen of it."""
+        return self.equilibrium.observables
+
+
+def steady_state(
+    model: GearModel,
+    warp_length: float | tuple[float, float],
+    speed: float,
+    *,
+    heading: float = 0.0,
+    start: Equilibrium | None = None,
+    near: State | None = None,
+) -> SteadyState:
+    """The steady state at a warp length and speed, or the reason why there is none.
+
+    Parameters
+    ----------
+    model
+        From `build_model`.
+    warp_length
+        Unstretched length from the block to the board, m; one for both sides or (port,
+        starboard).
+    speed
+        Through the water at the surface, m/s.
+    heading
+        ENU yaw, rad; matters when there is a current.
+    start
+        A known equilibrium nearby, which makes this fast.
+    near
+        A shape close to the one sought, at this very operating point.
+
+    Raises
+    ------
+    NoSteadyState
+        There is none, it is unstable, the gear breaks the surface, or a board works outside
+        the range of its law.
+    """
+    port, starboard = np.broadcast_to(np.asarray(warp_length, float), 2)
+    point = OperatingPoint(float(port), float(starboard), float(speed), float(heading))
+    return require_usable(model, find_equilibrium(model, point, start, near=near))
+
+
+def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
+    """Check an equilibrium for what `steady_state` promises."""
+    where = _where(found.point)
+    if found.surfaced:
+        raise NoSteadyState(f'{where}: the gear breaks the surface by {found.highest:.1f} m')
+    if found.outside_law:
+        attack = np.degrees(max(found.observables.port_attack, found.observables.starboard_attack))
+        raise NoSteadyState(
+            f'{where}: a board works at {attack:.1f}° of attack, outside the '
+            f'range of its law ({np.degrees(LAW_RANGE[1]):.0f}°)'
+        )
+    motion = stability(model, found.state, found.tow)
+    if not motion.stable:
+        raise NoSteadyState(
+            f'{where}: the steady state is unstable, it grows by a factor e in '
+            f'{1 / motion.growth:.0f} s'
+        )
+    return SteadyState(found, motion)
+
+
+def relax(
+    model: GearModel,
+    state: State,
+    tow: Tow,
+    *,
+    tolerance: float,
+    time_step: float,
+    free: np.ndarray | None = None,
+    limit: int = 150,
+) -> tuple[State, int, float]:
+    """Drive the forces to zero.
+
+    Parameters
+    ----------
+    free
+        Mask (dof,) of what may move; all by default.
+    limit
+        Iterations after which the search is given up.
+
+    Returns
+    -------
+    state, iterations, residual
+        The residual is the largest force or moment left.
+    """
+    tau = time_step
+    n = model.nodes
+    hold = None if free is None else sp.diags(np.where(free, 0.0, 1.0))
+    keep = None if free is None else sp.diags(np.where(free, 1.0, 0.0))
+    iteration = 0
+    while True:
+        here = linearised(model, state, tow)
+        force = here.force if free is None else np.where(free, here.force, 0.0)
+        residual = float(np.abs(force).max())
+        if residual < tolerance or iteration == limit or not np.isfinite(residual):
+            return state, iteration, residual
+        matrix = model.pattern.matrix(
+            here.stiffness + here.damping / tau + mass(model, state, tow) / tau**2
+        )
+        if keep is not None:
+            matrix = (keep @ matrix @ keep + hold).tocsc()
+        iteration += 1
+        try:
+            step = splu(matrix).solve(force)
+        except RuntimeError:  # singular: a shorter time step adds mass and drag
+            tau /= 4.0
+            continue
+        body = step[3 * n :].reshape(2, 6)
+        size = max(np.abs(step[: 3 * n]).max(), np.abs(body[:, :3]).max()) / LIMIT_METRES
+        size = max(size, np.abs(body[:, 3:]).max() / LIMIT_RADIANS)
+        tau = max(tau / 1.5, 0.3) if size > 1.0 else min(3.0 * tau, 1e9)
+        state = state.moved(step / max(size, 1.0))
+
+
+def without_attitude(model: GearModel) -> np.ndarray:
+    """Mask (dof,) of everything but the boards' attitudes."""
+    free = np.ones(model.dof, bool)
+    free[3 * model.nodes :].reshape(2, 6)[:, 3:] = False
+    return free
+
+
+def _where(point: OperatingPoint) -> str:
+    lengths = f'{point.port_length:g}'
+    if point.port_length != point.starboard_length:
+        lengths += f'/{point.starboard_length:g}'
+    return f'warp {lengths} m at {point.speed:g} m/s'

@@ -1,0 +1,80 @@
+"""A first guess of the gear's shape, and shifting a known shape to other warp lengths."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.model.assembly import block_forces
+from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.numerics import about_axis
+from trawl_ros.model.state import State, Tow
+
+ATTACK = np.radians(20.0)
+LEAN = np.radians(14.0)
+DEPTH_SHARE, SPREAD_SHARE = 0.22, 0.16
+"""Depth and sideways reach of a board as shares of the warp length, roughly as gears tow."""
+
+
+def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
+    """Straight warps, boards at a usual attitude, the net as it was built behind them."""
+    lengths = tow.lengths
+    half = 0.5 * model.gear.ship.block_spacing_m
+    depth = DEPTH_SHARE * lengths
+    reach = SPREAD_SHARE * lengths
+    boards = np.stack(
+        [-np.sqrt(lengths**2 - depth**2 - reach**2), (half + reach) * OUTWARD, -depth], 1
+    )
+    blocks = np.array([[0.0, half, 0.0], [0.0, -half, 0.0]])
+    nodes = np.array(model.first_guess)
+    layout = model.layout
+    share = np.arange(1, model.warp_segments) / model.warp_segments
+    for side, warp in enumerate(layout.warps):
+        nodes[warp] = blocks[side] + share[:, None] * (boards[side] - blocks[side])
+    bridle = 0.88 * model.gear.bridle.length_m
+    nodes[layout.net] += [boards[:, 0].mean() - bridle, 0.0, boards[:, 2].mean()]
+    tips = (layout.headrope[0], layout.footrope[0], layout.headrope[-1], layout.footrope[-1])
+    for k, (line, tip) in enumerate(zip(layout.bridles, tips, strict=True)):
+        share = np.arange(1, len(line) + 1) / (len(line) + 1)
+        nodes[line] = boards[k // 2] + share[:, None] * (nodes[tip] - boards[k // 2])
+    turn = about_axis(2, heading)
+    port = about_axis(2, ATTACK) @ about_axis(0, LEAN)
+    flip = np.array([1.0, -1.0, 1.0])
+    attitudes = np.stack([port, flip[:, None] * port * flip])
+    return at_velocity(
+        State(
+            nodes=nodes @ turn.T,
+            board_positions=boards @ turn.T,
+            board_rotations=turn @ attitudes,
+            node_velocities=np.zeros_like(nodes),
+            board_velocities=np.zeros((2, 3)),
+            board_rates=np.zeros((2, 3)),
+        ),
+        tow.block_velocities.mean(0),
+    )
+
+
+def at_velocity(state: State, velocity: np.ndarray) -> State:
+    """The state with every part moving at one velocity (3,)."""
+    return replace(
+        state,
+        node_velocities=np.tile(velocity, (len(state.nodes), 1)),
+        board_velocities=np.tile(velocity, (2, 1)),
+        board_rates=np.zeros((2, 3)),
+    )
+
+
+def shifted_to(model: GearModel, state: State, old: Tow, new: Tow) -> State:
+    """A known shape moved along its warps to other lengths.
+
+    Without this a shorter warp is met by slack and the boards fall.
+    """
+    pull = block_forces(model, state, old)
+    toward_gear = pull / np.linalg.norm(pull, axis=1)[:, None]
+    change = toward_gear * (new.lengths - old.lengths)[:, None]
+    offset = change.mean(0)
+    moved = state.shifted(offset)
+    nodes = moved.nodes.copy()
+    share = np.arange(1, model.warp_segments) / model.warp_segments
+    for warp in model.layout.warps:
+        nodes[warp] = state.nodes[warp] + share[:, None] * offset
+    return at_velocity(replace(moved, nodes=nodes), new.block_velocities.mean(0))

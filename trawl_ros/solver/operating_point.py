@@ -1,0 +1,37 @@
+"""What is asked of a steady state: warp lengths, speed through the water, heading."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.state import Tow
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """Warp lengths (m), speed through the surface water (m/s), heading (ENU yaw, rad)."""
+
+    port_length: float
+    starboard_length: float
+    speed: float
+    heading: float = 0.0
+
+
+def block_offsets(model: GearModel, heading: float) -> np.ndarray:
+    """Positions (2, 3) of the towing blocks from midway between them, port first, m."""
+    to_port = np.array([-np.sin(heading), np.cos(heading), 0.0])
+    half = 0.5 * model.gear.ship.block_spacing_m
+    return np.stack([half * to_port, -half * to_port])
+
+
+def steady_tow(model: GearModel, point: OperatingPoint) -> Tow:
+    """What ship and winches impose when nothing changes; the ship is at the origin."""
+    ahead = np.array([np.cos(point.heading), np.sin(point.heading), 0.0])
+    velocity = point.speed * ahead + model.water.current(np.array(0.0))
+    return Tow(
+        blocks=block_offsets(model, point.heading),
+        block_velocities=np.stack([velocity, velocity]),
+        lengths=np.array([point.port_length, point.starboard_length]),
+        length_rates=np.zeros(2),
+    )

@@ -1,0 +1,59 @@
+"""Predictions of what a tow shows, with their derivatives: what identification asks for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.sensitivity import sensitivities
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """``values`` (n_observables,) and ``jacobian`` (n_observables, 15) by `PARAMETERS`;
+    ``state`` is what the next prediction nearby may start from.
+    """
+
+    values: np.ndarray
+    jacobian: np.ndarray
+    state: Equilibrium
+
+
+class Predictor:
+    """The equilibrium model of one gear as a function of coefficients and operating point."""
+
+    def __init__(self, model: GearModel) -> None:
+        self.model = model
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Equilibrium | None = None,
+    ) -> Prediction:
+        """Observables and their derivatives at a steady state.
+
+        Parameters
+        ----------
+        coefficients : (12,) array
+            In the order of `COEFFICIENTS`.
+        port_length, starboard_length
+            Warp lengths, m.
+        speed
+            Through the water, m/s.
+        start
+            The ``state`` of an earlier prediction.
+
+        Raises
+        ------
+        NoSteadyState
+            When the gear has none there with these coefficients.
+        """
+        model = self.model.with_coefficients(coefficients)
+        point = OperatingPoint(port_length, starboard_length, speed)
+        found = find_equilibrium(model, point, start)
+        return Prediction(found.observables.array(), sensitivities(model, found), found)

@@ -1,0 +1,66 @@
+"""Derivatives of every observable at a steady state, by the implicit function theorem.
+
+At a root F(x, p) = 0, so dx/dp = K⁻¹ ∂F/∂p with K = -∂F/∂x; one factorisation serves all
+parameters. The partial derivatives and the observables along dx/dp are taken by the complex
+step, so the result is exact to the accuracy of the linear solution.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from trawl_ros.model.assembly import forces, linearised
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import STEP
+from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.equilibrium import Equilibrium
+
+PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
+"""What observables are differentiated by: per unit coefficient, per m, per m, per m/s."""
+
+
+def _perturbed(model: GearModel, found: Equilibrium, index: int) -> tuple[GearModel, State, Tow]:
+    """Model, state and tow with parameter ``index`` moved by an imaginary step."""
+    state, tow = found.state, found.tow
+    if index < len(COEFFICIENTS):
+        values = model.coefficients.astype(complex)
+        values[index] += 1j * STEP
+        return model.with_coefficients(values), state, tow
+    side = index - len(COEFFICIENTS)
+    if side < 2:
+        lengths = tow.lengths.astype(complex)
+        lengths[side] += 1j * STEP
+        return model, state, replace(tow, lengths=lengths)
+    ahead = np.array([np.cos(found.point.heading), np.sin(found.point.heading), 0.0])
+    extra = 1j * STEP * ahead
+    return (
+        model,
+        replace(
+            state,
+            node_velocities=state.node_velocities + extra,
+            board_velocities=state.board_velocities + extra,
+        ),
+        replace(tow, block_velocities=tow.block_velocities + extra),
+    )
+
+
+def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
+    """Derivatives of the observables by the parameters.
+
+    Returns
+    -------
+    (n_observables, n_parameters) array
+        In the orders of `OBSERVABLES` and `PARAMETERS`.
+    """
+    stiffness = linearised(model, found.state, found.tow).stiffness
+    moved = [_perturbed(model, found, index) for index in range(len(PARAMETERS))]
+    pushes = np.column_stack([forces(*case).imag / STEP for case in moved])
+    shifts = splu(model.pattern.matrix(stiffness)).solve(pushes)
+    result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
+    for index, (changed, state, tow) in enumerate(moved):
+        along = state.moved(1j * STEP * shifts[:, index])
+        result[:, index] = observe(changed, along, tow).array().imag / STEP
+    return result

@@ -1,0 +1,144 @@
+"""Motion in time: the generalised-α method on rotations and translations.
+
+Second order, implicit, with numerical damping of the fastest axial vibrations of the ropes,
+whose stiffness forbids explicit steps. Rotations advance by exponentials of rotation vectors
+(Arnold and Brüls 2007), so a board may turn freely. The iteration matrix is kept as long as
+it serves.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.linalg import SuperLU, splu
+
+from trawl_ros.errors import TrawlError
+from trawl_ros.model.assembly import forces, linearised, mass
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.state import State, Tow
+
+SPECTRAL_RADIUS = 0.4
+"""Share of the fastest vibration that is left after a step; 1 keeps all, 0 none."""
+
+TOLERANCE = 1e-6
+"""Size of the last correction (m or rad) at which a step is done."""
+
+KEEP_RATE = 0.35
+"""Convergence slower than this factor per iteration asks for a new iteration matrix."""
+
+ITERATIONS = 12
+
+LIMIT = 0.2
+"""Largest correction of an iteration (m or rad)."""
+
+
+class StepFailed(TrawlError):
+    """A time step whose equations could not be solved; a shorter one may be."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """State with its accelerations (dof,): the true one, and the method's averaged one."""
+
+    state: State
+    acceleration: np.ndarray
+    averaged: np.ndarray
+
+
+def at_rest(state: State) -> Motion:
+    """A state that does not accelerate, such as an equilibrium."""
+    zero = np.zeros_like(state.velocity)
+    return Motion(state, zero, zero)
+
+
+class Stepper:
+    """Advances one gear; holds the factorised iteration matrix between steps."""
+
+    def __init__(self, model: GearModel) -> None:
+        rho = SPECTRAL_RADIUS
+        self.model = model
+        self._alpha_m = (2 * rho - 1) / (rho + 1)
+        self._alpha_f = rho / (rho + 1)
+        self._gamma = 0.5 + self._alpha_f - self._alpha_m
+        self._beta = 0.25 * (self._gamma + 0.5) ** 2
+        self._factor: SuperLU | None = None
+        self._factor_step = 0.0
+        self.factorisations = 0
+
+    def step(self, motion: Motion, tow: Tow, h: float) -> Motion:
+        """Advance by ``h`` seconds to the boundary ``tow`` at the new time.
+
+        Raises
+        ------
+        StepFailed
+            When the iteration does not converge.
+        """
+        if self._factor_step != h:
+            self._factor = None
+        try:
+            return self._solve(motion, tow, h, KEEP_RATE)
+        except StepFailed:
+            # Ropes that go slack or taut within the step: a matrix for every iteration.
+            self._factor = None
+            return self._solve(motion, tow, h, 0.0)
+
+    def _solve(self, motion: Motion, tow: Tow, h: float, keep_rate: float) -> Motion:
+        model = self.model
+        share = (1 - self._alpha_f) / (1 - self._alpha_m)
+        by_velocity = h * self._gamma * share
+        by_position = h * h * self._beta * share
+        start, velocity = motion.state, motion.state.velocity
+        old, averaged = motion.acceleration, motion.averaged
+        carried = (self._alpha_f * old - self._alpha_m * averaged) / (1 - self._alpha_m)
+        new = old.copy()
+        inertia = None
+        last = np.inf
+        for iteration in range(ITERATIONS):
+            average = carried + share * new
+            moved = h * velocity + h * h * ((0.5 - self._beta) * averaged + self._beta * average)
+            speed = velocity + h * ((1 - self._gamma) * averaged + self._gamma * average)
+            state = start.moved(moved).with_velocity(speed)
+            if inertia is None:
+                # Added mass turns with the ropes; taking it at the predicted place keeps
+                # the order of the method.
+                inertia_data = mass(model, state, tow)
+                inertia = model.pattern.matrix(inertia_data)
+            if self._factor is None:
+                here = linearised(model, state, tow)
+                force = here.force
+                self._factor = splu(
+                    model.pattern.matrix(
+                        here.stiffness
+                        + (by_velocity / by_position) * here.damping
+                        + inertia_data / by_position
+                    )
+                )
+                self._factor_step = h
+                self.factorisations += 1
+            else:
+                force = forces(model, state, tow)
+            correction = self._factor.solve(force - inertia @ new)
+            size = float(np.abs(correction).max())
+            if not np.isfinite(size) or (iteration > 2 and size > 10 * last):
+                raise StepFailed('the time step did not converge')
+            new = new + correction * (min(1.0, LIMIT / max(size, LIMIT)) / by_position)
+            if size < TOLERANCE:
+                return self._finished(start, velocity, averaged, carried, share, new, h)
+            if size > keep_rate * last:
+                self._factor = None
+            last = size
+        raise StepFailed('the time step did not converge')
+
+    def _finished(
+        self,
+        start: State,
+        velocity: np.ndarray,
+        averaged: np.ndarray,
+        carried: np.ndarray,
+        share: float,
+        new: np.ndarray,
+        h: float,
+    ) -> Motion:
+        average = carried + share * new
+        moved = h * velocity + h * h * ((0.5 - self._beta) * averaged + self._beta * average)
+        speed = velocity + h * ((1 - self._gamma) * averaged + self._gamma * average)
+        return Motion(start.moved(moved).with_velocity(speed), new, average)

@@ -1,0 +1,161 @@
+"""Trim: fastening points at which a board works at wanted angles.
+
+With its attitude prescribed, a board's force balance is met by its position; its moment
+balance by its fastening points. Of all changes of the three points that balance the moments,
+Newton takes the smallest, so a trim stays close to the rigging it starts from.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.sparse.linalg import splu
+
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.model.assembly import forces, linearised
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import STEP, about_axis
+from trawl_ros.model.observables import observe
+from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.equilibrium import SteadyState, relax, steady_state, without_attitude
+from trawl_ros.solver.first_guess import first_guess
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+
+ITERATIONS = 30
+LIMIT = 0.3
+"""Largest change of a coordinate in one iteration, m."""
+
+SETTLED = 1e-7
+"""Change of a coordinate at which the points are found, m."""
+
+
+@dataclass(frozen=True)
+class Trim:
+    """Fastening points (3, 3) of warp, upper and lower bridle in the outward frame, and the
+    steady state that the released gear has with them.
+    """
+
+    points: np.ndarray
+    model: GearModel
+    steady: SteadyState
+
+
+def attitudes(yaw: float, pitch: float, roll: float) -> np.ndarray:
+    """Rotations (2, 3, 3) of both boards from angles of the port board, rad: yaw turns the
+    leading edge outward, pitch is nose down, roll tips the outward normal up.
+    """
+    port = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
+    flip = np.array([1.0, -1.0, 1.0])
+    return np.stack([port, flip[:, None] * port * flip])
+
+
+def trim(
+    model: GearModel,
+    *,
+    attack: float,
+    inclination: float,
+    pitch: float = 0.0,
+    warp_length: float,
+    speed: float,
+) -> Trim:
+    """Find fastening points for wanted angles at one operating point.
+
+    Parameters
+    ----------
+    model
+        The gear; its points are where the search starts, its installation angles are kept.
+    attack, inclination
+        Wanted α and δ, rad; the outward normal leans up.
+    pitch
+        Wanted pitch of the boards, nose down, rad.
+    warp_length, speed
+        Where the angles are wanted, m and m/s.
+
+    Raises
+    ------
+    NoSteadyState
+        When no points balance the boards there, or the state they give cannot be used.
+    """
+    point = OperatingPoint(warp_length, warp_length, speed)
+    tow = steady_tow(model, point)
+    state = first_guess(model, tow, point.heading)
+    # δ is the tilt of R_y(pitch) R_x(roll): cos δ = cos pitch cos roll.
+    tilt = np.cos(inclination) / np.cos(pitch)
+    if not -1.0 <= tilt <= 1.0:
+        raise NoSteadyState(
+            f'an inclination of {np.degrees(inclination):.1f}° cannot have a '
+            f'pitch of {np.degrees(pitch):.1f}°, expected a smaller pitch'
+        )
+    roll = float(np.arccos(tilt))
+    found = _Search(model, state, tow)
+
+    def excess(yaw: float) -> float:
+        found.balance(attitudes(yaw, pitch, roll))
+        return observe(found.model, found.state, tow).port_attack - attack
+
+    # Attack differs from yaw by what pitch, roll and the gear's own motion add: a few degrees.
+    yaw = brentq(excess, attack - 0.15, attack + 0.15, xtol=1e-6)
+    found.balance(attitudes(yaw, pitch, roll))
+    # The trimmed shape is the start: released, the boards stay where they were held.
+    trimmed = found.model
+    return Trim(
+        trimmed.board.points, trimmed, steady_state(trimmed, warp_length, speed, near=found.state)
+    )
+
+
+class _Search:
+    """Model and state that are carried from one attitude to the next."""
+
+    def __init__(self, model: GearModel, state: State, tow: Tow) -> None:
+        self.model, self.state, self.tow = model, state, tow
+
+    def balance(self, rotations: np.ndarray) -> None:
+        """Change points and state until all forces and moments vanish at this attitude."""
+        model, tow = self.model, self.tow
+        free = without_attitude(model)
+        state, _, left = relax(
+            model,
+            replace(self.state, board_rotations=rotations),
+            tow,
+            tolerance=50.0,
+            time_step=2.0,
+            free=free,
+        )
+        if left > 50.0:
+            raise NoSteadyState(
+                'with the boards held at the wanted angles the gear finds no '
+                f'shape, {left:.3g} N left'
+            )
+        moving = np.flatnonzero(free)
+        moments = np.arange(3 * model.nodes + 3, 3 * model.nodes + 6)
+        for _ in range(ITERATIONS):
+            here = linearised(model, state, tow)
+            stiffness = model.pattern.matrix(here.stiffness)
+            pushes = _by_points(model, state, tow)
+            solve = splu(stiffness[moving][:, moving].tocsc()).solve
+            shifts = solve(np.column_stack([here.force[moving], pushes[moving]]))
+            rows = stiffness[moments][:, moving]
+            left_moment = here.force[moments] - rows @ shifts[:, 0]
+            by_points = pushes[moments] - rows @ shifts[:, 1:]
+            change = -np.linalg.pinv(by_points) @ left_moment
+            share = min(1.0, LIMIT / np.abs(change).max())
+            step = np.zeros(model.dof)
+            step[moving] = share * (shifts[:, 0] + shifts[:, 1:] @ change)
+            state = state.moved(step)
+            model = model.with_board(points=model.board.points + share * change.reshape(3, 3))
+            if np.abs(change).max() < SETTLED:
+                self.model, self.state = model, state
+                return
+        raise NoSteadyState(
+            'no fastening points were found that balance the boards at the wanted angles'
+        )
+
+
+def _by_points(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+    """Derivative (dof, 9) of the forces by the coordinates of the points of both boards."""
+    columns = []
+    for index in range(9):
+        points = model.board.points.astype(complex)
+        points.flat[index] += 1j * STEP
+        columns.append(forces(model.with_board(points=points), state, tow).imag / STEP)
+    return np.column_stack(columns)
