@@ -113,6 +113,13 @@ def _fading(attack: np.ndarray) -> np.ndarray:
     return 1.0 - share**2 * (3.0 - 2.0 * share)
 
 
+def _folded(attack: np.ndarray) -> np.ndarray:
+    """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
+    dip = attack * (1.0 + attack / ROUNDING)
+    inner = np.where(np.real(attack) > -ROUNDING, dip, -attack - ROUNDING)
+    return np.where(np.real(attack) < 0, inner, attack)
+
+
 def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) -> np.ndarray:
     """The six force and moment coefficients at given angles (eq. 14).
 
@@ -126,21 +133,22 @@ def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) ->
     Returns
     -------
     (..., 6) array
-        C_x^F, C_y^F, C_z^F, C_x^M, C_y^M, C_z^M. Outside 0-40° of attack lift and moments
-        fade, drag stays and never becomes thrust; outside ±40° of slip its part stays.
+        C_x^F, C_y^F, C_z^F, C_x^M, C_y^M, C_z^M. Outside 0-40° of attack lift, moments and
+        the slip's part fade, drag stays and never becomes thrust; outside ±40° of slip its
+        part stays.
     """
     a1, c1, a2, c2, b3, c3, a4, c4, b5, c5, a6, c6 = values
     fade = _fading(attack)
     alpha = _settled(attack, *LAW_RANGE)
     beta = _settled(slip, -SLIP_LIMIT, SLIP_LIMIT)
-    resistance = a1 * alpha + c1
+    resistance = a1 * _settled(_folded(attack), *LAW_RANGE) + c1
     resistance = np.where(np.real(resistance) > 0, resistance, 0.0)
     parts = [
         resistance,
         (a2 * alpha + c2) * fade,
-        b3 * beta + c3,
+        b3 * beta * fade + c3,
         (a4 * alpha + c4) * fade,
-        b5 * beta + c5,
+        b5 * beta * fade + c5,
         (a6 * alpha + c6) * fade,
     ]
     return np.stack(parts, -1)

@@ -54,11 +54,8 @@ class Water:
     def depth(self, pressure: float) -> float:
         """Depth (m) at an absolute pressure (Pa), the inverse of `pressure`."""
         column = (pressure - ATMOSPHERE) / self.gravity
-        linear = self.density
-        if self.density_gradient == 0.0:
-            return column / linear
-        root = np.sqrt(linear**2 + 2.0 * self.density_gradient * column)
-        return float((root - linear) / self.density_gradient)
+        root = np.sqrt(self.density**2 + 2.0 * self.density_gradient * column)
+        return float(2.0 * column / (self.density + root))
 
     def current(self, z: np.ndarray) -> np.ndarray:
         """Velocity of the water at heights ``z``, shape (..., 3), m/s in ``map``."""

@@ -1,0 +1,134 @@
+"""The default gear, and states of it that nothing is special about."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.assembly import points_of
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.line import BarProperties
+from trawl_ros.model.numerics import rotation
+from trawl_ros.model.pattern import build_pattern
+from trawl_ros.model.state import State, Tow
+from trawl_ros.model.water import Water
+from trawl_ros.solver.first_guess import first_guess
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+
+RandomCase = Callable[[GearModel, int], tuple[GearModel, State, Tow]]
+
+
+@pytest.fixture(scope='session')
+def gear() -> GearRecord:
+    return load_gear('kaifuha')
+
+
+@pytest.fixture(scope='session')
+def rich_water() -> Water:
+    """Density that grows, and a current that shears and veers all the way down."""
+    return Water(
+        density=1024.0,
+        density_gradient=0.02,
+        depths=np.array([0.0, 20.0, 60.0, 110.0, 250.0, 400.0]),
+        currents=np.array(
+            [[0.2, 0.1], [0.3, -0.1], [0.1, -0.3], [-0.1, -0.2], [-0.2, 0.1], [0.0, 0.2]]
+        ),
+    )
+
+
+@pytest.fixture(scope='session')
+def model(gear: GearRecord) -> GearModel:
+    """The gear with its netting as coarse as it may be, which is quicker and no less general."""
+    return build_model(
+        gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
+    )
+
+
+@pytest.fixture(scope='session')
+def random_case(rich_water: Water) -> RandomCase:
+    """Build (model, state, tow): everything displaced, turned and moving at random, and a
+    third of the bars each slack, in the rounding between slack and taut, and taut."""
+
+    def build(model: GearModel, seed: int) -> tuple[GearModel, State, Tow]:
+        random = np.random.default_rng(seed)
+        model = replace(
+            model,
+            water=rich_water,
+            board=replace(
+                model.board,
+                installation=(0.05, -0.03, 0.04),
+                added_mass=np.array([500.0, 15_000.0, 800.0]),
+            ),
+        )
+        tow = replace(
+            steady_tow(model, OperatingPoint(400.0, 385.0, 2.1, 0.7)),
+            length_rates=np.array([0.4, -0.7]),
+        )
+        state = first_guess(model, tow, 0.7)
+        state = replace(
+            state,
+            nodes=state.nodes + random.normal(0.0, 2.0, state.nodes.shape),
+            board_positions=state.board_positions + random.normal(0.0, 2.0, (2, 3)),
+            board_rotations=rotation(random.normal(0.0, 0.15, (2, 3))) @ state.board_rotations,
+            node_velocities=state.node_velocities + random.normal(0.0, 0.5, state.nodes.shape),
+            board_velocities=state.board_velocities + random.normal(0.0, 0.5, (2, 3)),
+            board_rates=random.normal(0.0, 0.5, (2, 3)),
+        )
+        ends = points_of(model, state, tow).positions[model.ends]
+        strain = random.choice([-0.05, 3e-5, 0.01], len(model.ends))
+        rest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / (1.0 + strain)
+        return replace(model, rest=rest), state, tow
+
+    return build
+
+
+@pytest.fixture(scope='session')
+def bare_model(gear: GearRecord) -> Callable[..., GearModel]:
+    """Build a gear model of nothing but two warps of one make, cut into ``segments``.
+
+    Their ends are free nodes; the boards float without ropes, area, weight or water.
+    """
+
+    def build(warp: dict[str, float], segments: int, water: Water) -> GearModel:
+        record = gear.model_copy(
+            update={'warp': gear.warp.model_copy(update={**warp, 'segments': segments})}
+        )
+        whole = build_model(record)
+        count, bars = 2 * segments, 2 * segments
+        blocks = count + 6 + np.arange(2)
+        ends = np.array(
+            [
+                [blocks[side] if k == 0 else side * segments + k - 1, side * segments + k]
+                for side in range(2)
+                for k in range(segments)
+            ]
+        )
+        nothing = np.zeros(count)
+        return replace(
+            whole,
+            water=water,
+            board=replace(
+                whole.board,
+                mass=0.0,
+                volume=0.0,
+                area=0.0,
+                rotary_slope=0.0,
+                inertia=np.zeros((3, 3)),
+            ),
+            kite=replace(whole.kite, area=0.0, mass=0.0, volume=0.0),
+            bars=BarProperties(*(values[:1].repeat(bars) for values in vars(whole.bars).values())),
+            ends=ends,
+            rest=np.ones(bars),
+            warp_side=np.arange(2).repeat(segments),
+            lump_mass=nothing,
+            lump_volume=nothing,
+            lump_drag_area=nothing,
+            lump_added=nothing,
+            layout=replace(whole.layout, kite=(0, 1), top_warp_bars=np.array([0, segments])),
+            pattern=build_pattern(count, ends, (0, 1)),
+        )
+
+    return build

@@ -1,0 +1,117 @@
+"""The canvas kite (eq. 29-33), and knots, floats and weights on nodes (eq. 22, 28)."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.model import kite as kite_physics
+from trawl_ros.model.assembly import forces, lump_forces
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.kite import Kite
+from trawl_ros.model.water import Water
+
+KITE = Kite(
+    area=6.75,
+    mass=50.0,
+    volume=0.04,
+    setting=np.radians(5.0),
+    lift=1.6,
+    drag_base=0.1,
+    drag_growth=1.2,
+)
+WATER = Water(density=1025.0)
+
+
+def load(pitch: float, flow: tuple[float, float, float]) -> np.ndarray:
+    """Load of a kite of a given pitch that moves against still water."""
+    rear = np.array([0.0, 0.0, -80.0])
+    front = rear + 3.0 * np.array([np.cos(pitch), 0.0, np.sin(pitch)])
+    velocity = -np.array(flow)
+    return kite_physics.load(KITE, front, rear, velocity, velocity, WATER)
+
+
+@pytest.mark.parametrize('pitch', [-0.2, 0.0, 0.3])
+def test_lift_acts_against_gravity_and_drag_along_the_flow(pitch: float) -> None:
+    found = load(pitch, (-2.0, 0.0, 0.0))
+    attack = pitch + np.radians(5.0)
+    pressure = 0.5 * 1025.0 * 6.75 * 4.0
+    weight = (50.0 - 1025.0 * 0.04) * 9.80665
+    np.testing.assert_allclose(
+        found,
+        [
+            -pressure * (0.1 + 1.2 * np.sin(attack) ** 2),
+            0.0,
+            pressure * 0.8 * np.sin(2 * attack) - weight,
+        ],
+        rtol=1e-12,
+        atol=1e-9,
+    )
+
+
+def test_rising_water_raises_the_attack_angle_as_pitch_does() -> None:
+    front, rear = np.array([3.0, 0.0, 0.0]), np.zeros(3)
+    rising = kite_physics.attack_angle(KITE, front, rear, np.array([-2.0, 0.0, 2.0 * np.tan(0.1)]))
+    front = 3.0 * np.array([np.cos(0.1), 0.0, np.sin(0.1)])
+    pitched = kite_physics.attack_angle(KITE, front, rear, np.array([-2.0, 0.0, 0.0]))
+    assert rising == pytest.approx(pitched) == pytest.approx(0.1 + np.radians(5.0))
+
+
+def test_the_kite_lifts_whatever_the_course() -> None:
+    turned = kite_physics.load(
+        KITE,
+        np.array([0.0, 3.0, -80.0]),
+        np.array([0.0, 0.0, -80.0]),
+        np.array([0.0, 2.0, 0.0]),
+        np.array([0.0, 2.0, 0.0]),
+        WATER,
+    )
+    np.testing.assert_allclose(turned[[1, 0, 2]], load(0.0, (-2.0, 0.0, 0.0)), atol=1e-9)
+
+
+def test_the_two_carrying_nodes_share_the_kite_and_lie_on_the_headrope(
+    model: GearModel, random_case
+) -> None:
+    model, state, tow = random_case(model, 11)
+    bare = replace(model, kite=replace(model.kite, area=0.0, mass=0.0, volume=0.0))
+    change = forces(model, state, tow) - forces(bare, state, tow)
+    front, rear = model.layout.kite
+    x, v = state.nodes, state.node_velocities
+    whole = kite_physics.load(model.kite, x[front], x[rear], v[front], v[rear], model.water)
+    nodes = change[: 3 * model.nodes].reshape(-1, 3)
+    # What is left of a difference of forces a thousand times larger.
+    np.testing.assert_allclose(nodes[[front, rear]], [whole / 2] * 2, rtol=1e-6, atol=1e-6)
+    nodes[[front, rear]] = 0.0
+    assert np.abs(change[: 3 * model.nodes]).max() == 0.0
+    head = model.layout.headrope
+    assert front == head[len(head) // 2]
+
+
+def test_clumps_pull_down_and_floats_up_by_what_the_gear_file_says(model: GearModel) -> None:
+    bare = model.gear.model_copy(
+        update={
+            'clump': model.gear.clump.model_copy(update={'weight_in_water_n': 0.0}),
+            'floats': model.gear.floats.model_copy(update={'buoyancy_n': 0.0}),
+        }
+    )
+    without = build_model(bare)
+    buoyant = (model.lump_mass - without.lump_mass) - 1025.0 * (
+        model.lump_volume - without.lump_volume
+    )
+    weight = buoyant * model.water.gravity
+    foot, head = model.layout.footrope, model.layout.headrope
+    np.testing.assert_allclose(weight[[foot[0], foot[-1]]], model.gear.clump.weight_in_water_n)
+    np.testing.assert_allclose(weight[[head[0], head[-1]]], -model.gear.floats.buoyancy_n)
+    assert np.count_nonzero(np.abs(weight) > 1e-9) == 4
+
+
+def test_a_lump_is_dragged_by_the_flow_and_weighed(model: GearModel, random_case) -> None:
+    model, state, _ = random_case(model, 12)
+    found = lump_forces(model, state)
+    for k in (int(model.layout.footrope[0]), int(model.layout.net[40])):
+        z = state.nodes[k, 2]
+        density = model.water.density_at(z)
+        flow = model.water.current(z) - state.node_velocities[k]
+        expected = 0.5 * density * model.lump_drag_area[k] * np.linalg.norm(flow) * flow
+        expected[2] -= 9.80665 * (model.lump_mass[k] - density * model.lump_volume[k])
+        np.testing.assert_allclose(found[k], expected, rtol=1e-9)
