@@ -171,7 +171,7 @@ def build_net(net: NettingRecord) -> NetMesh:
         footrope=rim_bottom,
         edge_rest=rows[0],
         wing_ends=_wing_ends(index, n, wing_rows),
-        kite=(index[0, 0], index[2, 0]),
+        kite=(index[0, 0], index[2 * wing_rows, 0]),
         twine_area=sum(bar.area * bar.rest for bar in bars),
         rows=len(rows),
     )

@@ -5,11 +5,10 @@ grows while steps stay small; at τ = ∞ it is Newton's. Real mass and drag let
 a state it would also reach at sea, rather than to any root near the start.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.model.assembly import linearised, mass
@@ -22,6 +21,7 @@ from trawl_ros.model.observables import (
     outward_normal_lift,
 )
 from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.factor import factorised
 from trawl_ros.solver.first_guess import first_guess, shifted_to
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.stability import Stability, stability
@@ -115,12 +115,27 @@ def find_equilibrium(
 
 
 def _cold(model: GearModel, point: OperatingPoint, tow: Tow) -> tuple[State, int, float]:
-    """From a first guess: boards keep their attitude until ropes and net have found a shape."""
-    state = first_guess(model, tow, point.heading)
+    """From a first guess: boards keep their attitude until ropes and net have found a shape.
+
+    Unequal warps are reached from equal ones: the boards' first attitudes are equal too.
+    """
+    even = replace(tow, lengths=np.full(2, tow.lengths.mean()))
+    state = first_guess(model, even, point.heading)
     state, _, _ = relax(
-        model, state, tow, tolerance=100.0, time_step=2.0, free=without_attitude(model), limit=120
+        model,
+        state,
+        even,
+        tolerance=100.0,
+        time_step=2.0,
+        free=without_attitude(model),
+        limit=120,
     )
-    return relax(model, state, tow, tolerance=TOLERANCE, time_step=1.0)
+    state, iterations, residual = relax(model, state, even, tolerance=TOLERANCE, time_step=1.0)
+    if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:
+        return state, iterations, residual
+    return relax(
+        model, shifted_to(model, state, even, tow), tow, tolerance=TOLERANCE, time_step=2.0
+    )
 
 
 @dataclass(frozen=True)
@@ -236,7 +251,7 @@ def relax(
             matrix = (keep @ matrix @ keep + hold).tocsc()
         iteration += 1
         try:
-            step = splu(matrix).solve(force)
+            step = factorised(matrix).solve(force)
         except RuntimeError:  # singular: a shorter time step adds mass and drag
             tau /= 4.0
             continue

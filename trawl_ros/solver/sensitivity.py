@@ -8,7 +8,6 @@ step, so the result is exact to the accuracy of the linear solution.
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse.linalg import splu
 
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.board import COEFFICIENTS
@@ -17,6 +16,7 @@ from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import OBSERVABLES, observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.factor import solve_refined
 
 PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
 """What observables are differentiated by: per unit coefficient, per m, per m, per m/s."""
@@ -58,7 +58,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
     stiffness = linearised(model, found.state, found.tow).stiffness
     moved = [_perturbed(model, found, index) for index in range(len(PARAMETERS))]
     pushes = np.column_stack([forces(*case).imag / STEP for case in moved])
-    shifts = splu(model.pattern.matrix(stiffness)).solve(pushes)
+    shifts = solve_refined(model.pattern.matrix(stiffness), pushes)
     result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
     for index, (changed, state, tow) in enumerate(moved):
         along = state.moved(1j * STEP * shifts[:, index])

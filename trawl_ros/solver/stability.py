@@ -4,11 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
 from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.factor import factorised
 
 SHIFTS = (2.0 + 0.0j, 0.02 + 0.0j, 0.3 + 1.0j, 1.0 + 3.0j, 1.0 + 8.0j, 0.5 + 15.0j)
 """Points (1/s) around which eigenvalues are sought: a board that falls over in a second, slow
@@ -54,7 +55,7 @@ def stability(model: GearModel, state: State, tow: Tow) -> Stability:
     n = model.dof
     found = []
     for shift in SHIFTS:
-        solve = splu(
+        solve = factorised(
             matrix(shift**2 * inertia + shift * here.damping + here.stiffness.astype(complex))
         ).solve
 

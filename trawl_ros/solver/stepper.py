@@ -9,12 +9,13 @@ it serves.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.factor import factorised
 
 SPECTRAL_RADIUS = 0.4
 """Share of the fastest vibration that is left after a step; 1 keeps all, 0 none."""
@@ -105,7 +106,7 @@ class Stepper:
             if self._factor is None:
                 here = linearised(model, state, tow)
                 force = here.force
-                self._factor = splu(
+                self._factor = factorised(
                     model.pattern.matrix(
                         here.stiffness
                         + (by_velocity / by_position) * here.damping
