@@ -58,7 +58,7 @@ class WindowOptions:
         A window is decided without a channel that lags the winch by more than this (s).
     """
 
-    settle_s: float = 120.0
+    settle_s: float = 300.0
     window_s: float = 60.0
     block_s: float = 10.0
     max_windows_per_state: int = 2

@@ -30,7 +30,7 @@ def rest_lengths(model: GearModel, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
 
 def fastening(model: GearModel) -> np.ndarray:
     """Fastening points (2, 3, 3) of both boards in their door frames."""
-    points = model.board.fastening_points()
+    points = model.board.fastening_points
     return np.stack([points, points * np.array([1.0, -1.0, 1.0])])
 
 
@@ -57,9 +57,11 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     )
 
 
-def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
-    """How all bars lie and move."""
-    i, j = model.ends.T
+def motion_of(
+    model: GearModel, points: Points, tow: Tow, chosen: np.ndarray | slice = slice(None)
+) -> BarMotion:
+    """How all bars, or the ``chosen`` ones, lie and move."""
+    i, j = model.ends[chosen].T
     rest, rate = rest_lengths(model, tow)
     x, v = points.positions, points.velocities
     return BarMotion(
@@ -67,8 +69,8 @@ def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
         stretching=v[j] - v[i],
         velocity=0.5 * (v[i] + v[j]),
         height=0.5 * (x[i, 2] + x[j, 2]),
-        rest=rest,
-        rest_rate=rate,
+        rest=rest[chosen],
+        rest_rate=rate[chosen],
     )
 
 
@@ -103,12 +105,15 @@ def kite_load(model: GearModel, state: State) -> np.ndarray:
     return kite_physics.load(model.kite, x[front], x[rear], v[front], v[rear], model.water)
 
 
-def bar_end_forces(model: GearModel, points: Points, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
+def bar_end_forces(
+    model: GearModel, points: Points, tow: Tow, chosen: np.ndarray | slice = slice(None)
+) -> tuple[np.ndarray, np.ndarray]:
     """Forces (m, 3) that bars put on the points at their two ends: pull and half the load."""
-    motion = motion_of(model, points, tow)
-    force, along = line.tension(model.bars, motion)
-    load = line.drag(model.bars, motion, along, model.water)
-    load = load + line.weight(model.bars, motion, model.water)[:, None] * np.array([0, 0, 1.0])
+    motion = motion_of(model, points, tow, chosen)
+    bars = model.bars.chosen(chosen)
+    force, along = line.tension(bars, motion)
+    load = line.drag(bars, motion, along, model.water)
+    load = load + line.weight(bars, motion, model.water)[:, None] * np.array([0, 0, 1.0])
     pull = force[:, None] * along
     return pull + 0.5 * load, -pull + 0.5 * load
 
@@ -135,8 +140,8 @@ def block_forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     With the half segment of load that a lumped line hangs on its fixed end, so that the
     tension at the block does not depend on how finely the warp is cut.
     """
-    at_start, _ = bar_end_forces(model, points_of(model, state, tow), tow)
-    return at_start[model.layout.top_warp_bars]
+    top = model.layout.top_warp_bars
+    return bar_end_forces(model, points_of(model, state, tow), tow, top)[0]
 
 
 def bar_tensions(model: GearModel, state: State, tow: Tow) -> np.ndarray:

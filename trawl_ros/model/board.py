@@ -6,6 +6,7 @@ z up); the starboard board is its mirror image, reached by the sign ``outward`` 
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -73,6 +74,7 @@ class Board:
     rotary_slope: float
     added_mass: np.ndarray
 
+    @cached_property
     def fastening_points(self) -> np.ndarray:
         """Fastening points (3, 3) in the outward board frame, installation angles applied."""
         yaw, pitch, roll = self.installation
@@ -181,7 +183,7 @@ def flow_at(
     ``arctan2``, which equals eq. 1 and 2 within ±90° and does not fold beyond.
     """
     mirror = np.stack([np.ones_like(outward), outward, np.ones_like(outward)], -1)
-    middle = mirror * board.fastening_points().mean(0)
+    middle = mirror * board.fastening_points.mean(0)
     arm = np.einsum('...ij,...j->...i', rotation, middle)
     water_velocity = water.current(position[..., 2])
     relative = water_velocity - velocity - np.cross(rate, arm)

@@ -5,7 +5,7 @@ wetted area and volume are their sums. All properties are per metre of unstretch
 so that a warp may change its length.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -38,6 +38,12 @@ class BarProperties:
     friction: np.ndarray
     added_normal: np.ndarray
     added_tangential: np.ndarray
+
+    def chosen(self, bars: np.ndarray | slice) -> 'BarProperties':
+        """The properties of some of the bars."""
+        if isinstance(bars, slice) and bars == slice(None):
+            return self
+        return BarProperties(*(getattr(self, field.name)[bars] for field in fields(self)))
 
 
 @dataclass(frozen=True)

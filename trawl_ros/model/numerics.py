@@ -7,6 +7,7 @@ every operation to be analytic, which numpy's ``abs``, ``norm`` and ``arctan2`` 
 from typing import cast
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 STEP = 1e-30
 """Size of the imaginary step; no difference is taken, so it may be this small."""
@@ -62,6 +63,11 @@ def rotation(vector: np.ndarray) -> np.ndarray:
     cosine = np.where(small, 0.5 - square / 24, (1 - np.cos(safe)) / safe**2)
     s = skew(vector)
     return np.eye(3) + sine[..., None, None] * s + cosine[..., None, None] * (s @ s)
+
+
+def rotation_vector(matrix: np.ndarray) -> np.ndarray:
+    """Rotation vector (..., 3) of a rotation matrix, by way of scipy."""
+    return Rotation.from_matrix(matrix).as_rotvec()
 
 
 def about_axis(axis: int, radians: float) -> np.ndarray:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.model.numerics import rotation
+from trawl_ros.model.numerics import rotation, rotation_vector
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,36 @@ class State:
             board_velocities=self.board_velocities,
             board_rates=self.board_rates,
         )
+
+
+def halfway(first: State, last: State, h: float) -> State:
+    """The state half of ``h`` seconds after ``first`` on the cubic through both ends.
+
+    Its error falls with the fourth power of ``h``, faster than the time stepper's own.
+    """
+
+    def place(move: np.ndarray, v0: np.ndarray, v1: np.ndarray) -> np.ndarray:
+        return 0.5 * move + h / 8 * (v0 - v1)
+
+    def speed(move: np.ndarray, v0: np.ndarray, v1: np.ndarray) -> np.ndarray:
+        return 1.5 / h * move - 0.25 * (v0 + v1)
+
+    nodes = last.nodes - first.nodes, first.node_velocities, last.node_velocities
+    boards = (
+        last.board_positions - first.board_positions,
+        first.board_velocities,
+        last.board_velocities,
+    )
+    turn = last.board_rotations @ np.swapaxes(first.board_rotations, 1, 2)
+    turns = rotation_vector(turn), first.board_rates, last.board_rates
+    return State(
+        nodes=first.nodes + place(*nodes),
+        board_positions=first.board_positions + place(*boards),
+        board_rotations=rotation(place(*turns)) @ first.board_rotations,
+        node_velocities=speed(*nodes),
+        board_velocities=speed(*boards),
+        board_rates=speed(*turns),
+    )
 
 
 def mirrored(state: State, permutation: np.ndarray) -> State:

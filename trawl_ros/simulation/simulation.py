@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.state import Tow
+from trawl_ros.model.state import Tow, halfway
 from trawl_ros.simulation.reading import read_picture, read_truth
 from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.simulation.truth import GearPicture, Truth
@@ -16,6 +16,8 @@ from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
 
 NANOSECONDS = 1_000_000_000
 HALVINGS = 6
+
+"""How often a time step that fails is halved before the tow is given up."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +68,9 @@ class Simulation:
         First heading, ENU yaw, rad.
     stamp
         Time of the start, ns.
-    time_step
-        Step of the solver, s. Truth may be read at any multiple of it.
+    period
+        Time between two instants, s. The solver takes steps of twice the period; the instant
+        between lies on the cubic through both ends.
     """
 
     def __init__(
@@ -77,7 +80,7 @@ class Simulation:
         *,
         heading: float = 0.0,
         stamp: int = 0,
-        time_step: float = 0.1,
+        period: float = 0.1,
     ) -> None:
         if command.turn_rate:
             raise ScenarioError(
@@ -87,7 +90,8 @@ class Simulation:
         self.model = model
         self.command = command
         self._start = (command, heading, stamp)
-        self._time_step = round(time_step * NANOSECONDS)
+        self._period = round(period * NANOSECONDS)
+        self._reached: Instant | None = None
         self._stepper = Stepper(model)
         self.now = self._first(command, heading, stamp)
 
@@ -109,22 +113,49 @@ class Simulation:
         self.command = command
         # A new one, for what the old one has kept would change the last digits.
         self._stepper = Stepper(self.model)
+        self._reached = None
         self.now = self._first(command, heading, stamp)
 
     def advance(self) -> Instant:
-        """One time step towards the present command."""
-        self.now = self._advanced(self.now, self._time_step, HALVINGS)
+        """One period on. A command takes effect with the next step of the solver.
+
+        Raises
+        ------
+        StepFailed
+            When the motion cannot be computed even with short steps.
+        """
+        if self._reached is None:
+            start = self.now
+            self._reached = self._advanced(start, 2 * self._period, HALVINGS)
+            self.now = self._between(start, self._reached)
+        else:
+            self.now, self._reached = self._reached, None
         return self.now
 
-    def _advanced(self, now: Instant, span: int, halvings: int) -> Instant:
-        dt = span / NANOSECONDS
+    def _between(self, start: Instant, end: Instant) -> Instant:
+        span = self._period / NANOSECONDS
+        ship, winches = self._boundary(start, span)
+        return Instant(
+            start.stamp + self._period,
+            ship,
+            winches,
+            at_rest(halfway(start.motion.state, end.motion.state, 2 * span)),
+        )
+
+    def _boundary(self, now: Instant, dt: float) -> tuple[Ship, tuple[Winch, Winch]]:
+        """Ship and winches ``dt`` seconds on, under the present command."""
         gear, wanted = self.model.gear, self.command
         surface = self.model.water.current(np.array(0.0))
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
-        winches = (
-            now.winches[0].advanced(gear.winch, wanted.port_length, dt),
-            now.winches[1].advanced(gear.winch, wanted.starboard_length, dt),
+        port, starboard = now.winches
+        return ship, (
+            port.advanced(gear.winch, wanted.port_length, dt),
+            starboard.advanced(gear.winch, wanted.starboard_length, dt),
         )
+
+    def _advanced(self, now: Instant, span: int, halvings: int) -> Instant:
+        dt = span / NANOSECONDS
+        ship, winches = self._boundary(now, dt)
         try:
             motion = self._stepper.step(now.motion, tow_of(self.model, ship, winches), dt)
         except StepFailed:

@@ -104,14 +104,15 @@ def trim(
 
 
 class _Search:
-    """Model and state that are carried from one attitude to the next."""
+    """Balances boards at one attitude after another, always from the rigging given first:
+    the smallest change depends on where it starts, not on the attitudes tried before."""
 
     def __init__(self, model: GearModel, state: State, tow: Tow) -> None:
-        self.model, self.state, self.tow = model, state, tow
+        self.origin, self.model, self.state, self.tow = model, model, state, tow
 
     def balance(self, rotations: np.ndarray) -> None:
         """Change points and state until all forces and moments vanish at this attitude."""
-        model, tow = self.model, self.tow
+        model, tow = self.origin, self.tow
         free = without_attitude(model)
         state, _, left = relax(
             model,
