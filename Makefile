@@ -18,6 +18,9 @@ BIN := $(VENV)/bin
 # Nodes of a demo or test talk to nobody outside this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE := LOCALHOST
 
+# The package asks for this itself, but tests import numpy before it.
+export OPENBLAS_NUM_THREADS := 1
+
 # A shell that has sourced a ROS 2 installation would mix its libraries with those in .venv.
 ifdef ROS_DISTRO
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
