@@ -175,7 +175,18 @@ PICTURE = GearPicture(
 def test_markers_replace_those_of_the_picture_before():
     names = [[(m.ns, m.id) for m in gear_markers(PICTURE)[1].markers] for _ in range(2)]
     assert names[0] == names[1]
-    assert len(set(names[0])) == 5
+    assert len(set(names[0])) == len(names[0]) == 4
+
+
+def test_lines_of_one_name_are_one_marker_with_a_colour_per_line():
+    net = gear_markers(PICTURE)[1].markers[1]
+    assert net.type == ros.visualization_msgs__msg__Marker.LINE_LIST
+    segments = sum(len(line.points) - 1 for line in PICTURE.lines if line.name == 'net')
+    assert len(net.points) == len(net.colors) == 2 * segments
+    first, second = (line for line in PICTURE.lines if line.name == 'net')
+    assert net.colors[0] == tension_colour(first.tension)
+    assert net.colors[-1] == tension_colour(second.tension)
+    assert (net.points[0].x, net.points[-1].x) == (first.points[0, 0], second.points[-1, 0])
 
 
 def test_markers_survive_the_way_through_bytes():

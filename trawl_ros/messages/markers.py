@@ -4,7 +4,6 @@ Namespace and id of a marker stay the same from picture to picture, so that view
 the old one instead of piling them up.
 """
 
-from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -30,15 +29,19 @@ _STEEL = ros.std_msgs__msg__ColorRGBA(0.45, 0.45, 0.50, 1.0)
 
 
 def gear_markers(picture: GearPicture) -> TopicMessage:
-    """Draw the gear in ``map``: a line strip per rope or row of netting, a box per door.
+    """Draw the gear in ``map``: a line per rope, all netting in one marker, a box per door.
 
-    ``picture.door_size`` is (length along the door's x, height along its z), m.
+    Lines that share a name become one marker, since a viewer takes two thousand points in its
+    stride but not a thousand markers. ``picture.door_size`` is (length along the door's x,
+    height along its z), m.
     """
-    seen: Counter[str] = Counter()
-    markers = []
+    named: dict[str, list[Polyline]] = {}
     for line in picture.lines:
-        markers.append(_line(picture.stamp, line, seen[line.name]))
-        seen[line.name] += 1
+        named.setdefault(line.name, []).append(line)
+    markers = [
+        _line(picture.stamp, lines[0]) if len(lines) == 1 else _lines(picture.stamp, name, lines)
+        for name, lines in named.items()
+    ]
     for side, door in zip(SIDES, picture.doors, strict=True):
         markers.append(_door(picture.stamp, side, door, picture.door_size))
     return 'truth/gear', ros.visualization_msgs__msg__MarkerArray(markers)
@@ -46,23 +49,49 @@ def gear_markers(picture: GearPicture) -> TopicMessage:
 
 def tension_colour(tension: float) -> ros.std_msgs__msg__ColorRGBA:
     """Colour a tension (N) from blue (slack) over green and yellow to red (`FULL_SCALE`)."""
-    place = np.clip(tension / FULL_SCALE, 0.0, 1.0) * (len(_RAMP) - 1)
-    red, green, blue = (
-        float(np.interp(place, np.arange(len(_RAMP)), channel)) for channel in _RAMP.T
-    )
-    return ros.std_msgs__msg__ColorRGBA(red, green, blue, 1.0)
+    return _colours(np.array([tension]))[0]
 
 
-def _line(stamp: int, line: Polyline, number: int) -> Any:
+def _colours(tensions: np.ndarray) -> list[ros.std_msgs__msg__ColorRGBA]:
+    places = np.clip(tensions / FULL_SCALE, 0.0, 1.0) * (len(_RAMP) - 1)
+    channels = [np.interp(places, np.arange(len(_RAMP)), channel).tolist() for channel in _RAMP.T]
+    return [
+        ros.std_msgs__msg__ColorRGBA(red, green, blue, 1.0)
+        for red, green, blue in zip(*channels, strict=True)
+    ]
+
+
+def _points(points: np.ndarray) -> list[ros.geometry_msgs__msg__Point]:
+    return [ros.geometry_msgs__msg__Point(*point) for point in points.tolist()]
+
+
+def _line(stamp: int, line: Polyline) -> Any:
     return _marker(
         stamp,
         line.name,
-        number,
         ros.visualization_msgs__msg__Marker.LINE_STRIP,
         scale=(LINE_WIDTH, 0.0, 0.0),
         colour=tension_colour(line.tension),
-        points=[ros.geometry_msgs__msg__Point(*map(float, point)) for point in line.points],
+        points=_points(line.points),
     )
+
+
+def _lines(stamp: int, name: str, lines: Sequence[Polyline]) -> Any:
+    """Several lines as pairs of points, each pair with a colour at either end."""
+    pairs = [np.repeat(line.points, 2, axis=0)[1:-1] for line in lines]
+    colours = _colours(np.array([line.tension for line in lines]))
+    marker = _marker(
+        stamp,
+        name,
+        ros.visualization_msgs__msg__Marker.LINE_LIST,
+        scale=(LINE_WIDTH, 0.0, 0.0),
+        colour=_STEEL,
+        points=_points(np.concatenate(pairs)),
+    )
+    marker.colors = [
+        colour for pair, colour in zip(pairs, colours, strict=True) for _ in range(len(pair))
+    ]
+    return marker
 
 
 def _door(stamp: int, side: str, door: DoorTruth, size: tuple[float, float]) -> Any:
@@ -70,7 +99,6 @@ def _door(stamp: int, side: str, door: DoorTruth, size: tuple[float, float]) -> 
     return _marker(
         stamp,
         DOOR_FRAMES[side],
-        0,
         ros.visualization_msgs__msg__Marker.CUBE,
         scale=(length, THICKNESS * length, height),
         colour=_STEEL,
@@ -82,7 +110,6 @@ def _door(stamp: int, side: str, door: DoorTruth, size: tuple[float, float]) -> 
 def _marker(
     stamp: int,
     namespace: str,
-    number: int,
     kind: int,
     *,
     scale: tuple[float, float, float],
@@ -95,7 +122,7 @@ def _marker(
     return ros.visualization_msgs__msg__Marker(
         header=header(stamp, MAP),
         ns=namespace,
-        id=number,
+        id=0,
         type=kind,
         action=ros.visualization_msgs__msg__Marker.ADD,
         pose=ros.geometry_msgs__msg__Pose(
