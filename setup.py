@@ -83,7 +83,7 @@ setup(
     install_requires=[
         'click>=8.1,<9',
         'matplotlib>=3.6,<4',
-        'mcap>=1.2,<2',
+        'mcap>=1.6,<2',
         'numpy>=1.26,<3',
         'pydantic>=2.7,<3',
         'PyYAML>=6,<7',

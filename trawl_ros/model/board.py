@@ -25,6 +25,10 @@ LAW_END = (np.radians(-40.0), np.radians(90.0))
 SLIP_LIMIT = np.radians(40.0)
 """Slip angle (rad) beyond which its part of eq. 14 stays constant."""
 
+LEAST_ACROSS = np.cos(SLIP_LIMIT) ** 2
+"""Part of the squared flow that lies in the board's x-y plane below which, the flow then running
+along the span, the law's forces and moments fade with that part."""
+
 ROUNDING = np.radians(4.0)
 """Width (rad) over which an angle comes to rest outside its range."""
 
@@ -122,6 +126,12 @@ def _folded(attack: np.ndarray) -> np.ndarray:
     return np.where(np.real(attack) < 0, inner, attack)
 
 
+def _across(flow: np.ndarray) -> np.ndarray:
+    """1 unless the flow runs along the span, where α means nothing; there smoothly to 0."""
+    part = dot(flow[..., :2], flow[..., :2]) / (dot(flow, flow) + 1e-18) / LEAST_ACROSS
+    return np.where(np.real(part) < 1.0, part * (2.0 - part), 1.0)
+
+
 def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) -> np.ndarray:
     """The six force and moment coefficients at given angles (eq. 14).
 
@@ -200,6 +210,7 @@ def flow_at(
 def hydrodynamics(board: Board, values: np.ndarray, flow: BoardFlow) -> tuple:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
     coefficients = coefficients_at(values, flow.attack, board.slip_sign * flow.slip)
+    coefficients = coefficients * _across(flow.flow)[..., None]
     pressure = 0.5 * flow.density * board.area * dot(flow.flow, flow.flow)
     if board.flow_axes:
         plane = length(flow.flow[..., :2], 1e-9)

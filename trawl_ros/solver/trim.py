@@ -105,7 +105,8 @@ def trim(
 
 class _Search:
     """Balances boards at one attitude after another, always from the rigging given first:
-    the smallest change depends on where it starts, not on the attitudes tried before."""
+    the smallest change depends on where it starts, not on the attitudes tried before.
+    """
 
     def __init__(self, model: GearModel, state: State, tow: Tow) -> None:
         self.origin, self.model, self.state, self.tow = model, model, state, tow
