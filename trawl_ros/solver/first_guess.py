@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from trawl_ros.model.assembly import block_forces
+from trawl_ros.model.assembly import block_forces, forces, linearised
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.numerics import about_axis
+from trawl_ros.model.numerics import STEP, about_axis
 from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.factor import factorised
 
 ATTACK = np.radians(20.0)
 LEAN = np.radians(14.0)
@@ -64,10 +65,16 @@ def at_velocity(state: State, velocity: np.ndarray) -> State:
 
 
 def shifted_to(model: GearModel, state: State, old: Tow, new: Tow) -> State:
-    """A known shape moved along its warps to other lengths.
+    """A steady shape moved along its warps to other lengths.
 
-    Without this a shorter warp is met by slack and the boards fall.
+    Without this a shorter warp is met by slack and the boards fall. Where one warp changes by
+    more than the other the shape changes too, at first along its tangent.
     """
+    change = new.lengths - old.lengths
+    uneven = change - change.mean()
+    if uneven.any():
+        state = state.moved(_tangent(model, state, old, uneven))
+        old = replace(old, lengths=old.lengths + uneven)
     pull = block_forces(model, state, old)
     toward_gear = pull / np.linalg.norm(pull, axis=1)[:, None]
     change = toward_gear * (new.lengths - old.lengths)[:, None]
@@ -78,3 +85,11 @@ def shifted_to(model: GearModel, state: State, old: Tow, new: Tow) -> State:
     for warp in model.layout.warps:
         nodes[warp] = state.nodes[warp] + share[:, None] * offset
     return at_velocity(replace(moved, nodes=nodes), new.block_velocities.mean(0))
+
+
+def _tangent(model: GearModel, state: State, tow: Tow, change: np.ndarray) -> np.ndarray:
+    """Displacement (dof,) of a steady state, to first order, for a change of both lengths."""
+    longer = replace(tow, lengths=tow.lengths + 1j * STEP * change)
+    push = forces(model, state, longer).imag / STEP
+    stiffness = linearised(model, state, tow).stiffness
+    return factorised(model.pattern.matrix(stiffness)).solve(push)
