@@ -200,7 +200,7 @@ def test_installation_angles_turn_the_board_against_its_rigging(
     turned = replace(board, installation=installation)
     # Turning the board on by the angle puts the points back where the rigging has them.
     np.testing.assert_allclose(
-        turned.fastening_points() @ about_axis(axis, 0.05).T, board.points, atol=1e-12
+        turned.fastening_points @ about_axis(axis, 0.05).T, board.points, atol=1e-12
     )
 
 

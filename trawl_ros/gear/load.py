@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from trawl_ros.errors import GearError
+from trawl_ros.errors import GearError, TrawlError
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.share import share_path
 from trawl_ros.validation import load_yaml, validated
@@ -22,5 +22,10 @@ def load_gear(path: str | Path) -> GearRecord:
         Naming file, key, what was found and what was expected.
     """
     if not str(path).endswith(('.yaml', '.yml')) and not Path(path).exists():
-        path = share_path('config', 'gear', f'{path}.yaml')
+        try:
+            path = share_path('config', 'gear', f'{path}.yaml')
+        except TrawlError as reason:
+            raise GearError(
+                f'{path}: neither a file nor a gear of the package; {reason}'
+            ) from reason
     return validated(GearRecord, load_yaml(path, GearError), path, GearError)

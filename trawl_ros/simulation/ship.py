@@ -57,10 +57,11 @@ class Winch:
         """After ``dt`` seconds of paying out or hauling towards a wanted length."""
         left = length - self.length
         most = limits.max_acceleration_m_s2
-        # The speed from which the drum still stops in time.
-        wanted = np.sign(left) * min(limits.max_speed_m_s, np.sqrt(2 * most * abs(left)))
-        speed = _approach(self.speed, float(wanted), most * dt)
-        moved = 0.5 * (self.speed + speed) * dt
-        if abs(left) <= abs(moved) and abs(self.speed) <= most * dt:
+        if abs(left) <= most * dt**2 and abs(self.speed) <= most * dt:
             return Winch(length, 0.0)
-        return Winch(self.length + moved, speed)
+        # The speed from which the drum, after this step, still stops in time.
+        way = 2 * abs(left) - np.sign(left) * self.speed * dt
+        root = np.sqrt((0.5 * most * dt) ** 2 + most * max(way, 0.0))
+        wanted = np.sign(left) * min(limits.max_speed_m_s, root - 0.5 * most * dt)
+        speed = _approach(self.speed, float(wanted), most * dt)
+        return Winch(self.length + 0.5 * (self.speed + speed) * dt, speed)

@@ -1,0 +1,156 @@
+"""A gear file is checked on load: what is wrong is said with file, key, found and expected."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from trawl_ros.errors import GearError
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.share import share_path
+
+
+@pytest.fixture
+def data() -> dict[str, Any]:
+    return yaml.safe_load(share_path('config', 'gear', 'kaifuha.yaml').read_text())
+
+
+def complaint(folder: Path, data: dict[str, Any]) -> str:
+    path = folder / 'own.yaml'
+    path.write_text(yaml.safe_dump(data))
+    with pytest.raises(GearError) as caught:
+        load_gear(path)
+    text = str(caught.value)
+    assert text.startswith(f'{path}: ')
+    return text.removeprefix(f'{path}: ')
+
+
+def test_the_gear_that_comes_along_loads_by_name_and_by_path() -> None:
+    by_name = load_gear('kaifuha')
+    assert by_name.name == 'kaifuha'
+    assert load_gear(share_path('config', 'gear', 'kaifuha.yaml')) == by_name
+
+
+def test_a_gear_of_ones_own_loads_by_path(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['name'] = 'own'
+    path = tmp_path / 'own.yaml'
+    path.write_text(yaml.safe_dump(data))
+    assert load_gear(path).name == 'own'
+
+
+@pytest.mark.parametrize('path', ['no_such_gear', 'no/such/gear.yaml'])
+def test_a_missing_file_is_named(path: str) -> None:
+    with pytest.raises(GearError, match=rf'^{path}: .*no such file'):
+        load_gear(path)
+
+
+def test_a_missing_key_is_named(tmp_path: Path, data: dict[str, Any]) -> None:
+    del data['board']['mass_kg']
+    found = complaint(tmp_path, data)
+    assert 'board.mass_kg' in found
+    assert 'missing' in found
+
+
+def test_a_wrong_unit_is_named_with_the_right_one(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['bridle']['length_ft'] = 3.28 * data['bridle'].pop('length_m')
+    found = complaint(tmp_path, data)
+    assert 'bridle.length_ft' in found
+    assert 'length_m' in found
+
+
+def test_a_negative_length_is_refused(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['headrope']['length_m'] = -387.0
+    found = complaint(tmp_path, data)
+    assert 'headrope.length_m' in found
+    assert '-387' in found
+    assert 'greater than 0' in found
+
+
+@pytest.mark.parametrize('value', ['thick', '0.032', True, None, [0.032]])
+def test_what_is_not_a_number_is_refused(
+    tmp_path: Path, data: dict[str, Any], value: object
+) -> None:
+    data['warp']['diameter_m'] = value
+    assert 'warp.diameter_m' in complaint(tmp_path, data)
+
+
+@pytest.mark.parametrize('value', [float('nan'), float('inf')])
+def test_numbers_that_are_none_are_refused(
+    tmp_path: Path, data: dict[str, Any], value: float
+) -> None:
+    data['clump']['weight_in_water_n'] = value
+    assert 'clump.weight_in_water_n' in complaint(tmp_path, data)
+
+
+def test_an_unknown_key_is_named(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['kite']['colour'] = 'orange'
+    assert 'kite.colour' in complaint(tmp_path, data)
+
+
+def test_a_start_value_outside_its_bounds_is_refused(tmp_path: Path, data: dict[str, Any]) -> None:
+    record = data['identification']
+    record['start'][2] = record['high'][2] + 1.0
+    found = complaint(tmp_path, data)
+    assert 'identification' in found
+    assert 'number 3: needs low <= start <= high' in found
+
+
+def test_too_few_start_values_are_refused(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['identification']['std'].pop()
+    assert 'std: needs 12 numbers, found 11' in complaint(tmp_path, data)
+
+
+def test_current_depths_must_rise(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['water']['current'] = [
+        {'depth_m': 50.0, 'east_m_s': 0.1, 'north_m_s': 0.0},
+        {'depth_m': 10.0, 'east_m_s': 0.2, 'north_m_s': 0.0},
+    ]
+    assert 'depths must rise, found [50.0, 10.0]' in complaint(tmp_path, data)
+
+
+@pytest.mark.parametrize('around', [6, 20, 12.5])
+def test_the_net_is_cut_into_twelfths(tmp_path: Path, data: dict[str, Any], around: float) -> None:
+    data['netting']['around'] = around
+    assert 'netting.around' in complaint(tmp_path, data)
+
+
+def test_every_mistake_is_told_at_once(tmp_path: Path, data: dict[str, Any]) -> None:
+    data['board']['area_m2'] = 0.0
+    data['ship']['block_spacing_m'] = 'wide'
+    found = complaint(tmp_path, data)
+    assert 'board.area_m2' in found
+    assert 'ship.block_spacing_m' in found
+
+
+def test_refining_multiplies_the_numbers_of_pieces_and_nothing_else() -> None:
+    gear = load_gear('kaifuha')
+    fine = gear.refined(warp=2, bridle=3, net=2)
+    assert fine.warp.segments == 2 * gear.warp.segments
+    assert fine.bridle.segments == 3 * gear.bridle.segments
+    assert fine.netting.around == 2 * gear.netting.around
+    assert fine.netting.codend_segments == 2 * gear.netting.codend_segments
+    assert gear.refined() == gear
+    assert isinstance(fine, GearRecord)
+
+
+def test_every_value_says_where_it_comes_from() -> None:
+    """Beside it, above it, or beside or above the key it stands under."""
+    words = ('[paper]', '[source]', '[assumed]', '[derived]', 'refinement')
+    told: dict[int, bool] = {}
+    above, silent = False, []
+    lines = share_path('config', 'gear', 'kaifuha.yaml').read_text().splitlines()
+    for line in lines[lines.index('') :]:
+        text, _, comment = line.partition('#')
+        here = any(word in comment for word in words)
+        if not text.strip():
+            above = (above or here) and bool(comment)
+            continue
+        indent = len(text) - len(text.lstrip(' -'))
+        told = {depth: known for depth, known in told.items() if depth < indent}
+        told[indent] = here or above
+        above = False
+        if text.partition(':')[2].strip() and not any(told.values()):
+            silent.append(line)
+    assert silent == []

@@ -1,0 +1,176 @@
+"""Steady states of the default gear: what grows with warp length, and what they promise."""
+
+import re
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.assembly import forces
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import OBSERVABLES, Observables, outward_normal_lift
+from trawl_ros.model.water import Water
+from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
+from trawl_ros.solver.operating_point import OperatingPoint
+
+SPEEDS = (1.9, 2.1, 2.3)
+LENGTHS = (200.0, 300.0, 400.0, 500.0, 700.0, 900.0)
+
+
+def same(found: Observables, expected: Observables) -> None:
+    """Equal as far as a residual of 1e-4 N leaves them."""
+    np.testing.assert_allclose(found.array(), expected.array(), rtol=1e-6, atol=1e-7)
+
+
+@pytest.fixture(scope='module')
+def table(default_model: GearModel) -> dict[float, list[SteadyState]]:
+    """Steady states by speed, in the order of `LENGTHS`."""
+    found = {}
+    for speed in SPEEDS:
+        row: list[SteadyState] = []
+        for warp in LENGTHS:
+            start = row[-1].equilibrium if row else None
+            row.append(steady_state(default_model, warp, speed, start=start))
+        found[speed] = row
+    return found
+
+
+@pytest.mark.parametrize('speed', SPEEDS)
+@pytest.mark.parametrize(
+    'name',
+    ['door_spread', 'door_depth', 'net_depth', 'warp_tension', 'port_attack', 'port_inclination'],
+)
+def test_it_grows_with_warp_length(table, speed: float, name: str) -> None:
+    values = [getattr(state.observables, name) for state in table[speed]]
+    assert (np.diff(values) > 0.0).all(), values
+
+
+@pytest.mark.parametrize('speed', SPEEDS)
+def test_boards_work_where_they_should_at_every_length(table, speed: float) -> None:
+    for state in table[speed]:
+        seen, found = state.observables, state.equilibrium
+        for attack in (seen.port_attack, seen.starboard_attack):
+            assert 15.0 <= np.degrees(attack) <= 35.0
+        assert (outward_normal_lift(found.state) >= 0.0).all()
+        assert found.highest < 0.0
+        assert not found.surfaced
+        assert not found.outside_law
+        assert state.stability.stable
+
+
+@pytest.mark.parametrize('speed', SPEEDS)
+def test_a_symmetric_tow_is_symmetric(table, speed: float) -> None:
+    for state in table[speed]:
+        seen = dict(zip(OBSERVABLES, state.observables.array(), strict=True))
+        for name, value in seen.items():
+            side, _, rest = name.partition('_')
+            if side == 'port':
+                sign = -1.0 if rest == 'roll' else 1.0
+                assert value == pytest.approx(sign * seen[f'starboard_{rest}'], rel=1e-8), name
+
+
+def test_the_five_lines_of_the_readme_run(capsys) -> None:
+    readme = (Path(__file__).parents[2] / 'README.md').read_text(encoding='utf-8')
+    (lines,) = re.findall(r'```python\n(.*?steady_state.*?)```', readme, re.DOTALL)
+    names: dict[str, object] = {}
+    exec(lines, names)
+    spread, depth, tension, net_depth = map(float, capsys.readouterr().out.split())
+    seen = names['seen']
+    assert (spread, depth) == (seen.door_spread, seen.door_depth)
+    assert (tension, net_depth) == (seen.warp_tension, seen.net_depth)
+    for name in (
+        'port_divergence',
+        'port_declination',
+        'vertical_opening',
+        'port_attack',
+        'port_slip',
+        'port_inclination',
+    ):
+        assert np.isfinite(getattr(seen, name)), name
+
+
+def test_no_force_is_left(model: GearModel, steady: SteadyState) -> None:
+    found = steady.equilibrium
+    left = np.abs(forces(model, found.state, found.tow)).max()
+    assert left == pytest.approx(found.residual)
+    assert left < 1e-4
+
+
+def test_warm_and_cold_starts_find_the_same_state(model: GearModel, steady: SteadyState) -> None:
+    far = find_equilibrium(model, OperatingPoint(620.0, 620.0, 2.2), steady.equilibrium)
+    back = find_equilibrium(model, OperatingPoint(500.0, 500.0, 2.1), far)
+    same(back.observables, steady.observables)
+
+
+def test_a_warm_equilibrium_is_quick(default_model: GearModel, table) -> None:
+    start = table[2.1][3].equilibrium
+    took = []
+    for warp in (510.0, 520.0, 530.0):
+        before = time.process_time()
+        find_equilibrium(default_model, OperatingPoint(warp, warp, 2.12), start)
+        took.append(time.process_time() - before)
+    assert min(took) < 0.3
+
+
+@pytest.mark.parametrize('heading', [0.9, -2.5])
+def test_the_course_does_not_matter_in_still_water(
+    model: GearModel, steady: SteadyState, heading: float
+) -> None:
+    turned = steady_state(model, 500.0, 2.1, heading=heading)
+    same(turned.observables, steady.observables)
+
+
+def test_a_uniform_current_carries_ship_and_gear_alike(
+    model: GearModel, steady: SteadyState
+) -> None:
+    carried = replace(
+        model, water=replace(model.water, depths=np.array([0.0]), currents=np.array([[0.3, -0.4]]))
+    )
+    drifting = steady_state(carried, 500.0, 2.1)
+    same(drifting.observables, steady.observables)
+
+
+def test_a_mirrored_case_gives_mirrored_answers(model: GearModel) -> None:
+    water = Water(
+        density=1024.0,
+        density_gradient=0.01,
+        depths=np.array([0.0, 60.0, 150.0]),
+        currents=np.array([[0.1, 0.15], [0.05, 0.05], [0.0, -0.05]]),
+    )
+    image = replace(water, currents=water.currents * [1.0, -1.0])
+    one = steady_state(replace(model, water=water), (505.0, 500.0), 2.1).observables
+    two = steady_state(replace(model, water=image), (500.0, 505.0), 2.1).observables
+    there = dict(zip(OBSERVABLES, two.array(), strict=True))
+    for name, value in zip(OBSERVABLES, one.array(), strict=True):
+        side, _, rest = name.partition('_')
+        opposite = {'port': 'starboard', 'starboard': 'port'}.get(side)
+        sign = -1.0 if rest == 'roll' else 1.0
+        expected = sign * there[f'{opposite}_{rest}' if opposite else name]
+        assert value == pytest.approx(expected, rel=1e-9), name
+    assert abs(one.port_door_depth - one.starboard_door_depth) > 1.0
+
+
+def test_a_finer_net_tells_nearly_the_same(gear: GearRecord, table) -> None:
+    coarse = table[2.1][3].observables
+    point = OperatingPoint(500.0, 500.0, 2.1)
+    fine = find_equilibrium(build_model(gear.refined(net=2)), point).observables
+    for name, tolerance in (
+        ('door_spread', 0.03),
+        ('door_depth', 0.03),
+        ('net_depth', 0.04),
+        ('warp_tension', 0.02),
+        ('vertical_opening', 0.04),
+        ('port_attack', 0.02),
+    ):
+        assert getattr(fine, name) == pytest.approx(getattr(coarse, name), rel=tolerance), name
+
+
+def test_finer_warps_and_bridles_tell_the_same(gear: GearRecord, table) -> None:
+    coarse = table[2.1][3].observables
+    point = OperatingPoint(500.0, 500.0, 2.1)
+    fine = find_equilibrium(build_model(gear.refined(warp=2, bridle=2)), point).observables
+    for name in ('door_spread', 'door_depth', 'net_depth', 'warp_tension', 'port_attack'):
+        assert getattr(fine, name) == pytest.approx(getattr(coarse, name), rel=2e-3), name

@@ -1,0 +1,57 @@
+"""Where there is no usable steady state, the solver says so, and why, within bounded time."""
+
+import time
+
+import numpy as np
+import pytest
+
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.stability import stability
+
+
+def test_an_unstable_root_is_refused(model: GearModel, steady: SteadyState) -> None:
+    # With the printed sign of b3 the board is pushed on by flow along its span.
+    printed = model.with_board(slip_sign=1.0)
+    point = OperatingPoint(500.0, 500.0, 2.1)
+    root = find_equilibrium(printed, point, steady.equilibrium)
+    assert not stability(printed, root.state, root.tow).stable
+    with pytest.raises(NoSteadyState, match=r'warp 500 m at 2.1 m/s: the steady state is unstable'):
+        steady_state(printed, 500.0, 2.1, start=steady.equilibrium)
+
+
+@pytest.mark.parametrize(('warp', 'speed'), [(200.0, 4.0), (200.0, 3.5)])
+def test_gear_that_breaks_the_surface_is_refused(
+    default_model: GearModel, warp: float, speed: float
+) -> None:
+    before = time.process_time()
+    with pytest.raises(NoSteadyState, match=rf'warp {warp:g} m at {speed:g} m/s: .*surface'):
+        steady_state(default_model, warp, speed)
+    assert time.process_time() - before < 20.0
+
+
+@pytest.mark.parametrize('speed', [0.5, 1.0])
+def test_gear_that_is_towed_too_slowly_is_refused_in_bounded_time(
+    model: GearModel, speed: float
+) -> None:
+    before = time.process_time()
+    with pytest.raises(NoSteadyState, match=rf'warp 500 m at {speed:g} m/s'):
+        steady_state(model, 500.0, speed)
+    assert time.process_time() - before < 10.0
+
+
+def test_a_collapsed_board_is_refused(model: GearModel) -> None:
+    points = np.array([[0.32, -0.25, -0.49], [-0.27, -0.51, 1.71], [-0.33, -0.18, -2.23]])
+    with pytest.raises(NoSteadyState, match='only a collapsed state was found'):
+        steady_state(model.with_board(points=points), 500.0, 2.1)
+
+
+def test_a_board_beyond_the_range_of_its_law_is_refused(
+    model: GearModel, steady: SteadyState
+) -> None:
+    # Half the lift leaves the boards so steep that eq. 14 no longer holds.
+    turned = model.with_board(installation=(np.radians(18.0), 0.0, 0.0))
+    with pytest.raises(NoSteadyState, match=r'outside the range of its law \(40°\)'):
+        steady_state(turned, 500.0, 2.1, start=steady.equilibrium)

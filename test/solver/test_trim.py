@@ -1,0 +1,38 @@
+"""Trim finds fastening points at which the boards work as wanted."""
+
+import numpy as np
+import pytest
+
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.equilibrium import steady_state
+from trawl_ros.solver.trim import trim
+
+
+def test_the_trimmed_gear_works_at_the_wanted_angles(model: GearModel) -> None:
+    found = trim(
+        model, attack=np.radians(22.0), inclination=np.radians(15.0), warp_length=500.0, speed=2.1
+    )
+    seen = found.steady.observables
+    for attack, lean in (
+        (seen.port_attack, seen.port_inclination),
+        (seen.starboard_attack, seen.starboard_inclination),
+    ):
+        assert np.degrees(attack) == pytest.approx(22.0, abs=0.01)
+        assert np.degrees(lean) == pytest.approx(15.0, abs=0.01)
+    # Close to the rigging it started from, and the same when found cold.
+    assert np.abs(found.points - model.board.points).max() < 1.0
+    again = steady_state(model.with_board(points=found.points), 500.0, 2.1)
+    assert again.observables.door_spread == pytest.approx(seen.door_spread, rel=1e-5)
+
+
+def test_impossible_angles_are_refused(model: GearModel) -> None:
+    with pytest.raises(NoSteadyState, match='expected a smaller pitch'):
+        trim(
+            model,
+            attack=0.35,
+            inclination=np.radians(5.0),
+            pitch=np.radians(10.0),
+            warp_length=500.0,
+            speed=2.1,
+        )
