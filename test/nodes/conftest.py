@@ -1,0 +1,101 @@
+"""Nodes in an executor, context and domain of their own, and a short trial for them to run."""
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+# Before rclpy is loaded: nobody outside of this machine is to hear these nodes.
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+
+SCENARIO = """\
+description: A short tow with a change of everything
+gear: kaifuha
+seed: 5
+heading_deg: 30.0
+start: {warp_length_m: 300.0, speed_m_s: 2.1}
+steps:
+  - {name: hold, minutes: 0.1}
+  - {name: veer, minutes: 0.3, warp_length_m: 305.0, speed_m_s: 2.15}
+"""
+
+
+class Graph:
+    """Nodes that share one executor."""
+
+    def __init__(self, domain: int) -> None:
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+
+        self.context = rclpy.Context()
+        rclpy.init(args=[], context=self.context, domain_id=domain)
+        self.executor = SingleThreadedExecutor(context=self.context)
+
+    def add(self, kind: Callable, **parameters: object):
+        """Create a node of a class with parameters, and let it spin with the others."""
+        from rclpy.parameter import Parameter
+
+        overrides = [Parameter(name, value=value) for name, value in parameters.items()]
+        node = kind(context=self.context, parameter_overrides=overrides)
+        self.executor.add_node(node)
+        return node
+
+    def remove(self, node) -> None:
+        """Take a node out of the graph."""
+        self.executor.remove_node(node)
+        node.destroy_node()
+
+    def until(self, condition: Callable[[], object], timeout_s: float = 40.0) -> None:
+        """Spin until something is so."""
+        end = time.monotonic() + timeout_s
+        while not condition():
+            assert time.monotonic() < end, f'not so within {timeout_s:g} s'
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def rest(self, seconds: float) -> None:
+        """Spin for a while."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def call(self, node, service: str):
+        """Call a Trigger service and give the response."""
+        from std_srvs.srv import Trigger
+
+        client = node.create_client(Trigger, service)
+        self.until(client.service_is_ready)
+        future = client.call_async(Trigger.Request())
+        self.until(future.done)
+        return future.result()
+
+    def close(self) -> None:
+        for node in self.executor.get_nodes():
+            self.remove(node)
+        self.executor.shutdown()
+        self.context.try_shutdown()
+
+
+@contextmanager
+def graph_in(domain: int) -> Iterator[Graph]:
+    graph = Graph(domain)
+    try:
+        yield graph
+    finally:
+        graph.close()
+
+
+@pytest.fixture(scope='session')
+def open_graph():
+    """Give the context manager that makes a graph in a domain."""
+    return graph_in
+
+
+@pytest.fixture(scope='session')
+def scenario_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A trial of 24 s, long enough for every instrument to speak more than once."""
+    path = tmp_path_factory.mktemp('scenario') / 'short.yaml'
+    path.write_text(SCENARIO)
+    return path

@@ -1,0 +1,192 @@
+"""`identification_node` estimates as windows come, says why when it cannot, and starts anew."""
+
+import json
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.bags.import_log import import_log  # noqa: E402
+from trawl_ros.bags.writer import BagWriter  # noqa: E402
+from trawl_ros.errors import TrawlError  # noqa: E402
+from trawl_ros.instruments.instrument import Draws  # noqa: E402
+from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
+from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
+from trawl_ros.messages.cdr import serialize  # noqa: E402
+from trawl_ros.messages.diagnostics import ERROR, WARN, read_statuses  # noqa: E402
+from trawl_ros.messages.estimates import (  # noqa: E402
+    COEFFICIENTS,
+    read_covariance,
+    read_estimate,
+    read_innovations,
+)
+from trawl_ros.messages.stamps import SECOND  # noqa: E402
+from trawl_ros.messages.to_messages import sample_message  # noqa: E402
+from trawl_ros.messages.topics import absolute  # noqa: E402
+from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
+from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.qos import CONSUMER, LATCHED  # noqa: E402
+from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+DOMAIN = 84
+ROOT = Path(__file__).parents[2]
+HAUL_LOG = ROOT.parent / 'shared/data/noaa_trawlmetrics/gear_testing_2026_haul_log.csv'
+HAUL_MAPPING = ROOT / 'config/logs/door_test_haul_log.yaml'
+
+SETTLE_S, WINDOW_S = 10.0, 20.0
+LENGTH_S = 34
+"""One window's worth of steady towing, and a little more."""
+
+
+class Listener(TrawlNode):
+    """Whoever looks at estimates."""
+
+    def __init__(self, name='listener', **kwargs):
+        super().__init__(name, **kwargs)
+        self.estimates = []
+        self.covariances = []
+        self.summaries = []
+        self.innovations = []
+        self.reports = {}
+        self.listen('identification/estimate', self.estimates.append, LATCHED)
+        self.listen('identification/covariance', self.covariances.append, LATCHED)
+        self.listen('identification/status', self.summaries.append, LATCHED)
+        self.listen('identification/innovation', self.innovations.append, CONSUMER)
+        self.listen('/diagnostics', self._hear, CONSUMER)
+
+    def _hear(self, message):
+        for status in read_statuses(message):
+            self.reports[status.name] = status
+
+    def report(self):
+        return self.reports.get('/trawl/identification_node: estimate')
+
+
+@pytest.fixture(scope='module')
+def steady_bag(model, tmp_path_factory):
+    """Instruments that look at one steady state of the gear for a while."""
+    truth = Simulation(model, Command(400.0, 400.0, 2.1)).truth()
+    suite = InstrumentSuite(
+        load_instruments(), pressure_at=model.water.pressure, draws=Draws(seed=3)
+    )
+    path = tmp_path_factory.mktemp('steady') / 'bag'
+    with BagWriter(path) as bag:
+        for number in range(10 * LENGTH_S):
+            stamp = 1000 * SECOND + number * SECOND // 10
+            for sample in suite.observe(replace(truth, stamp=stamp)):
+                topic, message = sample_message(sample)
+                bag.write(absolute(topic), message.__msgtype__, serialize(message), stamp)
+    return path
+
+
+@pytest.fixture(scope='module')
+def session(open_graph, steady_bag, tmp_path_factory):
+    """One identification from the first sample to the report, looked at on the way."""
+
+    class Session:
+        output = tmp_path_factory.mktemp('identified') / 'results'
+
+    with open_graph(DOMAIN) as graph:
+        node = graph.add(
+            IdentificationNode, settle_s=SETTLE_S, window_s=WINDOW_S, output=str(Session.output)
+        )
+        listener = graph.add(Listener)
+        graph.until(lambda: listener.report() is not None)
+        Session.before = listener.report()
+        follower = ['identification_node']
+        player = graph.add(BagPlayer, bag=str(steady_bag), rate=0.0, wait_for=follower)
+        graph.until(lambda: player.exit_code is not None)
+        graph.until(lambda: listener.innovations)
+        graph.rest(0.2)
+        late = graph.add(partial(Listener, 'late'))
+        graph.until(lambda: late.estimates and late.covariances and late.summaries)
+        Session.listener, Session.late = listener, late
+        Session.answer = graph.call(listener, 'identification/finish')
+        graph.until(lambda: len(listener.estimates) > 1)
+        Session.resets_before = node._resets
+        graph.remove(player)
+        again = graph.add(BagPlayer, bag=str(steady_bag), rate=0.0, wait_for=follower)
+        graph.until(lambda: again.exit_code is not None)
+        graph.until(lambda: len(listener.innovations) > 1)
+        graph.rest(0.2)
+        Session.resets_after = node._resets
+        Session.last_status = read_statuses(listener.summaries[-1])[0]
+    return Session
+
+
+def test_before_any_sample_it_says_what_is_needed(session):
+    assert session.before.level == WARN
+    assert 'winch/joint_states (no readings)' in session.before.message
+
+
+def test_a_window_brings_estimate_covariance_status_and_innovation(session):
+    values = read_estimate(session.listener.estimates[0])
+    covariance = read_covariance(session.listener.covariances[0])
+    assert values.shape == (12,)
+    np.testing.assert_allclose(covariance, covariance.T)
+    assert np.all(np.linalg.eigvalsh(covariance) > 0.0)
+    (status,) = read_statuses(session.listener.summaries[0])
+    assert status.values['windows'] == '1'
+    for name, value in zip(COEFFICIENTS, values, strict=True):
+        assert float(status.values[name]) == pytest.approx(value, rel=1e-6)
+        low, high = (float(status.values[f'{name} {end}']) for end in ('low', 'high'))
+        assert low <= value <= high
+    channels = {item.channel for item in read_innovations(session.listener.innovations[0])}
+    assert {'door_spread', 'net_depth', 'port_tension'} <= channels
+
+
+def test_who_comes_late_gets_the_latest_estimate(session):
+    assert len(session.late.estimates) >= 1
+    first = read_estimate(session.late.estimates[0])
+    np.testing.assert_array_equal(first, read_estimate(session.listener.estimates[0]))
+
+
+def test_finishing_writes_the_report(session):
+    assert session.answer.success, session.answer.message
+    written = json.loads((session.output / 'identification.json').read_text())
+    assert written['windows'] == 1
+    assert set(written['coefficients']) == set(COEFFICIENTS)
+
+
+def test_stamps_that_go_back_start_it_anew(session):
+    assert session.resets_after > session.resets_before
+    assert session.last_status.values['windows'] == '1'
+    assert session.last_status.values['revision'] == '1'
+
+
+def test_results_of_an_earlier_run_are_not_written_over(open_graph, tmp_path):
+    (tmp_path / 'identification.json').write_text('{}')
+    with open_graph(DOMAIN + 1) as graph, pytest.raises(TrawlError, match='not written over'):
+        graph.add(IdentificationNode, output=str(tmp_path))
+    assert (tmp_path / 'identification.json').read_text() == '{}'
+
+
+def test_measurements_at_sea_without_speed_and_spread_are_not_enough(open_graph, tmp_path):
+    if not HAUL_LOG.exists():
+        pytest.skip(f'the measured log is not here: {HAUL_LOG.name}')
+    bag = tmp_path / 'hauls'
+    import_log(HAUL_LOG, HAUL_MAPPING, bag)
+    with open_graph(DOMAIN + 1) as graph:
+        graph.add(IdentificationNode)
+        listener = graph.add(Listener)
+        player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['identification_node'])
+        graph.until(lambda: player.exit_code is not None)
+        assert player.exit_code == 0
+        answer = graph.call(listener, 'identification/finish')
+        assert not answer.success
+        graph.until(lambda: listener.report() is not None and listener.report().level == ERROR)
+        assert not listener.estimates
+    for words in (
+        'door_spread from door/spread (no readings)',
+        'speed from vessel/velocity_water (no readings)',
+        'nothing is estimated',
+    ):
+        assert words in answer.message
+    assert 'tension' not in answer.message.split(';')[0]

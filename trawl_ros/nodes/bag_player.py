@@ -1,0 +1,211 @@
+"""`bag_player`: publishes a bag again, message for message, and ends with it."""
+
+from collections.abc import Collection, Iterator, Sequence
+from time import monotonic
+from typing import Any, ClassVar
+
+from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.errors import BagError, MessageError, TrawlError
+from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.stamps import SECOND
+from trawl_ros.messages.to_messages import clock_message
+from trawl_ros.messages.topics import CLOCK
+from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.pacer import Pacer
+from trawl_ros.nodes.parameters import Flag, Names, Number, Text
+from trawl_ros.nodes.qos import PUBLISHED_DEPTH
+from trawl_ros.nodes.runtime import run
+from trawl_ros.nodes.sync import Consumers
+
+BURST_S = 0.05
+TICK_S = 0.002
+QUIET_S = 3.0
+"""How long consumers may stand still before the end is taken as reached by all."""
+
+CLOCK_STEP = SECOND // 100
+
+
+class BagPlayer(TrawlNode):
+    """Plays a bag at a rate, or as fast as its consumers follow.
+
+    It begins when discovery has come to rest and all of ``wait_for`` report on
+    ``sync/progress``, and ends when subscribers have everything.
+    """
+
+    SPECS: ClassVar = (
+        Text('bag', '', 'Folder of the bag, or one MCAP file.', needed=True),
+        Number('rate', 1.0, 'factor', 0.0, 1000.0, 'Recorded seconds per second of wall time; 0 '
+               'is as fast as the consumers in wait_for follow.', live=True),
+        Names('topics', 'Topics to play; by default all of the bag.'),
+        Flag('loop', False, 'Whether to begin again at the end.', live=True),
+        Number('start', 0.0, 's', 0.0, 1e7, 'Recorded time to leave out at the beginning.'),
+        Flag('publish_clock', False, 'Whether to publish recorded time on /clock; a rate other '
+             'than 1 forces it.'),
+        Names('wait_for', 'Consumers (node names) without which it does not begin.'),
+        Number('lead_s', 3.0, 's', 0.5, 60.0, 'Recorded time that the slowest consumer may lag '
+               'behind.', live=True),
+    )  # fmt: skip
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('bag_player', **kwargs)
+        if self.parameters['rate'] == 0.0 and not self.parameters['wait_for']:
+            raise TrawlError(
+                'parameter rate: found 0 without wait_for, expected the names of consumers to '
+                'follow, or a rate above 0'
+            )
+        self._bag = Bag(self.parameters['bag'], namespace=self.get_namespace())
+        self._topics = self._chosen()
+        self._clock_published = self.parameters['publish_clock'] or self.parameters['rate'] != 1.0
+        self._since_acknowledged: dict[str, int] = {}
+        for topic in sorted(self._topics):
+            try:
+                self.advertise(topic, self._bag.topics[topic])
+            except MessageError as reason:
+                raise BagError(f'{self._bag.path}: {topic}: {reason}') from reason
+        if self._clock_published:
+            self.advertise(CLOCK.name)
+        self._consumers = Consumers(self, self.parameters['wait_for'])
+        self._pacer = Pacer(self.parameters['rate'])
+        self._rounds = 0
+        self._began = False
+        self._ended = False
+        self._last_progress: tuple[int | None, float] = (None, monotonic())
+        self._begin()
+        self.create_timer(TICK_S, self._tick, clock=self.steady_clock)
+
+    def objection(self, name: str, value: Any) -> str | None:
+        """Say why a live parameter cannot take a value just now; None if it can."""
+        if name != 'rate':
+            return None
+        if value == 0.0 and not self.parameters['wait_for']:
+            return 'rate: found 0 without wait_for, expected a rate above 0'
+        if value != 1.0 and not self._clock_published:
+            return (
+                f'rate: found {value:g}, expected 1, since /clock is not published; set '
+                'publish_clock at the start'
+            )
+        return None
+
+    def parameter_changed(self, name: str) -> None:
+        """Let a live parameter's new value have its effect."""
+        if name == 'rate':
+            self._pacer.change(self.parameters['rate'])
+
+    def statuses(self) -> list[Status]:
+        """How far the bag is played."""
+        missing = [] if self._began else self._consumers.missing()
+        values = {
+            'bag': str(self._bag.path),
+            'played until': f'{self._latest / 1e9:.1f}',
+            'rounds': str(self._rounds),
+            'waits for': ', '.join(missing),
+        }
+        if missing:
+            text = f'waits for {", ".join(missing)}, which should report on sync/progress'
+            return [Status('bag', WARN, text, values)]
+        if self._bag.problems:
+            return [Status('bag', WARN, '; '.join(self._bag.problems), values)]
+        return [Status('bag', OK, 'playing' if self._began else 'waits for subscribers', values)]
+
+    def _chosen(self) -> Collection[str]:
+        names = self.parameters['topics']
+        # A new clock is made where one is wanted; an old one beside it would be a second.
+        there = {topic for topic in self._bag.topics if topic != CLOCK.name}
+        if not names:
+            return there
+        wanted = {self.full_name(name) for name in names}
+        if missing := sorted(wanted - there):
+            raise BagError(
+                f'{self._bag.path}: no topic {", ".join(missing)}; there are: '
+                f'{", ".join(sorted(there))}'
+            )
+        return wanted
+
+    def _begin(self) -> None:
+        self._messages: Iterator[RawMessage] = self._bag.raw(self._topics)
+        first = next(self._messages, None)
+        start = round(self.parameters['start'] * SECOND)
+        origin = first.log_time if first else 0
+        while first is not None and first.log_time < origin + start:
+            first = next(self._messages, None)
+        if first is None:
+            raise BagError(
+                f'{self._bag.path}: no message {self.parameters["start"]:g} s after its beginning '
+                'on the topics to be played; expected an earlier start'
+            )
+        self._next: RawMessage | None = first
+        self._latest = first.log_time
+        self._clocked: int | None = None
+        self._pacer.restart()
+        self._consumers.begin(first.log_time)
+
+    def _tick(self) -> None:
+        self._began = self._began or self._consumers.ready()
+        if not self._began:
+            return
+        if self._ended:
+            self._end_if_done()
+            return
+        end = monotonic() + BURST_S
+        while self._next is not None and self._may_go_on(self._next.log_time):
+            self._play(self._next)
+            self._next = next(self._messages, None)
+            if monotonic() > end:
+                return
+        if self._next is None:
+            self._finish_round()
+
+    def _may_go_on(self, stamp: int) -> bool:
+        slowest = self._consumers.slowest()
+        lead = round(self.parameters['lead_s'] * SECOND)
+        if slowest is not None and self._latest > slowest + lead and not self._stand_still(slowest):
+            self._pacer.restart()
+            return False
+        return self._pacer.due(stamp / SECOND)
+
+    def _stand_still(self, slowest: int | None) -> bool:
+        """Whether consumers have dealt with all that concerns them: other topics do not."""
+        now = monotonic()
+        if self._last_progress[0] != slowest:
+            self._last_progress = (slowest, now)
+        return now - self._last_progress[1] > QUIET_S
+
+    def _play(self, message: RawMessage) -> None:
+        stamp = message.log_time
+        if self._clock_published and (self._clocked is None or stamp - self._clocked >= CLOCK_STEP):
+            self._clocked = stamp
+            self.send(*clock_message(stamp))
+        self.send_bytes(message.topic, message.data)
+        self._latest = stamp
+        self._consumers.sent(stamp)
+        self._let_arrive(message.topic)
+
+    def _let_arrive(self, topic: str) -> None:
+        # Half of what the publisher keeps, so that nothing unacknowledged is ever replaced.
+        waiting = self._since_acknowledged.get(topic, 0) + 1
+        if waiting >= PUBLISHED_DEPTH // 2:
+            self.all_acknowledged(1.0)
+            self._since_acknowledged.clear()
+            return
+        self._since_acknowledged[topic] = waiting
+
+    def _finish_round(self) -> None:
+        self._rounds += 1
+        self.all_acknowledged(1.0)
+        if self.parameters['loop']:
+            self._begin()
+            return
+        self._ended = True
+
+    def _end_if_done(self) -> None:
+        slowest = self._consumers.slowest()
+        reached = slowest is None or slowest >= self._latest or self._stand_still(slowest)
+        if reached and self.all_acknowledged(1.0):
+            for problem in self._bag.problems:
+                self.get_logger().warning(problem)
+            self.end(0, f'{self._bag.path}: played {self._rounds} times to its end')
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run(BagPlayer, args)

@@ -1,0 +1,45 @@
+"""`door_sensor_node`: depth, attitude and spread of the otter boards."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from trawl_ros.instruments.doors import DoorInstruments
+from trawl_ros.instruments.samples import Sample
+from trawl_ros.messages.from_messages import door_truth
+from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
+from trawl_ros.nodes.partial_truth import partial_truth
+from trawl_ros.nodes.runtime import run
+
+PORT, STARBOARD = 'truth/door/port/odom', 'truth/door/starboard/odom'
+
+
+class DoorSensorNode(InstrumentNode):
+    """Reports ``door/{port,starboard}/{pressure,attitude}`` and ``door/spread``."""
+
+    TRUTH: ClassVar = (PORT, STARBOARD)
+    SAMPLES: ClassVar = (
+        'door/port/pressure',
+        'door/port/attitude',
+        'door/starboard/pressure',
+        'door/starboard/attitude',
+        'door/spread',
+    )
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('door_sensor_node', **kwargs)
+
+    def set_up(self, setup: Setup) -> None:
+        """Make the instruments."""
+        self._instruments = DoorInstruments(
+            setup.parameters.door, setup.draws, pressure_at=setup.pressure_at
+        )
+
+    def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
+        """Give the samples due at a stamp (ns)."""
+        port, starboard = (door_truth(topic, messages[topic]) for topic in (PORT, STARBOARD))
+        return self._instruments.observe(partial_truth(stamp, doors=(port, starboard)))
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run(DoorSensorNode, args)

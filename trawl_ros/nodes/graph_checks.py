@@ -1,0 +1,51 @@
+"""What a node can tell from the graph: two clocks, two sources, other types than expected."""
+
+from collections.abc import Mapping
+
+from rclpy.node import Node
+
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
+from trawl_ros.messages.topics import CLOCK, COMMANDS, find_topic
+
+SYNC = 'sync/progress'
+SHARED = ('/diagnostics', SYNC, *(topic.name for topic in COMMANDS))
+"""Topics on which several may speak."""
+
+
+def clock_status(node: Node) -> Status:
+    """Say which clock a node goes by, and whether that is one clock."""
+    publishers = [info.node_name for info in node.get_publishers_info_by_topic(CLOCK.name)]
+    names = ', '.join(sorted(publishers))
+    simulated = bool(node.get_parameter('use_sim_time').value)
+    values = {
+        'publishers on /clock': str(len(publishers)),
+        'use_sim_time': str(simulated).lower(),
+        'time': f'{node.get_clock().now().nanoseconds / 1e9:.3f}',
+    }
+    if len(publishers) > 1:
+        message = f'{len(publishers)} publishers on /clock ({names}); expected one'
+        return Status('clock', ERROR, message, values)
+    if simulated and not publishers:
+        message = 'use_sim_time is set, but nobody publishes /clock'
+        return Status('clock', WARN, message, values)
+    if publishers and not simulated and node.get_name() not in publishers:
+        message = f'{names} publishes /clock, but use_sim_time is not set; expected one clock'
+        return Status('clock', WARN, message, values)
+    return Status('clock', OK, 'simulated time' if publishers else 'system time', values)
+
+
+def connection_problems(node: Node, subscribed: Mapping[str, str]) -> list[str]:
+    """Give a sentence for each subscribed topic (type by full name) that is not as expected."""
+    problems = []
+    shared = {node.resolve_topic_name(name) for name in SHARED}
+    for topic, expected in subscribed.items():
+        infos = node.get_publishers_info_by_topic(topic)
+        for info in infos:
+            if info.topic_type != expected:
+                problems.append(
+                    f'{topic} has type {info.topic_type} from {info.node_name}; expected {expected}'
+                )
+        if len(infos) > 1 and topic not in shared and find_topic(topic, node.get_namespace()):
+            names = ', '.join(sorted(info.node_name for info in infos))
+            problems.append(f'{len(infos)} publishers on {topic} ({names}); expected one')
+    return problems

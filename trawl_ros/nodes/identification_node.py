@@ -1,0 +1,179 @@
+"""`identification_node`: refits the boards' twelve coefficients while samples come in."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.clock import JumpThreshold
+from rclpy.duration import Duration
+from std_srvs.srv import Trigger
+
+from trawl_ros.cli.files import empty_folder
+from trawl_ros.cli.identify import true_coefficients
+from trawl_ros.gear.load import load_gear
+from trawl_ros.identification.channels import CHANNELS
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.from_gear import identification_for
+from trawl_ros.identification.window_records import WindowOptions
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
+from trawl_ros.messages.estimates import (
+    COVARIANCE,
+    ESTIMATE,
+    INNOVATION,
+    Innovation,
+    covariance_message,
+    estimate_message,
+    innovation_message,
+)
+from trawl_ros.messages.from_messages import to_sample
+from trawl_ros.messages.stamps import SECOND
+from trawl_ros.nodes.estimate_status import estimate_status
+from trawl_ros.nodes.identification_worker import IdentificationWorker, Outcome
+from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.parameters import Flag, Number, Text
+from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.runtime import run
+from trawl_ros.nodes.sync import Progress
+
+STATUS = 'identification/status'
+FINISH = 'identification/finish'
+
+SAMPLES = tuple(dict.fromkeys(channel.topic for channel in CHANNELS.values()))
+"""Topics that feed a channel."""
+
+BACK_NS = 10 * SECOND
+"""A topic whose stamps go back by more than this plays anew; less is a message that is late."""
+
+
+class IdentificationNode(TrawlNode):
+    """Finds steady windows in what the instruments report and refits the gear's model to them.
+
+    After each accepted window it publishes the estimate, its covariance, a status and the
+    innovation. ``identification/finish``, or the signal to end, brings the estimate to rest
+    and writes the report.
+    """
+
+    SPECS: ClassVar = (
+        Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package: the '
+             'model that is fitted.'),
+        Flag('prior', True, 'Whether what is known of the board beforehand takes part; the bounds '
+             'always do.'),
+        Text('output', '', 'Folder for identification.json and figures, new or empty; none if '
+             'empty.'),
+        Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
+             'are set beside the estimate in the report.'),
+        Number('settle_s', 120.0, 's', 0.0, 3600.0, 'Time the gear is given after each change.'),
+        Number('window_s', 60.0, 's', 20.0, 3600.0, 'Length of a steady window.'),
+    )  # fmt: skip
+    DRAINS: ClassVar = True
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('identification_node', **kwargs)
+        parameters = self.parameters
+        output, truth = parameters['output'], parameters['truth']
+        folder = empty_folder(Path(output), force=False) if output else None
+        identification = identification_for(
+            load_gear(parameters['gear']),
+            window_options=WindowOptions(
+                settle_s=parameters['settle_s'], window_s=parameters['window_s']
+            ),
+            estimator_options=None if parameters['prior'] else EstimatorOptions(prior_weight=0.0),
+        )
+        for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
+            self.advertise(topic)
+        self._progress = Progress(self)
+        self._newest: dict[str, int] = {}
+        self._resets = 0
+        self._worker = IdentificationWorker(
+            identification,
+            folder,
+            true_coefficients(Path(truth)) if truth else None,
+            self._publish,
+            self._progress.done,
+        )
+        for topic in SAMPLES:
+            self.listen(topic, self._feeder(topic), CONSUMER)
+        self._jump = self.get_clock().create_jump_callback(
+            JumpThreshold(
+                min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False
+            ),
+            post_callback=lambda jump: self._reset('/clock was set back'),
+        )
+        # Alone in its group: samples still come in while the service waits for the worker.
+        alone = MutuallyExclusiveCallbackGroup()
+        self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
+        self._worker.start()
+
+    def statuses(self) -> list[Status]:
+        """What is estimated, or why nothing is."""
+        self._worker.look()
+        outcome = self._worker.outcome
+        estimate = outcome.estimate
+        values = {
+            'samples used until': f'{self._progress.stamp / 1e9:.1f}',
+            'resets': str(self._resets),
+            'windows': str(estimate.windows if estimate else 0),
+            'revision': str(estimate.revision if estimate else 0),
+            **{f'rejected {reason}': str(count) for reason, count in outcome.rejected},
+        }
+        if outcome.finished is not None:
+            level = ERROR if outcome.failed else OK
+            return [Status('estimate', level, outcome.finished, values)]
+        if outcome.why_not is not None:
+            return [Status('estimate', WARN, outcome.why_not, values)]
+        return [Status('estimate', OK, 'estimating', values)]
+
+    def finish_work(self) -> None:
+        """Bring the estimate to rest, write the report, and end the thread."""
+        self._jump.unregister()
+        wish = self._worker.finish()
+        self._worker.stop()
+        self._tell(wish.outcome)
+
+    def _feeder(self, topic: str) -> Callable[[Any], None]:
+        def feed(message: Any) -> None:
+            sample = to_sample(topic, message)
+            if sample.stamp < self._newest.get(topic, sample.stamp) - BACK_NS:
+                self._reset(f'stamps on {topic} went back')
+            self._newest[topic] = max(sample.stamp, self._newest.get(topic, sample.stamp))
+            self._worker.feed(sample)
+
+        return feed
+
+    def _reset(self, reason: str) -> None:
+        self._newest.clear()
+        self._resets += 1
+        self._worker.reset()
+        self.get_logger().warning(f'{reason}; the estimate begins anew')
+
+    def _publish(self, outcome: Outcome) -> None:
+        estimate = outcome.estimate
+        if estimate is None:
+            return
+        self.send(*estimate_message(estimate.values))
+        self.send(*covariance_message(estimate.covariance))
+        status = estimate_status(estimate, dict(outcome.rejected))
+        self.send(STATUS, diagnostic_array(estimate.stamp, [status]))
+        if (seen := estimate.innovation) is not None:
+            rows = zip(seen.channels, seen.values, seen.stds, seen.test_ratios, strict=True)
+            innovations = [Innovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
+            self.send(*innovation_message(estimate.stamp, innovations))
+
+    async def _finish(self, request: Any, response: Any) -> Any:
+        wish = self._worker.finish()
+        await wish
+        response.success = not wish.outcome.failed
+        response.message = wish.outcome.finished or ''
+        self._tell(wish.outcome)
+        return response
+
+    def _tell(self, outcome: Outcome) -> None:
+        if outcome.finished is not None:
+            log = self.get_logger()
+            (log.warning if outcome.failed else log.info)(outcome.finished)
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run(IdentificationNode, args)

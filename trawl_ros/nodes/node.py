@@ -1,0 +1,247 @@
+"""What all nodes of the project have in common: bytes in and out, diagnostics, a clean end."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+
+from trawl_ros.errors import MessageError
+from trawl_ros.messages.cdr import deserialize, serialize
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
+from trawl_ros.messages.topics import NAMESPACE, find_topic
+from trawl_ros.nodes.graph_checks import clock_status, connection_problems
+from trawl_ros.nodes.message_classes import message_class
+from trawl_ros.nodes.parameters import Parameters, Spec
+from trawl_ros.nodes.qos import offered, overriding
+from trawl_ros.nodes.traffic import Traffic
+
+DIAGNOSTICS = '/diagnostics'
+DIAGNOSTICS_PERIOD_S = 1.0
+
+
+class TrawlNode(Node):
+    """A node of the project. Messages are the project's own; ROS gets and gives bytes.
+
+    Parameters
+    ----------
+    name
+        Of the node.
+    **kwargs
+        As for `rclpy.node.Node`. The namespace is ``trawl`` unless given.
+
+    Attributes
+    ----------
+    parameters : Parameters
+        The node's declared parameters.
+    traffic : Traffic
+        What went in and out.
+    exit_code : int or None
+        Set by `end`; whoever spins the node then stops.
+
+    Raises
+    ------
+    ParameterError
+        If a parameter is of the wrong kind or out of range.
+    """
+
+    SPECS: ClassVar[tuple[Spec, ...]] = ()
+    DRAINS: ClassVar[bool] = False
+    """Whether messages on their way are still to be taken in when told to stop."""
+
+    def __init__(self, name: str, **kwargs: Any) -> None:
+        kwargs.setdefault('namespace', NAMESPACE)
+        super().__init__(name, **kwargs)
+        self.traffic = Traffic()
+        self.exit_code: int | None = None
+        self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self._senders: dict[str, Publisher] = {}
+        self._listeners: dict[str, tuple[Subscription, str]] = {}
+        self._refused: dict[str, str] = {}
+        self._said: dict[str, tuple[int, str]] = {}
+        self._closed = False
+        self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
+        self.advertise(DIAGNOSTICS)
+        self.create_timer(DIAGNOSTICS_PERIOD_S, self._diagnose, clock=self.steady_clock)
+
+    def objection(self, name: str, value: Any) -> str | None:
+        """Say why a live parameter cannot take a value just now; None if it can."""
+        return None
+
+    def parameter_changed(self, name: str) -> None:
+        """Let a live parameter's new value have its effect."""
+
+    def statuses(self) -> list[Status]:
+        """Give the diagnostics of the node's own subsystems."""
+        return []
+
+    def finish_work(self) -> None:
+        """Bring to an end what was begun; called once, before the last diagnostics."""
+
+    def full_name(self, topic: str) -> str:
+        """Give a topic's full name after namespace and remapping."""
+        return self.resolve_topic_name(topic)
+
+    def now(self) -> int:
+        """Give the time of the node's clock in ns."""
+        return self.get_clock().now().nanoseconds
+
+    def advertise(self, topic: str, type_name: str | None = None) -> Publisher:
+        """Create the publisher of a topic; the table knows the type of the project's own."""
+        if topic not in self._senders:
+            self._senders[topic] = self.create_publisher(
+                message_class(self._type_of(topic, type_name)),
+                topic,
+                offered(find_topic(topic, self.get_namespace())),
+                qos_overriding_options=overriding(),
+            )
+            self.traffic.expect('published', self.full_name(topic))
+        return self._senders[topic]
+
+    def send(self, topic: str, message: Any) -> None:
+        """Publish a message on an advertised topic."""
+        self.send_bytes(topic, serialize(message))
+
+    def send_bytes(self, topic: str, data: bytes) -> None:
+        """Publish a message that is CDR already."""
+        sender = self._senders[topic]
+        sender.publish(data)
+        self.traffic.count('published', sender.topic_name)
+
+    def listen(
+        self,
+        topic: str,
+        handler: Callable[[Any], None],
+        profile: QoSProfile,
+        type_name: str | None = None,
+    ) -> None:
+        """Subscribe; messages that cannot be used are counted and said, not raised."""
+        kind = self._type_of(topic, type_name)
+
+        def take(data: bytes) -> None:
+            try:
+                handler(deserialize(data, kind))
+            except MessageError as reason:
+                self.refuse(topic, str(reason))
+
+        self.listen_raw(topic, kind, take, profile)
+
+    def listen_raw(
+        self, topic: str, type_name: str, handler: Callable[[bytes], None], profile: QoSProfile
+    ) -> None:
+        """Subscribe to the bytes of a topic."""
+        full = self.full_name(topic)
+
+        def take(data: bytes) -> None:
+            self.traffic.count('received', full)
+            handler(data)
+
+        subscription = self.create_subscription(
+            message_class(type_name),
+            topic,
+            take,
+            profile,
+            qos_overriding_options=overriding(),
+            raw=True,
+        )
+        self._listeners[full] = (subscription, type_name)
+        self.traffic.expect('received', full)
+
+    def refuse(self, topic: str, reason: str) -> None:
+        """Take note of a message that is not used, and say why when the reason is new."""
+        full = self.full_name(topic)
+        self.traffic.count('refused', full)
+        if self._refused.get(full) != reason:
+            self._refused[full] = reason
+            self.get_logger().warning(f'left out a message: {reason}')
+
+    def subscribers(self) -> dict[str, tuple[int, int]]:
+        """Give by topic how many subscribers are matched, and how many are known of."""
+        return {
+            topic: (sender.get_subscription_count(), self.count_subscribers(topic))
+            for topic, sender in self._senders.items()
+            if topic != DIAGNOSTICS
+        }
+
+    def all_acknowledged(self, timeout_s: float) -> bool:
+        """Wait until subscribers have all that was published; False after the time."""
+        return all(
+            sender.wait_for_all_acked(Duration(seconds=timeout_s))
+            for sender in self._senders.values()
+        )
+
+    def end(self, exit_code: int, reason: str = '') -> None:
+        """Ask whoever spins this node to stop."""
+        if reason:
+            (self.get_logger().error if exit_code else self.get_logger().info)(reason)
+        self.exit_code = exit_code
+
+    def close(self) -> None:
+        """Finish work and report the final counts; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        self.finish_work()
+        if self.context.ok():
+            self._diagnose()
+            self.all_acknowledged(0.5)
+
+    def destroy_node(self) -> None:
+        """Close and destroy."""
+        self.close()
+        super().destroy_node()
+
+    def say(self, name: str, level: int, message: str) -> None:
+        """Log what has changed in a subsystem's state."""
+        if self._said.get(name, (OK, '')) == (level, message):
+            return
+        before = self._said.get(name, (OK, ''))[0]
+        self._said[name] = (level, message)
+        log = self.get_logger()
+        if level == ERROR:
+            log.error(f'{name}: {message}')
+        elif level == WARN:
+            log.warning(f'{name}: {message}')
+        elif before != OK:
+            log.info(f'{name}: {message}')
+
+    def _type_of(self, topic: str, type_name: str | None) -> str:
+        if type_name is not None:
+            return type_name
+        if (row := find_topic(topic, self.get_namespace())) is None:
+            raise MessageError(f'{topic}: not a topic of the project, so its type is needed')
+        return row.type
+
+    def _diagnose(self) -> None:
+        statuses = [self._traffic_status(), clock_status(self), *self.statuses()]
+        for status in statuses:
+            self.say(status.name, status.level, status.message)
+        prefix = self.get_fully_qualified_name()
+        named = [
+            Status(f'{prefix}: {s.name}', s.level, s.message, s.values, self.get_name())
+            for s in statuses
+        ]
+        # Counted beforehand, so that the message's own count includes itself.
+        self.traffic.count('published', DIAGNOSTICS)
+        self._senders[DIAGNOSTICS].publish(serialize(diagnostic_array(self.now(), named)))
+
+    def _traffic_status(self) -> Status:
+        problems: Sequence[str] = connection_problems(
+            self, {topic: kind for topic, (_, kind) in self._listeners.items()}
+        )
+        refused = self.traffic.total('refused')
+        if refused:
+            last = next(reversed(self._refused.values()))
+            problems = [*problems, f'{refused} messages left out, the last because {last}']
+        values = {
+            'published': str(self.traffic.total('published')),
+            'received': str(self.traffic.total('received')),
+            **self.traffic.report(),
+        }
+        message = '; '.join(problems) or 'messages are flowing as they should'
+        return Status('messages', WARN if problems else OK, message, values)

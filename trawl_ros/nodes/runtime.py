@@ -1,0 +1,108 @@
+"""From the command line to a spinning node and to a clean end."""
+
+import signal
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import FrameType
+
+import rclpy
+from rclpy.exceptions import ROSInterruptException
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+
+from trawl_ros.errors import TrawlError
+from trawl_ros.nodes.node import TrawlNode
+
+WAKE_S = 0.1
+"""Python sees a signal only between two waits, so no wait is longer than this."""
+
+QUIET_S = 0.3
+LONGEST_DRAIN_S = 5.0
+
+
+class _Stop:
+    """Counts SIGINT and SIGTERM while entered."""
+
+    def __init__(self) -> None:
+        self.wishes = 0
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self.wishes += 1
+
+    def __enter__(self) -> '_Stop':
+        self._before = {
+            number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)
+        }
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+
+def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int:
+    """Spin a node until SIGINT, SIGTERM, or until it has come to its end by itself.
+
+    Parameters
+    ----------
+    make
+        Creates the node once ROS is up.
+    args
+        Command line with the program's name first; by default that of the process.
+
+    Returns
+    -------
+    int
+        Exit code: 0, or 1 after one sentence on stderr.
+    """
+    arguments = list(sys.argv if args is None else args)
+    program = Path(arguments[0]).name if arguments else 'trawl_ros'
+    with _Stop() as stop:
+        try:
+            # ROS's own handlers would close the context before the last words are said.
+            rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+            unknown = remove_ros_args(arguments)[1:]
+            if unknown:
+                raise TrawlError(
+                    f'{" ".join(unknown)}: not understood; expected parameters such as '
+                    '--ros-args -p name:=value'
+                )
+            return _spin(make, stop)
+        except TrawlError as reason:
+            print(f'{program}: {reason}', file=sys.stderr)  # noqa: T201
+            return 1
+        except (ExternalShutdownException, ROSInterruptException):
+            return 0
+        finally:
+            rclpy.try_shutdown()
+
+
+def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
+    node = make()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        while not stop.wishes and node.exit_code is None:
+            executor.spin_once(timeout_sec=WAKE_S)
+        if node.DRAINS:
+            _drain(executor, node, stop)
+    finally:
+        node.destroy_node()
+        executor.shutdown()
+    return node.exit_code or 0
+
+
+def _drain(executor: SingleThreadedExecutor, node: TrawlNode, stop: _Stop) -> None:
+    """Take in what is on its way, until it is quiet or patience ends; a second signal ends it."""
+    wishes = stop.wishes
+    end = time.monotonic() + LONGEST_DRAIN_S
+    received, since = -1, time.monotonic()
+    while time.monotonic() < end and stop.wishes == wishes:
+        executor.spin_once(timeout_sec=0.05)
+        if node.traffic.total('received') != received:
+            received, since = node.traffic.total('received'), time.monotonic()
+        elif time.monotonic() - since > QUIET_S:
+            break

@@ -1,0 +1,309 @@
+"""`sim_node`: tows the gear and publishes the truth of it."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from time import monotonic
+from typing import Any, ClassVar
+
+from std_srvs.srv import Trigger
+
+from trawl_ros.cli.files import packaged
+from trawl_ros.errors import MessageError, TrawlError
+from trawl_ros.gear.load import load_gear
+from trawl_ros.messages.commands import (
+    VESSEL_COMMAND,
+    WINCH_COMMAND,
+    read_vessel_command,
+    read_winch_command,
+)
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
+from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.stamps import SECOND
+from trawl_ros.messages.to_messages import clock_message, truth_messages
+from trawl_ros.messages.topics import CLOCK, TRUTH
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.pacer import Pacer
+from trawl_ros.nodes.parameters import Flag, Names, Number, Text
+from trawl_ros.nodes.qos import STREAM
+from trawl_ros.nodes.runtime import run
+from trawl_ros.nodes.sync import Consumers
+from trawl_ros.nodes.towing import CommandedTow, Tow
+from trawl_ros.scenario.records import MAX_TRUTH_HZ
+from trawl_ros.scenario.run import Trial
+from trawl_ros.scenario.scenario import Scenario, load_scenario
+from trawl_ros.simulation.simulation import Command
+from trawl_ros.simulation.truth import Truth
+
+GEAR_MARKERS = 'truth/gear'
+LENGTHS = (1.0, 3000.0)
+SPEEDS = (0.5, 4.0)
+FASTEST_TURN = math.radians(3.0)
+
+BURST_S = 0.05
+"""Wall time for which other callbacks may have to wait."""
+
+SHORTEST_TICK_S = 0.002
+LONGEST_TICK_S = 0.02
+PATIENCE_S = 10.0
+"""How long after the end of a scenario consumers may take without any progress."""
+
+
+class SimNode(TrawlNode):
+    """Tows a gear from an equilibrium on, by a scenario or by commands.
+
+    Truth and instruments are stamped with simulated time from 0 on when ``/clock`` is
+    published, else with the time of the node's clock.
+    """
+
+    SPECS: ClassVar = (
+        Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
+        Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
+        Flag('exit_at_end', False, 'Whether to end with the scenario.'),
+        Number('warp_length_m', 500.0, 'm', *LENGTHS, 'Length of both warps at the start.'),
+        Number('speed_m_s', 2.0, 'm/s', *SPEEDS, 'Speed through the water at the start.'),
+        Number('heading_deg', 0.0, 'deg', -360.0, 360.0, 'First heading as ENU yaw.'),
+        Number(
+            'time_scale', 1.0, 'factor', 0.0, 1000.0, 'Simulated seconds per second of wall time; '
+            '0 is as fast as the consumers follow. Other than 1 it forces publish_clock.',
+            live=True,
+        ),
+        Flag('publish_clock', False, 'Whether to publish simulated time on /clock.'),
+        Number('truth_rate_hz', MAX_TRUTH_HZ, 'Hz', 0.1, MAX_TRUTH_HZ, 'Rate of the truth: 10 '
+               'divided by a whole number; a scenario brings its own.'),
+        Number('gear_rate_hz', 1.0, 'Hz', 0.0, 1.0, 'Rate of the markers on truth/gear.',
+               live=True),
+        Names('wait_for', 'Consumers (node names) without which the tow does not start.'),
+        Number('lead_s', 3.0, 's', 1.0, 8.0, 'Simulated time that the slowest consumer may lag '
+               'behind.', live=True),
+    )  # fmt: skip
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('sim_node', **kwargs)
+        self._scenario = self._load_scenario()
+        self._clock_published = self.parameters['publish_clock'] or not self._in_real_time()
+        if self._clock_published:
+            self.advertise(CLOCK.name)
+        for topic in TRUTH:
+            self.advertise(topic.name)
+        self._consumers = Consumers(self, self.parameters['wait_for'])
+        self._pacer = Pacer(self.parameters['time_scale'])
+        self._reported = (monotonic(), 0.0)
+        self._tow, self._period = self._prepare()
+        self._problem: str | None = None
+        self._begin()
+        self.listen(WINCH_COMMAND, self._command_winches, STREAM)
+        self.listen(VESSEL_COMMAND, self._command_vessel, STREAM)
+        self.create_service(Trigger, 'reset', self._reset)
+        self._ticker = self.create_timer(self._tick_s(), self._tick, clock=self.steady_clock)
+
+    def objection(self, name: str, value: Any) -> str | None:
+        """Say why a live parameter cannot take a value just now; None if it can."""
+        if name == 'time_scale' and value != 1.0 and not self._clock_published:
+            return (
+                f'time_scale: found {value:g}, expected 1, since /clock is not published; set '
+                'publish_clock at the start'
+            )
+        return None
+
+    def parameter_changed(self, name: str) -> None:
+        """Let a live parameter's new value have its effect."""
+        if name == 'time_scale':
+            self._pacer.change(self.parameters['time_scale'])
+            self._ticker.timer_period_ns = round(self._tick_s() * SECOND)
+
+    def statuses(self) -> list[Status]:
+        """How the tow goes."""
+        now = monotonic()
+        factor = (self._tow.time_s - self._reported[1]) / max(now - self._reported[0], 1e-9)
+        self._reported = (now, self._tow.time_s)
+        command = self._tow.simulation.command
+        missing = self._consumers.missing()
+        values = {
+            'simulated time': f'{self._tow.time_s:.1f}',
+            'times real time': f'{factor:.2f}',
+            'seconds lost': f'{self._pacer.lost_s:.1f}',
+            'wanted port warp': f'{command.port_length:g}',
+            'wanted starboard warp': f'{command.starboard_length:g}',
+            'wanted speed': f'{command.speed:g}',
+            'wanted rate of turn': f'{command.turn_rate:g}',
+            'waits for': ', '.join(missing),
+        }
+        if self._scenario is not None:
+            values['step'] = self._scenario.step_at(self._tow.time_s).name
+        return [Status('tow', *self._state(missing), values)]
+
+    def _state(self, missing: Sequence[str]) -> tuple[int, str]:
+        if self._problem:
+            return ERROR, self._problem
+        if self._ended is not None:
+            return OK, 'the scenario is at its end'
+        if missing:
+            return WARN, f'waits for {", ".join(missing)}, which should report on sync/progress'
+        if self._pacer.lost_s > 0.0:
+            return WARN, 'slower than the time scale asks for; expected a smaller one'
+        return OK, 'towing' if self._started else 'waits until discovery has come to rest'
+
+    def _in_real_time(self) -> bool:
+        return bool(self.parameters['time_scale'] == 1.0)
+
+    def _tick_s(self) -> float:
+        scale = self.parameters['time_scale']
+        wanted = SHORTEST_TICK_S if scale == 0.0 else 0.25 / MAX_TRUTH_HZ / scale
+        return float(min(max(wanted, SHORTEST_TICK_S), LONGEST_TICK_S))
+
+    def _load_scenario(self) -> Scenario | None:
+        name = self.parameters['scenario']
+        return load_scenario(packaged(Path(name), 'scenarios')) if name else None
+
+    def _prepare(self) -> tuple[Tow, int]:
+        """The tow, and the time (ns) from one truth to the next."""
+        if self._scenario is not None:
+            return Trial(self._scenario), round(SECOND / self._scenario.record.truth_rate_hz)
+        rate = self.parameters['truth_rate_hz']
+        every = MAX_TRUTH_HZ / rate
+        if abs(every - round(every)) > 1e-9 * every:
+            raise TrawlError(
+                f'parameter truth_rate_hz: found {rate:g}, expected {MAX_TRUTH_HZ:g} divided by a '
+                'whole number (Hz)'
+            )
+        length, speed = self.parameters['warp_length_m'], self.parameters['speed_m_s']
+        tow = CommandedTow(
+            build_model(load_gear(self.parameters['gear'])),
+            Command(length, length, speed),
+            heading=math.radians(self.parameters['heading_deg']),
+            steps_per_truth=round(every),
+        )
+        return tow, round(SECOND / rate)
+
+    def _begin(self) -> None:
+        self._offset: int | None = None
+        self._latest = 0
+        self._next_s = 0.0
+        self._next_gear_s = 0.0
+        self._started = False
+        self._ended: float | None = None
+        self._reported = (monotonic(), self._tow.time_s)
+        self._pacer.restart()
+
+    def _tick(self) -> None:
+        if self._ended is not None:
+            self._end_if_done()
+            return
+        if self._problem or not self._start():
+            return
+        end = monotonic() + BURST_S
+        while self._ended is None and not self._problem and self._may_go_on():
+            self._go_on()
+            if monotonic() > end:
+                break
+
+    def _start(self) -> bool:
+        alone = not self.parameters['wait_for'] and self.parameters['time_scale'] != 0.0
+        if not self._started and (alone or self._consumers.ready()):
+            self._started = True
+            self._offset = 0 if self._clock_published else self.now()
+            self._latest = self._offset
+            self._consumers.begin(self._offset)
+            self._reported = (monotonic(), self._tow.time_s)
+        return self._started
+
+    def _may_go_on(self) -> bool:
+        slowest = self._consumers.slowest()
+        lead = round(self.parameters['lead_s'] * SECOND)
+        # Asked in this order: time that consumers take is not lost by the simulation.
+        if slowest is not None and self._latest + self._period > slowest + lead:
+            self._pacer.restart()
+            return False
+        return self._pacer.due(self._next_s)
+
+    def _go_on(self) -> None:
+        try:
+            truth = self._tow.step()
+        except TrawlError as reason:
+            self._problem = str(reason)
+            if self.parameters['exit_at_end']:
+                raise
+            return
+        if truth is None:
+            self._ended = monotonic()
+            return
+        self._next_s = (truth.stamp + self._period) / SECOND
+        self._publish(truth)
+
+    def _publish(self, truth: Truth) -> None:
+        stamp = truth.stamp + (self._offset or 0)
+        if self._clock_published:
+            self.send(*clock_message(stamp))
+        for topic, message in truth_messages(replace(truth, stamp=stamp)):
+            self.send(topic, message)
+        self._publish_gear(truth.stamp / SECOND, stamp)
+        self._latest = stamp
+        self._consumers.sent(stamp)
+
+    def _publish_gear(self, time_s: float, stamp: int) -> None:
+        rate = self.parameters['gear_rate_hz']
+        if rate == 0.0 or time_s < self._next_gear_s - 1e-9:
+            return
+        self._next_gear_s = time_s + 1.0 / rate
+        # Drawing takes as long as towing for a second, so nobody's picture is not drawn.
+        if self.advertise(GEAR_MARKERS).get_subscription_count():
+            picture = replace(self._tow.simulation.picture(), stamp=stamp)
+            self.send(*gear_markers(picture))
+
+    def _end_if_done(self) -> None:
+        if not self.parameters['exit_at_end'] or self.exit_code is not None:
+            return
+        slowest = self._consumers.slowest()
+        done = slowest is None or slowest >= self._latest
+        if done and self.all_acknowledged(1.0):
+            self.end(0, f'the scenario has come to its end at {self._tow.time_s:.1f} s')
+        elif monotonic() - (self._ended or 0.0) > PATIENCE_S and not done:
+            self.end(1, 'consumers did not follow to the end of the scenario')
+
+    def _command_winches(self, message: Any) -> None:
+        wanted = read_winch_command(message)
+        low, high = LENGTHS
+        for length in wanted:
+            if length is not None and not low <= length <= high:
+                raise MessageError(
+                    f'{WINCH_COMMAND}: a warp length of {length:g} m; expected {low:g} to {high:g}'
+                )
+        self._commanded(WINCH_COMMAND).command_winches(*wanted)
+
+    def _command_vessel(self, message: Any) -> None:
+        speed, turn = read_vessel_command(message)
+        low, high = SPEEDS
+        if not low <= speed <= high:
+            raise MessageError(
+                f'{VESSEL_COMMAND}: a speed of {speed:g} m/s; expected {low:g} to {high:g}'
+            )
+        if abs(turn) > FASTEST_TURN + 1e-12:
+            raise MessageError(
+                f'{VESSEL_COMMAND}: a rate of turn of {turn:g} rad/s; expected at most '
+                f'{FASTEST_TURN:.4f} to either side'
+            )
+        self._commanded(VESSEL_COMMAND).command_vessel(speed, turn)
+
+    def _commanded(self, topic: str) -> CommandedTow:
+        if isinstance(self._tow, CommandedTow):
+            return self._tow
+        raise MessageError(f'{topic}: the scenario is in command; expected no command beside it')
+
+    def _reset(self, request: Any, response: Any) -> Any:
+        try:
+            self._tow.reset()
+        except TrawlError as reason:
+            response.success, response.message = False, str(reason)
+            return response
+        self._problem = None
+        self._begin()
+        response.success, response.message = True, 'the tow is at its start again'
+        return response
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run(SimNode, args)

@@ -1,0 +1,133 @@
+"""Credit: consumers say how far they are, and sources do not run far ahead of the slowest.
+
+An acknowledged message is not a processed one: DDS says that the bytes have arrived, not that
+the subscriber has come to them. A source that runs as fast as it can would fill queues until
+they overflow, so each consumer gives back, on ``sync/progress``, the stamp of the latest
+message that it has fully dealt with.
+"""
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from trawl_ros.messages.stamps import SECOND, from_time, header
+from trawl_ros.nodes.graph_checks import SYNC
+from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.qos import STREAM
+
+HEADER = 'std_msgs/msg/Header'
+INTERVAL_NS = SECOND // 2
+"""How much data time lies between two reports of progress."""
+
+HEARTBEAT_S = 0.5
+SETTLED_S = 1.0
+"""Discovery is taken to be over when nobody was added for this long."""
+
+SILENT_S = 10.0
+"""A consumer not heard for this long has gone."""
+
+
+class Progress:
+    """A consumer's side: reports now and then, and at least every `HEARTBEAT_S` of wall time.
+
+    Parameters
+    ----------
+    node
+        Whose progress it is.
+    ready
+        Whether the node may announce itself; a source that waits for it starts then.
+    """
+
+    def __init__(self, node: TrawlNode, ready: Callable[[], bool] = lambda: True) -> None:
+        self._node = node
+        self._ready = ready
+        self._done = 0
+        self._reported = 0
+        node.advertise(SYNC, HEADER)
+        node.create_timer(HEARTBEAT_S, self._beat, clock=node.steady_clock)
+
+    @property
+    def stamp(self) -> int:
+        """Stamp of the latest message that was dealt with, ns; 0 before the first."""
+        return self._done
+
+    def done(self, stamp: int) -> None:
+        """All up to this stamp (ns) is dealt with; an earlier one than before starts anew."""
+        self._done = stamp
+        if not 0 <= stamp - self._reported < INTERVAL_NS:
+            self._report()
+
+    def _beat(self) -> None:
+        if self._ready():
+            self._report()
+
+    def _report(self) -> None:
+        self._reported = self._done
+        message = header(self._done, self._node.get_name())
+        self._node.send(SYNC, message)
+
+
+class Consumers:
+    """A source's side: who has to keep up, and how far they are.
+
+    Parameters
+    ----------
+    node
+        The source.
+    names
+        Consumers (names of nodes) without which it does not start. Others that report join in.
+    """
+
+    def __init__(self, node: TrawlNode, names: Sequence[str]) -> None:
+        self._node = node
+        self._names = tuple(names)
+        self._stamps: dict[str, int] = {}
+        self._heard: dict[str, float] = {}
+        self._span = (0, 0)
+        self._subscribers: dict[str, tuple[int, int]] = {}
+        self._changed = time.monotonic()
+        self._ready = False
+        node.listen(SYNC, self._take, STREAM, HEADER)
+
+    def ready(self) -> bool:
+        """Whether all have been there, and discovery has come to rest; once true it stays so."""
+        found = self._node.subscribers()
+        if found != self._subscribers:
+            self._subscribers, self._changed = found, time.monotonic()
+        settled = time.monotonic() - self._changed > SETTLED_S
+        self._ready = self._ready or (settled and not self.missing())
+        return self._ready
+
+    def missing(self) -> list[str]:
+        """Names of the needed that have not been heard, or not for long."""
+        return [name for name in self._names if not self._present(name)]
+
+    def begin(self, stamp: int) -> None:
+        """Data time begins (anew) at a stamp (ns): what was reported so far is worth nothing."""
+        self._stamps.clear()
+        self._span = (stamp, stamp)
+
+    def sent(self, stamp: int) -> None:
+        """Take note of the newest stamp that was published."""
+        self._span = (self._span[0], stamp)
+
+    def slowest(self) -> int | None:
+        """Give the stamp (ns) that all have reached; None without any consumer.
+
+        Those that are needed count even when silent; the others only while they are heard.
+        """
+        names = {*self._names, *(name for name in self._heard if self._present(name))}
+        return min((self._stamps.get(name, self._span[0]) for name in names), default=None)
+
+    def _present(self, name: str) -> bool:
+        return time.monotonic() - self._heard.get(name, -math.inf) < SILENT_S
+
+    def _take(self, message: Any) -> None:
+        name, stamp = message.frame_id, from_time(message.stamp)
+        if name == self._node.get_name():
+            return
+        self._heard[name] = time.monotonic()
+        # Progress outside of what was published since the beginning is from before it.
+        if self._span[0] <= stamp <= self._span[1]:
+            self._stamps[name] = stamp

@@ -1,0 +1,56 @@
+"""How many messages went through each topic, how fast, and how long ago the last one was."""
+
+import time
+from dataclasses import dataclass, field
+
+
+@dataclass
+class _Count:
+    total: int = 0
+    latest: float = field(default_factory=time.monotonic)
+    reported: int = 0
+    reported_at: float = field(default_factory=time.monotonic)
+
+
+class Traffic:
+    """Counts by direction ('published', 'received', ...) and full topic name.
+
+    Counting is all that happens per message; rates and ages follow when they are asked for.
+    """
+
+    def __init__(self) -> None:
+        self._counts: dict[tuple[str, str], _Count] = {}
+
+    def expect(self, direction: str, topic: str) -> None:
+        """Report a topic even before its first message."""
+        self._counts.setdefault((direction, topic), _Count())
+
+    def count(self, direction: str, topic: str) -> None:
+        """Take note of one message."""
+        entry = self._counts.setdefault((direction, topic), _Count())
+        entry.total += 1
+        entry.latest = time.monotonic()
+
+    def counts(self, direction: str) -> dict[str, int]:
+        """Give the number of messages by full topic name."""
+        return {
+            topic: entry.total for (way, topic), entry in self._counts.items() if way == direction
+        }
+
+    def total(self, direction: str) -> int:
+        """Give the number of messages of all topics."""
+        return sum(entry.total for (way, _), entry in self._counts.items() if way == direction)
+
+    def report(self) -> dict[str, str]:
+        """Give key and value for diagnostics: counts, rates since the last report, ages."""
+        now = time.monotonic()
+        values: dict[str, str] = {}
+        for (direction, topic), entry in list(self._counts.items()):
+            values[f'{direction} {topic}'] = str(entry.total)
+            span = now - entry.reported_at
+            if span > 0.0:
+                values[f'rate {direction} {topic}'] = f'{(entry.total - entry.reported) / span:.2f}'
+            if entry.total:
+                values[f'age {direction} {topic}'] = f'{now - entry.latest:.2f}'
+            entry.reported, entry.reported_at = entry.total, now
+        return values

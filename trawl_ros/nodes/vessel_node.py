@@ -1,0 +1,56 @@
+"""`vessel_node`: the ship's speed log, GPS and compass."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from trawl_ros.instruments.samples import Sample
+from trawl_ros.instruments.vessel import VesselInstruments
+from trawl_ros.messages.from_messages import vessel_truth
+from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
+from trawl_ros.nodes.parameters import Number, Parameters
+from trawl_ros.nodes.partial_truth import partial_truth
+from trawl_ros.nodes.runtime import run
+
+ODOMETRY, THROUGH_WATER = 'truth/vessel/odom', 'truth/vessel/velocity_water'
+
+
+class VesselNode(InstrumentNode):
+    """Reports ``vessel/{velocity_water,velocity_ground,heading,fix}``."""
+
+    TRUTH: ClassVar = (ODOMETRY, THROUGH_WATER)
+    SAMPLES: ClassVar = (
+        'vessel/velocity_water',
+        'vessel/velocity_ground',
+        'vessel/fix',
+        'vessel/heading',
+    )
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('vessel_node', **kwargs)
+
+    def set_up(self, setup: Setup) -> None:
+        """Make the instruments."""
+        record = setup.parameters.vessel
+        datum = Parameters(
+            self,
+            (
+                Number('datum_lat', record.datum_lat_deg, 'deg', -89.0, 89.0,
+                       'Latitude of the origin of map; by default that of the instruments.'),
+                Number('datum_lon', record.datum_lon_deg, 'deg', -180.0, 180.0,
+                       'Longitude of the origin of map; by default that of the instruments.'),
+            ),
+            self.objection,
+            self.parameter_changed,
+        )  # fmt: skip
+        placed = {'datum_lat_deg': datum['datum_lat'], 'datum_lon_deg': datum['datum_lon']}
+        self._instruments = VesselInstruments(record.model_copy(update=placed), setup.draws)
+
+    def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
+        """Give the samples due at a stamp (ns)."""
+        vessel = vessel_truth(messages[ODOMETRY], messages[THROUGH_WATER])
+        return self._instruments.observe(partial_truth(stamp, vessel=vessel))
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run(VesselNode, args)

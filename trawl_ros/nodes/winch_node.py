@@ -1,0 +1,37 @@
+"""`winch_node`: counters, pay-out speeds and load cells of the winches."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from trawl_ros.instruments.samples import Sample
+from trawl_ros.instruments.winch import WinchInstruments
+from trawl_ros.messages.from_messages import winch_truth
+from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
+from trawl_ros.nodes.partial_truth import partial_truth
+from trawl_ros.nodes.runtime import run
+
+WINCH = 'truth/winch'
+
+
+class WinchNode(InstrumentNode):
+    """Reports ``winch/joint_states``."""
+
+    TRUTH: ClassVar = (WINCH,)
+    SAMPLES: ClassVar = ('winch/joint_states',)
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('winch_node', **kwargs)
+
+    def set_up(self, setup: Setup) -> None:
+        """Make the instruments."""
+        self._instruments = WinchInstruments(setup.parameters.winch, setup.draws)
+
+    def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
+        """Give the samples due at a stamp (ns)."""
+        winches = winch_truth(WINCH, messages[WINCH])
+        return self._instruments.observe(partial_truth(stamp, winches=winches))
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run(WinchNode, args)
