@@ -153,6 +153,41 @@ def test_a_mirrored_case_gives_mirrored_answers(model: GearModel) -> None:
     assert abs(one.port_door_depth - one.starboard_door_depth) > 1.0
 
 
+def test_installation_angles_do_what_the_paper_reports(default_model: GearModel, table) -> None:
+    start = table[2.1][3]
+
+    def change(axis: int, degrees: float) -> dict[str, float]:
+        angles = [0.0, 0.0, 0.0]
+        angles[axis] = np.radians(degrees)
+        turned = default_model.with_board(installation=tuple(angles))
+        seen = steady_state(turned, 500.0, 2.1, start=start.equilibrium).observables
+        relative = {
+            name: getattr(seen, name) / getattr(start.observables, name) - 1.0
+            for name in ('door_depth', 'door_spread', 'vertical_opening', 'warp_tension')
+        }
+        added = {
+            name: np.degrees(getattr(seen, name) - getattr(start.observables, name))
+            for name in ('port_attack', 'port_inclination')
+        }
+        return relative | added
+
+    epsilon, zeta, eta = change(0, 5.0), change(1, 5.0), change(2, 5.0)
+    # About 30 % less depth, and more than 5° of both angles.
+    assert -0.4 < epsilon['door_depth'] < -0.25
+    assert epsilon['port_attack'] > 5.0
+    assert epsilon['port_inclination'] > 5.0
+    # Spread and mouth opening trade; tension follows spread.
+    for found in (epsilon, zeta, eta):
+        assert found['door_spread'] * found['vertical_opening'] < 0.0
+        assert found['door_spread'] * found['warp_tension'] > 0.0
+    assert 0.05 < epsilon['door_spread'] < 0.12
+    # Turning about y does least; turning about x lowers α a little and raises δ.
+    for name in ('door_depth', 'door_spread', 'vertical_opening', 'port_attack'):
+        assert abs(zeta[name]) < abs(eta[name]) < abs(epsilon[name]), name
+    assert -2.0 < eta['port_attack'] < 0.0
+    assert eta['port_inclination'] > 0.0
+
+
 def test_a_finer_net_tells_nearly_the_same(gear: GearRecord, table) -> None:
     coarse = table[2.1][3].observables
     point = OperatingPoint(500.0, 500.0, 2.1)

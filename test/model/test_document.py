@@ -1,0 +1,30 @@
+"""docs/model.md names every equation of the paper, and only functions that exist."""
+
+import re
+from importlib import import_module
+from operator import attrgetter
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+DOCUMENT = (ROOT / 'docs' / 'model.md').read_text(encoding='utf-8')
+ROWS = re.findall(r'^\| ([\d–, ]+?)(?:, Table 1)? \| [^|]+ \| ([^|]+) \|$', DOCUMENT, re.MULTILINE)
+
+
+def test_equations_1_to_38_are_all_there() -> None:
+    found: list[int] = []
+    for numbers, _ in ROWS:
+        for part in numbers.split(','):
+            first, _, last = part.partition('–')
+            found.extend(range(int(first), int(last or first) + 1))
+    assert sorted(found) == list(range(1, 39))
+
+
+def test_what_it_names_exists() -> None:
+    for name in re.findall(r'`([^`]+)`', ' '.join(where for _, where in ROWS)):
+        if '/' in name:
+            assert (ROOT / name).exists(), name
+            continue
+        folder, module, attribute = name.split('.', 2)
+        assert attrgetter(attribute)(import_module(f'trawl_ros.{folder}.{module}')), name
+    for name in re.findall(r'`(?:pytest -s )?(test/\S+?\.py)`', DOCUMENT):
+        assert (ROOT / name).exists(), name
