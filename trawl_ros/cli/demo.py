@@ -1,0 +1,225 @@
+"""``trawl demo``: the whole chain through the real ROS graph, one process per node."""
+
+import random
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich.console import Console
+
+from trawl_ros.bags.reader import summarise
+from trawl_ros.cli.demo_folder import DemoFolder
+from trawl_ros.cli.demo_report import load_result, print_result
+from trawl_ros.cli.files import FOLDER, SCENARIO, packaged
+from trawl_ros.cli.identify import true_coefficients
+from trawl_ros.cli.processes import Processes
+from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.trial_figures import gear_figure, history_figure, read_history
+from trawl_ros.errors import TrawlError
+from trawl_ros.identification.channels import CHANNELS
+from trawl_ros.messages.topics import INSTRUMENTS, TRUTH, absolute
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import build_water
+from trawl_ros.scenario.scenario import Scenario, load_scenario
+
+if TYPE_CHECKING:
+    from trawl_ros.nodes.monitor import Monitor
+
+INSTRUMENT_NODES = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
+DOMAINS = (*range(20, 70), *range(215, 233))
+"""Neither ROS's own 0 nor those whose ports Linux also gives to outgoing connections."""
+
+LOOK_S = 0.2
+
+
+@dataclass(frozen=True)
+class Traffic:
+    """Messages by full topic name: as their publishers count them, and as the bag has them."""
+
+    published: Mapping[str, int]
+    recorded: Mapping[str, int]
+
+    @property
+    def lost(self) -> dict[str, tuple[int, int]]:
+        """Topics on which the two numbers differ, with both."""
+        return {
+            topic: (self.published.get(topic, 0), self.recorded.get(topic, 0))
+            for topic in sorted(self.published.keys() | self.recorded.keys())
+            if self.published.get(topic, 0) != self.recorded.get(topic, 0)
+        }
+
+
+@click.command('demo')
+@click.option('--out', required=True, type=FOLDER, help='Folder for the results.')
+@click.option('--scenario', default='demo', show_default=True, type=SCENARIO, help='What is towed.')
+def command(out: Path, scenario: Path) -> None:
+    """Tow a sea trial through the ROS graph, record it, replay it, and refit the boards.
+
+    Every node is a process of its own; they talk by DDS on this machine only. The folder
+    takes the bag, identification.json, figures, and summary.json.
+    """
+    path = packaged(scenario, 'scenarios').resolve()
+    loaded = load_scenario(path)
+    truth = dict(zip(COEFFICIENTS, true_coefficients(path).tolist(), strict=True))
+    folder = DemoFolder(out)
+    console = error_console()
+    environment = {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_DOMAIN_ID': str(random.SystemRandom().choice(DOMAINS)),
+        'ROS_LOG_DIR': str(folder.logs.resolve()),
+    }
+    began = time.monotonic()
+    with Processes(folder.logs, environment) as processes, _monitor(environment) as monitor:
+        tow_s = _tow(processes, monitor, loaded, folder, console)
+        traffic = _traffic(monitor, folder)
+        _replay(processes, monitor, loaded, folder, console)
+    result = load_result(folder.path)
+    figures = _draw(loaded, folder)
+    folder.write_summary(
+        {
+            'finished': True,
+            'scenario': path.stem,
+            'minutes_at_sea': loaded.duration_s / 60.0,
+            'times_real_time': loaded.duration_s / tow_s,
+            'seconds': {'tow': tow_s, 'all': time.monotonic() - began},
+            'messages': {
+                topic: {'published': count, 'recorded': traffic.recorded.get(topic, 0)}
+                for topic, count in sorted(traffic.published.items())
+            },
+            'messages_lost': sum(abs(a - b) for a, b in traffic.lost.values()),
+            'windows': result['windows'],
+            'objective': result['objective'],
+            'channels': result['channels'],
+            'coefficients': {
+                name: {**values, 'truth': truth[name]}
+                for name, values in result['coefficients'].items()
+            },
+            'bag': folder.bag.name,
+            'figures': figures,
+        }
+    )
+    print_result(result, truth)
+    _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
+
+
+def _monitor(environment: Mapping[str, str]) -> 'Monitor':
+    try:
+        from trawl_ros.nodes.monitor import Monitor
+    except ImportError as reason:
+        raise TrawlError(
+            f'the demo needs ROS 2 and found no {reason.name}; expected a sourced ROS 2, or '
+            "the extra `ros`: pip install 'trawl_ros[ros]'"
+        ) from reason
+    return Monitor(environment)
+
+
+def _tow(
+    processes: Processes,
+    monitor: 'Monitor',
+    scenario: Scenario,
+    folder: DemoFolder,
+    console: Console,
+) -> float:
+    """Tow and record; give the wall time (s) it took."""
+    path = str(scenario.path)
+    consumers = ['bag_recorder', *INSTRUMENT_NODES]
+    processes.start('bag_recorder', use_sim_time=True, output=str(folder.bag))
+    for node in INSTRUMENT_NODES:
+        processes.start(node, use_sim_time=True, scenario=path, wait_for=['bag_recorder'])
+    processes.start('sim_node', scenario=path, time_scale=0.0, exit_at_end=True, wait_for=consumers)
+    with TimeProgress('towing', scenario.duration_s, console) as progress:
+        while not processes.finished('sim_node'):
+            done = float(monitor.value('sim_node', 'tow', 'simulated time') or 0.0)
+            progress.update(done, monitor.value('sim_node', 'tow', 'step') or 'starting nodes')
+            time.sleep(LOOK_S)
+        progress.update(scenario.duration_s)
+        took = progress.elapsed_s
+    # Sources before the recorder, so that it gets their last messages.
+    for node in (*INSTRUMENT_NODES, 'bag_recorder'):
+        processes.stop(node)
+    return took
+
+
+def _traffic(monitor: 'Monitor', folder: DemoFolder) -> Traffic:
+    summary = summarise(folder.bag)
+    if summary.problems:
+        raise TrawlError('; '.join(summary.problems))
+    watched = {absolute(topic.name) for topic in (*TRUTH, *INSTRUMENTS)}
+    return Traffic(
+        {topic: count for topic, count in monitor.published().items() if topic in watched},
+        {entry.topic: entry.count for entry in summary.topics if entry.topic in watched},
+    )
+
+
+def _replay(
+    processes: Processes,
+    monitor: 'Monitor',
+    scenario: Scenario,
+    folder: DemoFolder,
+    console: Console,
+) -> None:
+    """Play the instruments' part of the bag to the identification, and let it finish."""
+    path = str(scenario.path)
+    topics = list(dict.fromkeys(absolute(channel.topic) for channel in CHANNELS.values()))
+    processes.start(
+        'identification_node',
+        use_sim_time=True,
+        gear=_gear_file(scenario),
+        truth=path,
+        output=str(folder.results),
+    )
+    processes.start(
+        'bag_player',
+        bag=str(folder.bag),
+        rate=0.0,
+        topics=topics,
+        wait_for=['identification_node'],
+    )
+    with TimeProgress('replaying', scenario.duration_s, console) as progress:
+        while not processes.finished('bag_player'):
+            done = float(monitor.value('bag_player', 'bag', 'played until') or 0.0)
+            windows = monitor.value('identification_node', 'estimate', 'windows') or '0'
+            progress.update(done, f'{windows} steady windows')
+            time.sleep(LOOK_S)
+        progress.update(scenario.duration_s)
+    console.print('identification: all windows together, and those left out of the fit')
+    success, message = monitor.finish_identification(processes.check)
+    if not success:
+        raise TrawlError(f'{folder.bag}: {message}')
+    processes.stop('identification_node')
+    folder.gather_results()
+
+
+def _gear_file(scenario: Scenario) -> str:
+    """The scenario's gear for a process with another idea of what is beside it."""
+    name = scenario.record.gear
+    beside = scenario.path.parent / name
+    return str(beside) if name.endswith(('.yaml', '.yml')) else name
+
+
+def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
+    history = read_history(folder.bag, build_water(scenario.plant).depth)
+    history_figure(history).savefig(folder.path / 'history.png', dpi=130)
+    gear_figure(history).savefig(folder.path / 'gear.png', dpi=130)
+    return sorted(file.name for file in folder.path.glob('*.png'))
+
+
+def _close(
+    scenario: Scenario, folder: DemoFolder, traffic: Traffic, tow_s: float, all_s: float
+) -> None:
+    recorded = sum(traffic.recorded.values())
+    click.echo(
+        f'{scenario.duration_s / 60:.1f} min at sea in {tow_s:.1f} s, '
+        f'{scenario.duration_s / tow_s:.1f} × real time; {all_s:.0f} s in all'
+    )
+    if traffic.lost:
+        listed = '; '.join(
+            f'{topic}: {published} published, {recorded} recorded'
+            for topic, (published, recorded) in traffic.lost.items()
+        )
+        raise TrawlError(f'{folder.bag}: messages are missing, expected all: {listed}')
+    click.echo(f'{folder.bag}: {recorded} messages, as many as were published')
+    click.echo(f'{folder.path}: summary.json, identification.json and figures')

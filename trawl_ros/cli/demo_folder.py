@@ -1,0 +1,89 @@
+"""Where a demo puts its results, and which of them it may replace."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.errors import TrawlError
+
+MADE_BY = 'trawl demo'
+SUMMARY = 'summary.json'
+
+
+class DemoFolder:
+    """The folder of one demo.
+
+    It is marked from the beginning, so that the next demo may replace it also if this one
+    never comes to its end.
+
+    Parameters
+    ----------
+    path
+        New, empty, or what a former demo left.
+
+    Raises
+    ------
+    TrawlError
+        If there is something else, or the folder cannot be made.
+    """
+
+    FIGURES = ('history.png', 'gear.png')
+    RESULTS = 'identification'
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            if path.exists() and any(path.iterdir()):
+                self._require_former_demo()
+                self._clear()
+            path.mkdir(parents=True, exist_ok=True)
+            self.write_summary({'finished': False})
+        except OSError as reason:
+            raise TrawlError(f'{path}: cannot be used ({reason.strerror})') from reason
+
+    @property
+    def bag(self) -> Path:
+        """The recorded trial."""
+        return self.path / 'bag'
+
+    @property
+    def logs(self) -> Path:
+        """What the nodes said."""
+        return self.path / 'log'
+
+    @property
+    def results(self) -> Path:
+        """Where `identification_node` puts its report."""
+        return self.path / self.RESULTS
+
+    def gather_results(self) -> list[str]:
+        """Move the report up, beside the rest; give the names of its files."""
+        names = sorted(file.name for file in self.results.iterdir())
+        for name in names:
+            (self.results / name).replace(self.path / name)
+        self.results.rmdir()
+        return names
+
+    def write_summary(self, content: dict[str, Any]) -> None:
+        """Write ``summary.json``."""
+        text = json.dumps({'made_by': MADE_BY, **content}, indent=2)
+        (self.path / SUMMARY).write_text(f'{text}\n', encoding='utf-8')
+
+    def _require_former_demo(self) -> None:
+        try:
+            content = json.loads((self.path / SUMMARY).read_text(encoding='utf-8'))
+        except (OSError, ValueError):
+            content = None
+        if not isinstance(content, dict) or content.get('made_by') != MADE_BY:
+            raise TrawlError(
+                f'{self.path}: holds files that no demo has made, which are not written over; '
+                'expected a new folder, an empty one, or that of a former demo'
+            )
+
+    def _clear(self) -> None:
+        for folder in (self.bag, self.logs, self.results):
+            if folder.is_dir():
+                shutil.rmtree(folder)
+        for file in (self.path / 'identification.json', *self.path.glob('*.png')):
+            file.unlink(missing_ok=True)

@@ -1,0 +1,76 @@
+"""The command ``trawl``: one file per sub-command, loaded when it is called."""
+
+import signal
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from types import FrameType, MappingProxyType
+from typing import Any
+
+import click
+
+from trawl_ros import __version__
+from trawl_ros.errors import TrawlError
+
+COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        'demo': ('demo', 'Tow, record, replay and refit through the real ROS graph.'),
+        'tow': ('tow', 'Tow a scenario and record what the instruments report as a bag.'),
+        'identify': ('identify', 'Refit the twelve board coefficients from recorded bags.'),
+        'trim': ('trim', 'Find fastening points that give the boards wanted angles.'),
+        'scenarios': ('scenarios', 'List the scenarios that come with the package.'),
+        'import-log': ('import_log', 'Turn a CSV log from sea into a bag.'),
+        'bag': ('bag', 'Look into bags.'),
+    }
+)
+"""Name → module of `trawl_ros.cli` (its ``command``), and what the list of commands says.
+
+The sentences stand here so that the list needs none of the modules.
+"""
+
+
+class Trawl(click.Group):
+    """Loads the modules of commands late and says errors of input in one sentence."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Give the names in the order of a sea trial."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Load one command."""
+        if cmd_name not in COMMANDS:
+            return None
+        module, _ = COMMANDS[cmd_name]
+        command = import_module(f'trawl_ros.cli.{module}').command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without loading them."""
+        with formatter.section('Commands'):
+            formatter.write_dl([(name, sentence) for name, (_, sentence) in COMMANDS.items()])
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; what is the input's fault ends with one sentence and exit code 1."""
+        try:
+            return super().invoke(ctx)
+        except TrawlError as error:
+            raise click.ClickException(str(error)) from error
+
+
+@click.group(cls=Trawl, context_settings={'help_option_names': ['-h', '--help']})
+@click.version_option(__version__, prog_name='trawl')
+def trawl() -> None:
+    """Tow an emulated mid-water trawl, record it, and refit the model of its gear.
+
+    Scenarios, gear and mappings are files, or names of those that come with the package.
+    """
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Run ``trawl``; being terminated ends it as orderly as Ctrl-C does."""
+    signal.signal(signal.SIGTERM, _interrupt)
+    trawl.main(args=args, prog_name='trawl')
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt

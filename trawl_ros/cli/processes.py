@@ -1,0 +1,143 @@
+"""Nodes as processes of their own: started, watched, and ended together."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+
+from trawl_ros.errors import TrawlError
+
+LAST_LINES = 15
+"""What is shown of the output of a process that failed."""
+
+END_S = 10.0
+"""Time (s) that a process has to end after it was asked to."""
+
+Value = str | int | float | bool | list[str]
+
+
+class NodeFailed(TrawlError):
+    """A node that ended when it should not have, or could not end cleanly."""
+
+
+class Processes:
+    """Child processes, one per node; leaving the context ends all that still run.
+
+    Parameters
+    ----------
+    logs
+        Folder that takes what each of them says.
+    environment
+        Variables they get besides those of this process.
+    """
+
+    def __init__(self, logs: Path, environment: Mapping[str, str]) -> None:
+        self._logs = logs
+        self._environment = {**os.environ, **environment}
+        self._running: dict[str, subprocess.Popen[bytes]] = {}
+        logs.mkdir(parents=True, exist_ok=True)
+
+    def start(self, node: str, **parameters: Value) -> None:
+        """Start a node of this package with ROS parameters."""
+        # JSON is YAML, so strings stay strings whatever is in them.
+        options = [
+            word
+            for key, value in parameters.items()
+            for word in ('-p', f'{key}:={json.dumps(value)}')
+        ]
+        code = (
+            f"import sys; sys.argv[0] = '{node}'; from trawl_ros.nodes.{node} import main; "
+            'sys.exit(main())'
+        )
+        command = [sys.executable, '-c', code, '--ros-args', *options]
+        with self._log(node).open('wb') as log:
+            # A session of their own: Ctrl-C is for the demo, which ends them in good order.
+            self._running[node] = subprocess.Popen(
+                command,
+                env=self._environment,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    def check(self) -> None:
+        """Raise `NodeFailed`, with the last output, if a node has ended by itself."""
+        for node, process in self._running.items():
+            if process.poll() is not None:
+                raise NodeFailed(self._failure(node, process.returncode))
+
+    def finished(self, node: str) -> bool:
+        """Tell whether a node that ends by itself has done so, and look after the others.
+
+        Raises
+        ------
+        NodeFailed
+            If it, or another one, has failed.
+        """
+        code = self._running[node].poll()
+        if code == 0:
+            del self._running[node]
+        self.check()
+        return code == 0
+
+    def stop(self, node: str) -> None:
+        """End a node as Ctrl-C does.
+
+        Raises
+        ------
+        NodeFailed
+            If it fails in doing so, or does not end in time.
+        """
+        process = self._running.pop(node)
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        try:
+            code = process.wait(END_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            raise NodeFailed(self._failure(node, None)) from None
+        if code:
+            raise NodeFailed(self._failure(node, code))
+
+    def stop_all(self) -> None:
+        """End all nodes, the last started first."""
+        for node in reversed(list(self._running)):
+            self.stop(node)
+
+    def _failure(self, node: str, code: int | None) -> str:
+        ended = f'did not end within {END_S:g} s' if code is None else f'ended with code {code}'
+        text = self._log(node).read_text(encoding='utf-8', errors='replace')
+        lines = text.strip().splitlines()[-LAST_LINES:]
+        said = '\n'.join(f'    {line}' for line in lines) or '    (nothing)'
+        return f'{node} {ended}; its last output ({self._log(node)}):\n{said}'
+
+    def _log(self, node: str) -> Path:
+        return self._logs / f'{node}.txt'
+
+    def __enter__(self) -> 'Processes':
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for process in self._running.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        deadline = time.monotonic() + END_S
+        for process in self._running.values():
+            try:
+                process.wait(max(0.1, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+        self._running.clear()

@@ -1,0 +1,65 @@
+"""Samples of one or several bags as one stream, with what could not be used."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from trawl_ros.bags.reader import Bag
+from trawl_ros.errors import MessageError
+from trawl_ros.instruments.samples import Sample
+from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
+from trawl_ros.messages.topics import absolute
+
+BETWEEN_BAGS = 3_600_000_000_000
+"""Time (ns) put between two bags whose own stamps overlap, as those of simulations do."""
+
+
+@dataclass
+class SampleStream:
+    """The samples of bags, in the order of log times within each.
+
+    A bag that does not begin after the one before is moved in time to follow it: tows stay
+    apart, whatever their clocks said.
+
+    Attributes
+    ----------
+    problems
+        A sentence for each thing that was found wrong; complete once all was read.
+    """
+
+    paths: Sequence[Path]
+    namespace: str
+    problems: list[str] = field(default_factory=list)
+
+    def __iter__(self) -> Iterator[tuple[Path, Sample]]:
+        last = 0
+        for path in self.paths:
+            shift: int | None = None
+            newest = last
+            for sample in self._read(path):
+                if shift is None:
+                    behind = last and sample.stamp <= last
+                    shift = last - sample.stamp + BETWEEN_BAGS if behind else 0
+                moved = replace(sample, stamp=sample.stamp + shift) if shift else sample
+                newest = max(newest, moved.stamp)
+                yield path, moved
+            last = newest
+
+    def _read(self, path: Path) -> Iterator[Sample]:
+        bag = Bag(path, namespace=self.namespace)
+        names = {absolute(name, self.namespace): name for name in SAMPLE_TOPICS}
+        refused: Counter[str] = Counter()
+        reasons: dict[str, str] = {}
+        for received in bag.messages(names):
+            name = names[received.topic]
+            try:
+                yield to_sample(name, received.message)
+            except MessageError as reason:
+                refused[name] += 1
+                reasons.setdefault(name, str(reason))
+        self.problems += bag.problems
+        for name, count in refused.items():
+            self.problems.append(
+                f'{path}: {count} messages were left out, the first because {reasons[name]}'
+            )

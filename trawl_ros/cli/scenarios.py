@@ -1,0 +1,23 @@
+"""``trawl scenarios``."""
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from trawl_ros.errors import ScenarioError
+from trawl_ros.scenario.records import ScenarioRecord
+from trawl_ros.share import share_path
+from trawl_ros.validation import load_yaml, validated
+
+
+@click.command('scenarios')
+def command() -> None:
+    """List the scenarios that come with the package, each with what it is for."""
+    table = Table(box=None, pad_edge=False)
+    for heading in ('name', 'minutes', 'description'):
+        table.add_column(heading, justify='right' if heading == 'minutes' else 'left')
+    for path in sorted(share_path('config', 'scenarios').glob('*.yaml')):
+        record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)
+        minutes = sum(step.minutes for step in record.steps)
+        table.add_row(path.stem, f'{minutes:g}', record.description)
+    Console().print(table)

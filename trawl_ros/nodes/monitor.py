@@ -1,0 +1,133 @@
+"""An ear on a running graph: what its nodes report of themselves, and a wish or two."""
+
+import os
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from threading import Lock, Thread
+from types import TracebackType
+from typing import Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from std_srvs.srv import Trigger
+
+from trawl_ros.messages.diagnostics import read_statuses
+from trawl_ros.messages.topics import NAMESPACE, absolute
+from trawl_ros.nodes.identification_node import FINISH
+from trawl_ros.nodes.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.qos import CONSUMER
+
+PUBLISHED = 'published '
+MESSAGES = 'messages'
+
+
+@dataclass
+class Heard:
+    """The newest values of each status, by node and by the subsystem's name."""
+
+    values: dict[tuple[str, str], Mapping[str, str]] = field(default_factory=dict)
+    lock: Lock = field(default_factory=Lock)
+
+    def take(self, message: Any) -> None:
+        """Keep what a message on ``/diagnostics`` says."""
+        with self.lock:
+            for status in read_statuses(message):
+                subsystem = status.name.rpartition(': ')[2]
+                self.values[status.hardware_id, subsystem] = status.values
+
+    def get(self, node: str, subsystem: str, key: str) -> str:
+        """Give a value, '' if it was not heard yet."""
+        with self.lock:
+            return self.values.get((node, subsystem), {}).get(key, '')
+
+
+class Monitor:
+    """Listens to a graph in a thread of its own while entered.
+
+    Parameters
+    ----------
+    environment
+        What the nodes of that graph have in their environment, such as ``ROS_DOMAIN_ID``.
+    """
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self._environment = environment
+        self._heard = Heard()
+
+    def value(self, node: str, subsystem: str, key: str) -> str:
+        """Give what a node reports of itself, '' if it was not heard yet."""
+        return self._heard.get(node, subsystem, key)
+
+    def published(self) -> dict[str, int]:
+        """Give the number of messages by full topic name, as the publishers count them."""
+        found: dict[str, int] = {}
+        with self._heard.lock:
+            for (_, subsystem), values in self._heard.values.items():
+                if subsystem != MESSAGES:
+                    continue
+                for key, value in values.items():
+                    if key.startswith(PUBLISHED):
+                        topic = key.removeprefix(PUBLISHED)
+                        found[topic] = found.get(topic, 0) + int(value)
+        return found
+
+    def finish_identification(self, waiting: Callable[[], None]) -> tuple[bool, str]:
+        """Ask `identification_node` to finish.
+
+        Parameters
+        ----------
+        waiting
+            Called again and again meanwhile; what it raises ends the wait.
+
+        Returns
+        -------
+        success, message
+            As the service answers.
+        """
+        client = self._node.create_client(Trigger, absolute(FINISH))
+        while not client.service_is_ready():
+            waiting()
+            time.sleep(0.1)
+        answer: Any = client.call_async(Trigger.Request())
+        while not answer.done():
+            waiting()
+            time.sleep(0.1)
+        response = answer.result()
+        return response.success, response.message
+
+    def __enter__(self) -> 'Monitor':
+        self._before = {key: os.environ.get(key) for key in self._environment}
+        os.environ.update(self._environment)
+        self._context = Context()
+        rclpy.init(args=[], context=self._context)
+        self._node = TrawlNode('monitor', namespace=NAMESPACE, context=self._context)
+        self._node.listen(DIAGNOSTICS, self._heard.take, CONSUMER)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._over = False
+        self._thread = Thread(target=self._spin, name='monitor', daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._over = True
+        self._thread.join()
+        self._node.destroy_node()
+        self._executor.shutdown()
+        self._context.try_shutdown()
+        for key, value in self._before.items():
+            if value is None:
+                os.environ.pop(key, None)
+            else:
+                os.environ[key] = value
+
+    def _spin(self) -> None:
+        while not self._over:
+            self._executor.spin_once(timeout_sec=0.1)

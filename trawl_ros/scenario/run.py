@@ -1,0 +1,150 @@
+"""A trial as it is towed: the scenario's commands at their times, truth at its rate.
+
+Node and command line share this, so the same scenario gives the same data in both.
+"""
+
+import math
+
+from trawl_ros.errors import NoSteadyState, ScenarioError
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.scenario.records import MAX_TRUTH_HZ
+from trawl_ros.scenario.scenario import Scenario
+from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
+from trawl_ros.simulation.truth import Truth
+from trawl_ros.solver.equilibrium import SteadyState, steady_state
+from trawl_ros.solver.stepper import StepFailed
+
+
+class Trial:
+    """One run of a scenario, from its start in equilibrium to its last step's end.
+
+    Parameters
+    ----------
+    scenario
+        From `load_scenario`.
+    model
+        The plant; built from the scenario when not given.
+    stamp
+        Time of the start, ns.
+
+    Attributes
+    ----------
+    model : GearModel
+        The plant that is towed.
+    simulation : Simulation
+        The tow. Its command is the scenario's; it is set anew at each time step.
+    duration_s : float
+        How long the trial takes, s.
+
+    Raises
+    ------
+    NoSteadyState
+        If the start, or what a step without a turn asks for, is no usable steady state.
+    """
+
+    def __init__(
+        self, scenario: Scenario, *, model: GearModel | None = None, stamp: int = 0
+    ) -> None:
+        self.scenario = scenario
+        self.model = build_model(scenario.plant) if model is None else model
+        self.duration_s = scenario.duration_s
+        require_steady_states(scenario, self.model)
+        self.simulation = Simulation(
+            self.model,
+            scenario.start,
+            heading=scenario.heading,
+            stamp=stamp,
+            period=1.0 / MAX_TRUTH_HZ,
+        )
+        self._first_stamp = stamp
+        self._steps_per_truth = round(MAX_TRUTH_HZ / scenario.record.truth_rate_hz)
+        self._truths = 1 + math.floor(self.duration_s * scenario.record.truth_rate_hz + 1e-6)
+        self._given = 0
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time since the start, s."""
+        return (self.simulation.now.stamp - self._first_stamp) / NANOSECONDS
+
+    def reset(self) -> None:
+        """Back to the start: the same truth comes again."""
+        self.simulation.reset()
+        self._given = 0
+
+    def step(self) -> Truth | None:
+        """Tow on for one period of the truth.
+
+        Returns
+        -------
+        Truth or None
+            The start itself at the first call; None after the end.
+
+        Raises
+        ------
+        ScenarioError
+            If the gear is moved so violently that its motion cannot be computed.
+        """
+        if self._given == self._truths:
+            return None
+        if self._given:
+            for _ in range(self._steps_per_truth):
+                self.simulation.command = self.scenario.commands_at(self.time_s)
+                self._advance()
+        self._given += 1
+        return self.simulation.truth()
+
+    def _advance(self) -> None:
+        try:
+            self.simulation.advance()
+        except StepFailed as reason:
+            step = self.scenario.step_at(self.time_s)
+            raise ScenarioError(
+                f"{self.scenario.path}: step '{step.name}': the motion of the gear cannot be "
+                f'computed beyond {self.time_s:.1f} s ({reason}); expected milder changes of '
+                'warp length, speed or course'
+            ) from reason
+
+
+def require_steady_states(scenario: Scenario, model: GearModel) -> None:
+    """Check that the gear can be towed as a scenario asks, before hours are spent on it.
+
+    Steps with a turn are left out: a turning ship has no steady state in `map`.
+
+    Raises
+    ------
+    NoSteadyState
+        Naming file and step, and why the gear has no usable steady state there.
+    """
+    heading = scenario.heading
+    asked = [('start', 0.0, scenario.start)]
+    for record, (_, command) in zip(scenario.record.steps, scenario.commands, strict=True):
+        asked.append((f"step '{record.name}'", 60.0 * record.minutes, command))
+    found: dict[tuple[Command, float], SteadyState] = {}
+    for name, duration, command in asked:
+        if command.turn_rate:
+            heading += command.turn_rate * duration
+        elif (command, heading) not in found:
+            try:
+                found[command, heading] = _steady(model, command, heading, found)
+            except NoSteadyState as reason:
+                raise NoSteadyState(
+                    f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed at '
+                    'which the gear tows steadily'
+                ) from reason
+
+
+def _steady(
+    model: GearModel,
+    command: Command,
+    heading: float,
+    found: dict[tuple[Command, float], SteadyState],
+) -> SteadyState:
+    """Solve warm from the last state on this heading, and cold where that leads nowhere."""
+    lengths = (command.port_length, command.starboard_length)
+    near = [state.equilibrium for (_, course), state in found.items() if course == heading]
+    if near:
+        try:
+            return steady_state(model, lengths, command.speed, heading=heading, start=near[-1])
+        except NoSteadyState:
+            pass
+    return steady_state(model, lengths, command.speed, heading=heading)
