@@ -7,13 +7,16 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import yaml
+
+from trawl_ros.gear.records import GearRecord
 
 # Before rclpy is loaded: nobody outside of this machine is to hear these nodes.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 SCENARIO = """\
 description: A short tow with a change of everything
-gear: kaifuha
+gear: gear.yaml
 seed: 5
 heading_deg: 30.0
 start: {warp_length_m: 300.0, speed_m_s: 2.1}
@@ -94,8 +97,17 @@ def open_graph():
 
 
 @pytest.fixture(scope='session')
-def scenario_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def gear_path(gear: GearRecord, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The default gear with its netting as coarse as it may be, for speed."""
+    coarse = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
+    path = tmp_path_factory.mktemp('gear') / 'gear.yaml'
+    path.write_text(yaml.safe_dump(coarse.model_dump(mode='json')))
+    return path
+
+
+@pytest.fixture(scope='session')
+def scenario_path(gear_path: Path) -> Path:
     """A trial of 24 s, long enough for every instrument to speak more than once."""
-    path = tmp_path_factory.mktemp('scenario') / 'short.yaml'
+    path = gear_path.parent / 'short.yaml'
     path.write_text(SCENARIO)
     return path

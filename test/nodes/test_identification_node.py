@@ -87,7 +87,7 @@ def steady_bag(model, tmp_path_factory):
 
 
 @pytest.fixture(scope='module')
-def session(open_graph, steady_bag, tmp_path_factory):
+def session(open_graph, steady_bag, gear_path, tmp_path_factory):
     """One identification from the first sample to the report, looked at on the way."""
 
     class Session:
@@ -95,7 +95,11 @@ def session(open_graph, steady_bag, tmp_path_factory):
 
     with open_graph(DOMAIN) as graph:
         node = graph.add(
-            IdentificationNode, settle_s=SETTLE_S, window_s=WINDOW_S, output=str(Session.output)
+            IdentificationNode,
+            gear=str(gear_path),
+            settle_s=SETTLE_S,
+            window_s=WINDOW_S,
+            output=str(Session.output),
         )
         listener = graph.add(Listener)
         graph.until(lambda: listener.report() is not None)

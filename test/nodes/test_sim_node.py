@@ -58,9 +58,15 @@ def graph(open_graph):
 
 
 @pytest.fixture(scope='module')
-def simulation(graph):
+def simulation(graph, gear_path):
     return graph.add(
-        SimNode, warp_length_m=300, speed_m_s=2.1, time_scale=0.0, lead_s=LEAD_S, wait_for=['crew']
+        SimNode,
+        gear=str(gear_path),
+        warp_length_m=300,
+        speed_m_s=2.1,
+        time_scale=0.0,
+        lead_s=LEAD_S,
+        wait_for=['crew'],
     )
 
 

@@ -71,7 +71,7 @@ class BagPlayer(TrawlNode):
         self._ended = False
         self._last_progress: tuple[int | None, float] = (None, monotonic())
         self._begin()
-        self.create_timer(TICK_S, self._tick, clock=self.steady_clock)
+        self.every(TICK_S, self._tick)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Say why a live parameter cannot take a value just now; None if it can."""

@@ -68,7 +68,7 @@ class BagRecorder(TrawlNode):
         self._wanted = {self.full_name(name) for name in wanted} if not self._everything else set()
         for name, topic in self._contract().items():
             self._record(name, topic.type, consumed(topic))
-        self.create_timer(SECOND_S, self._every_second, clock=self.steady_clock)
+        self.every(SECOND_S, self._every_second)
 
     def statuses(self) -> list[Status]:
         """What is in the bag."""

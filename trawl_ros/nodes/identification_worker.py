@@ -22,6 +22,9 @@ from trawl_ros.instruments.samples import Sample
 QUIET_S = 0.5
 """A wish to finish is granted when no sample has come for this long."""
 
+POLL_S = 0.005
+"""How long an executor is held up when it asks whether a wish is granted."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -66,7 +69,8 @@ class Finish:
         self._granted.set()
 
     def __await__(self) -> Generator[None, None, None]:
-        while not self._granted.is_set():
+        # Some executors ask again at once, which would take the processor from the worker.
+        while not self._granted.wait(POLL_S):
             yield
 
 

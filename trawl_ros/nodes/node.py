@@ -1,6 +1,7 @@
 """What all nodes of the project have in common: bytes in and out, diagnostics, a clean end."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock
@@ -10,8 +11,9 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
+from rclpy.timer import Timer
 
-from trawl_ros.errors import MessageError
+from trawl_ros.errors import MessageError, TrawlError
 from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.topics import NAMESPACE, find_topic
@@ -67,7 +69,7 @@ class TrawlNode(Node):
         self._closed = False
         self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
         self.advertise(DIAGNOSTICS)
-        self.create_timer(DIAGNOSTICS_PERIOD_S, self._diagnose, clock=self.steady_clock)
+        self.every(DIAGNOSTICS_PERIOD_S, self._diagnose)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Say why a live parameter cannot take a value just now; None if it can."""
@@ -113,6 +115,15 @@ class TrawlNode(Node):
         sender.publish(data)
         self.traffic.count('published', sender.topic_name)
 
+    def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
+        """Call back at a period of wall time, whatever ROS time does."""
+
+        def call() -> None:
+            with self._ending_on_error():
+                callback()
+
+        return self.create_timer(period_s, call, clock=self.steady_clock)
+
     def listen(
         self,
         topic: str,
@@ -139,7 +150,8 @@ class TrawlNode(Node):
 
         def take(data: bytes) -> None:
             self.traffic.count('received', full)
-            handler(data)
+            with self._ending_on_error():
+                handler(data)
 
         subscription = self.create_subscription(
             message_class(type_name),
@@ -209,6 +221,14 @@ class TrawlNode(Node):
             log.warning(f'{name}: {message}')
         elif before != OK:
             log.info(f'{name}: {message}')
+
+    @contextmanager
+    def _ending_on_error(self) -> Iterator[None]:
+        # Raised on, it would come out of the executor with a traceback, or end other nodes too.
+        try:
+            yield
+        except TrawlError as reason:
+            self.end(1, str(reason))
 
     def _type_of(self, topic: str, type_name: str | None) -> str:
         if type_name is not None:

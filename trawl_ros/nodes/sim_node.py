@@ -42,7 +42,7 @@ LENGTHS = (1.0, 3000.0)
 SPEEDS = (0.5, 4.0)
 FASTEST_TURN = math.radians(3.0)
 
-BURST_S = 0.05
+BURST_S = 0.02
 """Wall time for which other callbacks may have to wait."""
 
 SHORTEST_TICK_S = 0.002
@@ -97,7 +97,7 @@ class SimNode(TrawlNode):
         self.listen(WINCH_COMMAND, self._command_winches, STREAM)
         self.listen(VESSEL_COMMAND, self._command_vessel, STREAM)
         self.create_service(Trigger, 'reset', self._reset)
-        self._ticker = self.create_timer(self._tick_s(), self._tick, clock=self.steady_clock)
+        self._ticker = self.every(self._tick_s(), self._tick)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Say why a live parameter cannot take a value just now; None if it can."""
@@ -225,7 +225,7 @@ class SimNode(TrawlNode):
         except TrawlError as reason:
             self._problem = str(reason)
             if self.parameters['exit_at_end']:
-                raise
+                self.end(1, self._problem)
             return
         if truth is None:
             self._ended = monotonic()

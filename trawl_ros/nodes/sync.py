@@ -45,7 +45,7 @@ class Progress:
         self._done = 0
         self._reported = 0
         node.advertise(SYNC, HEADER)
-        node.create_timer(HEARTBEAT_S, self._beat, clock=node.steady_clock)
+        node.every(HEARTBEAT_S, self._beat)
 
     @property
     def stamp(self) -> int:
