@@ -68,7 +68,7 @@ def test_what_exists_is_not_written_over(run, trial, tmp_path):
     [
         ('seed: 5', 'seeed: 5', 'did you mean seed'),
         ('speed_m_s: 2.1', 'speed_m_s: -2.1', 'start.speed_m_s'),
-        ('gear: kaifuha', 'gear: kaifuga', 'kaifuga'),
+        ('gear: coarse.yaml', 'gear: kaifuga', 'kaifuga'),
         # On ten metres of warp the gear comes up to the surface.
         ('warp_length_m: 510.0', 'warp_length_m: 10.0', "step 'veer'"),
         ('warp_length_m: 500.0', 'warp_length_m: 10.0', 'start: warp 10 m at 2.1 m/s'),
