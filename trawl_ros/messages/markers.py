@@ -78,7 +78,11 @@ def _line(stamp: int, line: Polyline) -> Any:
 
 def _lines(stamp: int, name: str, lines: Sequence[Polyline]) -> Any:
     """Several lines as pairs of points, each pair with a colour at either end."""
-    pairs = [np.repeat(line.points, 2, axis=0)[1:-1] for line in lines]
+    sizes = np.array([len(line.points) for line in lines])
+    every = np.concatenate([line.points for line in lines])
+    # Each point but the last of a line begins a pair.
+    begins = np.delete(np.arange(len(every)), np.cumsum(sizes) - 1)
+    pairs = every[np.column_stack([begins, begins + 1]).ravel()]
     colours = _colours(np.array([line.tension for line in lines]))
     marker = _marker(
         stamp,
@@ -86,10 +90,12 @@ def _lines(stamp: int, name: str, lines: Sequence[Polyline]) -> Any:
         ros.visualization_msgs__msg__Marker.LINE_LIST,
         scale=(LINE_WIDTH, 0.0, 0.0),
         colour=_STEEL,
-        points=_points(np.concatenate(pairs)),
+        points=_points(pairs),
     )
     marker.colors = [
-        colour for pair, colour in zip(pairs, colours, strict=True) for _ in range(len(pair))
+        colour
+        for size, colour in zip(sizes.tolist(), colours, strict=True)
+        for _ in range(2 * (size - 1))
     ]
     return marker
 

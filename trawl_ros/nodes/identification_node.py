@@ -63,8 +63,9 @@ class IdentificationNode(TrawlNode):
              'empty.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
-        Number('settle_s', 120.0, 's', 0.0, 3600.0, 'Time the gear is given after each change.'),
-        Number('window_s', 60.0, 's', 20.0, 3600.0, 'Length of a steady window.'),
+        Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Time the gear is given '
+               'after each change of warp length, speed or heading.'),
+        Number('window_s', WindowOptions.window_s, 's', 20.0, 3600.0, 'Length of a steady window.'),
     )  # fmt: skip
     DRAINS: ClassVar = True
 
