@@ -14,10 +14,11 @@ from trawl_ros.bags.reader import summarise
 from trawl_ros.cli.demo_folder import DemoFolder
 from trawl_ros.cli.demo_report import load_result, print_result
 from trawl_ros.cli.files import FOLDER, SCENARIO, packaged
+from trawl_ros.cli.gear_figure import gear_figure
 from trawl_ros.cli.identify import true_coefficients
 from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress, error_console
-from trawl_ros.cli.trial_figures import gear_figure, history_figure, read_history
+from trawl_ros.cli.trial_figures import history_figure, read_history
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.messages.topics import INSTRUMENTS, TRUTH, absolute
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
 INSTRUMENT_NODES = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
 DOMAINS = (*range(20, 70), *range(215, 233))
 """Neither ROS's own 0 nor those whose ports Linux also gives to outgoing connections."""
+
+GEAR_HZ = 0.1
+"""At its usual 1 Hz the picture of the gear would take a third of the time of the tow."""
 
 LOOK_S = 0.2
 
@@ -203,7 +207,7 @@ def _gear_file(scenario: Scenario) -> str:
 def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
     history = read_history(folder.bag, build_water(scenario.plant).depth)
     history_figure(history).savefig(folder.path / 'history.png', dpi=130)
-    gear_figure(history).savefig(folder.path / 'gear.png', dpi=130)
+    gear_figure(history.gear).savefig(folder.path / 'gear.png', dpi=130)
     return sorted(file.name for file in folder.path.glob('*.png'))
 
 

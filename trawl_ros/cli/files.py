@@ -20,7 +20,7 @@ def packaged(path: Path, folder: str) -> Path:
     TrawlError
         If a bare name is not one of those that come with the package.
     """
-    if path.suffix in ('.yaml', '.yml') or path.exists() or len(path.parts) != 1:
+    if path.suffix in ('.yaml', '.yml') or path.is_file() or len(path.parts) != 1:
         return path
     return share_path('config', folder, f'{path}.yaml')
 

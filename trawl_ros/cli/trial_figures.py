@@ -1,4 +1,4 @@
-"""What happened on a trial, drawn from its bag: history and a view of the gear."""
+"""What happened on a trial, drawn from its bag."""
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
@@ -9,19 +9,15 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.spatial.transform import Rotation
 
 from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.stamps import SECOND, stamp_of
-from trawl_ros.messages.topics import DOOR_FRAMES, NAMESPACE, absolute
+from trawl_ros.messages.topics import NAMESPACE, absolute
 
 TRUTH, MEASURED, COMMANDED = '#2ca02c', '#000000', '#1f77b4'
 TRUTH_EVERY = 20
 """Every so many truths are drawn: two seconds apart at ten per second."""
-
-ROPES = ('_warp', '_bridle', 'headrope', 'footrope', *DOOR_FRAMES.values())
-"""Ends of the names of what is drawn bold."""
 
 PRESSURES = ('door/port/pressure', 'door/starboard/pressure', 'sonar/pressure')
 TOPICS = (
@@ -149,65 +145,3 @@ def history_figure(history: History) -> Figure:
     panels[1].legend(fontsize='small', markerscale=4)
     panels[-1].set_xlabel('time / min')
     return figure
-
-
-def gear_figure(history: History) -> Figure:
-    """The gear from above and from the side, with the ship's stern at the origin."""
-    figure = Figure(figsize=(10.0, 4.2), layout='constrained')
-    lines = _lines(history.gear)
-    every = np.concatenate([line.points for line in lines]) if lines else np.eye(3)
-    _, width, height = np.ptp(every, axis=0)
-    top, side = figure.subplots(2, 1, sharex=True, height_ratios=(width, height))
-    for line in lines:
-        style: dict[str, Any] = {'color': line.colour, 'lw': 1.6 if line.rope else 0.5}
-        top.plot(line.points[:, 0], line.points[:, 1], **style)
-        side.plot(line.points[:, 0], line.points[:, 2], **style)
-    side.axhline(0.0, color=COMMANDED, lw=0.8)
-    top.set_title('The gear at the end of the trial: ropes from slack (blue) to tight (red)')
-    top.set_ylabel('to port / m')
-    side.set_ylabel('height / m')
-    side.set_xlabel('behind the ship / m')
-    for axes in (top, side):
-        axes.set_aspect('equal')
-        axes.grid(alpha=0.3)
-    return figure
-
-
-@dataclass(frozen=True)
-class _Line:
-    """Points (n, 3): behind the ship, to port, up; m."""
-
-    points: np.ndarray
-    colour: tuple[float, float, float]
-    rope: bool
-
-
-def _lines(gear: Any | None) -> list[_Line]:
-    """The markers of the gear in the ship's axes, doors as their two middle lines."""
-    strips, doors = [], []
-    for marker in [] if gear is None else gear.markers:
-        colour = (marker.color.r, marker.color.g, marker.color.b)
-        if marker.type == marker.LINE_STRIP:
-            points = np.array([[p.x, p.y, p.z] for p in marker.points])
-            strips.append((marker.ns, points, colour))
-        elif marker.type == marker.CUBE:
-            place, turn = marker.pose.position, marker.pose.orientation
-            axes = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix()
-            middle = np.array([place.x, place.y, place.z])
-            for axis, size in ((axes[:, 0], marker.scale.x), (axes[:, 2], marker.scale.z)):
-                half = 0.5 * size * axis
-                doors.append((marker.ns, np.stack([middle - half, middle + half]), colour))
-    blocks = [points[0] for name, points, _ in strips if name.endswith('_warp')]
-    if len(blocks) != 2:
-        return []
-    origin = np.mean(blocks, axis=0)
-    every = np.concatenate([points for _, points, _ in strips])
-    astern = every.mean(axis=0) - origin
-    astern[2] = 0.0
-    astern /= np.linalg.norm(astern)
-    to_port = np.array([astern[1], -astern[0], 0.0])
-    basis = np.stack([astern, to_port, np.array([0.0, 0.0, 1.0])])
-    return [
-        _Line((points - origin) @ basis.T, colour, name.endswith(ROPES))
-        for name, points, colour in (*strips, *doors)
-    ]

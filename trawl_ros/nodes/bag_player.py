@@ -56,7 +56,7 @@ class BagPlayer(TrawlNode):
         self._bag = Bag(self.parameters['bag'], namespace=self.get_namespace())
         self._topics = self._chosen()
         self._clock_published = self.parameters['publish_clock'] or self.parameters['rate'] != 1.0
-        self._since_acknowledged: dict[str, int] = {}
+        self._halves: dict[str, tuple[int, int | None]] = {}
         for topic in sorted(self._topics):
             try:
                 self.advertise(topic, self._bag.topics[topic])
@@ -136,6 +136,7 @@ class BagPlayer(TrawlNode):
         self._next: RawMessage | None = first
         self._latest = first.log_time
         self._clocked: int | None = None
+        self._halves.clear()
         self._pacer.restart()
         self._consumers.begin(first.log_time)
 
@@ -181,13 +182,17 @@ class BagPlayer(TrawlNode):
         self._let_arrive(message.topic)
 
     def _let_arrive(self, topic: str) -> None:
-        # Half of what the publisher keeps, so that nothing unacknowledged is ever replaced.
-        waiting = self._since_acknowledged.get(topic, 0) + 1
-        if waiting >= PUBLISHED_DEPTH // 2:
-            self.all_acknowledged(1.0)
-            self._since_acknowledged.clear()
+        # Counted in halves of what the publisher keeps: a half goes out when the one before has
+        # arrived, so that nothing that may have to be sent again is ever replaced.
+        sent, before = self._halves.get(topic, (0, None))
+        if sent + 1 < PUBLISHED_DEPTH // 2:
+            self._halves[topic] = (sent + 1, before)
             return
-        self._since_acknowledged[topic] = waiting
+        slowest = self._consumers.slowest()
+        # Progress proves arrival at once; an acknowledgement may take half a second to come.
+        if before is not None and (slowest is None or slowest < before):
+            self.all_acknowledged(1.0)
+        self._halves[topic] = (0, self._latest)
 
     def _finish_round(self) -> None:
         self._rounds += 1

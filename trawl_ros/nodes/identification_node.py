@@ -63,11 +63,14 @@ class IdentificationNode(TrawlNode):
              'empty.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
-        Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Time the gear is given '
-               'after each change of warp length, speed or heading.'),
+        Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Least time the gear is '
+               'given after each change of warp length, speed or heading.'),
+        Number('settle_passages', WindowOptions.settle_passages, '', 0.0, 10.0, 'How many times '
+               'the length of the gear the ship tows before it counts as settled.'),
         Number('window_s', WindowOptions.window_s, 's', 20.0, 3600.0, 'Length of a steady window.'),
     )  # fmt: skip
     DRAINS: ClassVar = True
+    AWAITS: ClassVar = True
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('identification_node', **kwargs)
@@ -77,7 +80,9 @@ class IdentificationNode(TrawlNode):
         identification = identification_for(
             load_gear(parameters['gear']),
             window_options=WindowOptions(
-                settle_s=parameters['settle_s'], window_s=parameters['window_s']
+                settle_s=parameters['settle_s'],
+                settle_passages=parameters['settle_passages'],
+                window_s=parameters['window_s'],
             ),
             estimator_options=None if parameters['prior'] else EstimatorOptions(prior_weight=0.0),
         )

@@ -11,6 +11,7 @@ from typing import Any
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity
 from std_srvs.srv import Trigger
 
 from trawl_ros.messages.diagnostics import read_statuses
@@ -103,6 +104,8 @@ class Monitor:
         self._context = Context()
         rclpy.init(args=[], context=self._context)
         self._node = TrawlNode('monitor', namespace=NAMESPACE, context=self._context)
+        # What it notices of clocks and types the nodes themselves have in their logs.
+        self._node.get_logger().set_level(LoggingSeverity.ERROR)
         self._node.listen(DIAGNOSTICS, self._heard.take, CONSUMER)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)

@@ -56,6 +56,9 @@ class TrawlNode(Node):
     DRAINS: ClassVar[bool] = False
     """Whether messages on their way are still to be taken in when told to stop."""
 
+    AWAITS: ClassVar[bool] = False
+    """Whether callbacks await something, which the events executor does not know."""
+
     def __init__(self, name: str, **kwargs: Any) -> None:
         kwargs.setdefault('namespace', NAMESPACE)
         super().__init__(name, **kwargs)

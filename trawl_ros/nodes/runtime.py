@@ -88,7 +88,7 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
 
 def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
     node = make()
-    executor = NodeExecutor()
+    executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
     executor.add_node(node)
     try:
         while not stop.wishes and node.exit_code is None:
