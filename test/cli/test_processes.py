@@ -1,0 +1,102 @@
+"""Nodes as child processes: what fails is said with its last words, and all end together."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.cli.processes import NodeFailed, Processes
+
+pytestmark = pytest.mark.ros
+
+ENVIRONMENT = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': '88'}
+PATIENCE_S = 60.0
+
+
+def running_with(marker: str) -> list[int]:
+    """Processes that have a text in their environment."""
+    found = []
+    for entry in Path('/proc').iterdir():
+        try:
+            if entry.name.isdigit() and marker.encode() in (entry / 'environ').read_bytes():
+                found.append(int(entry.name))
+        except OSError:
+            continue
+    return found
+
+
+@pytest.fixture
+def environment(tmp_path):
+    return {**ENVIRONMENT, 'ROS_LOG_DIR': str(tmp_path / 'log')}
+
+
+def wait_until(condition):
+    deadline = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < deadline, 'waited too long'
+        time.sleep(0.1)
+
+
+def test_a_node_that_fails_is_named_with_its_last_words(tmp_path, environment):
+    with Processes(tmp_path / 'log', environment) as processes:
+        processes.start('bag_recorder')
+
+        def failed():
+            try:
+                processes.check()
+            except NodeFailed as reason:
+                return str(reason)
+            return ''
+
+        wait_until(failed)
+        assert failed().startswith('bag_recorder ended with code 1; its last output (')
+        assert 'parameter output: missing' in failed()
+
+
+def test_a_node_ends_cleanly_when_stopped(tmp_path, environment):
+    with Processes(tmp_path / 'log', environment) as processes:
+        processes.start('bag_recorder', output=str(tmp_path / 'bag'))
+        wait_until((tmp_path / 'bag' / 'metadata.yaml').is_file)
+        processes.check()
+        processes.stop('bag_recorder')
+    assert running_with(str(tmp_path)) == []
+
+
+def test_leaving_for_whatever_reason_ends_all(tmp_path, environment):
+    def tow_and_fail():
+        with Processes(tmp_path / 'log', environment) as processes:
+            processes.start('bag_recorder', output=str(tmp_path / 'bag'))
+            processes.start('winch_node')
+            wait_until(lambda: len(running_with(str(tmp_path))) == 2)
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        tow_and_fail()
+    assert running_with(str(tmp_path)) == []
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_demo_leaves_nobody_behind(tmp_path, number):
+    out = tmp_path / 'demo'
+    with (tmp_path / 'output.txt').open('w') as output:
+        demo = subprocess.Popen(
+            [sys.executable, '-c', 'from trawl_ros.cli.main import main; main()',
+             'demo', '--out', str(out)],
+            stdout=output, stderr=subprocess.STDOUT, env=os.environ,
+        )  # fmt: skip
+    try:
+        wait_until(lambda: len(running_with(str(out))) >= 6 or demo.poll() is not None)
+        demo.send_signal(number)
+        code = demo.wait(timeout=30.0)
+    finally:
+        demo.kill()
+        demo.wait()
+    assert code == 1, (tmp_path / 'output.txt').read_text()
+    assert 'Traceback' not in (tmp_path / 'output.txt').read_text()
+    assert running_with(str(out)) == []
