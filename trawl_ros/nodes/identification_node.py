@@ -65,8 +65,8 @@ class IdentificationNode(TrawlNode):
              'are set beside the estimate in the report.'),
         Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Least time the gear is '
                'given after each change of warp length, speed or heading.'),
-        Number('settle_passages', WindowOptions.settle_passages, 'times', 0.0, 10.0, 'How many times '
-               'the length of the gear the ship tows before it counts as settled.'),
+        Number('settle_passages', WindowOptions.settle_passages, 'times', 0.0, 10.0, 'How often '
+               'the ship passes the length of her gear before it counts as settled.'),
         Number('window_s', WindowOptions.window_s, 's', 20.0, 3600.0, 'Length of a steady window.'),
     )  # fmt: skip
     DRAINS: ClassVar = True
