@@ -16,12 +16,13 @@ from trawl_ros.identification.pipeline import Identification, WindowUsed
 from trawl_ros.identification.report import report
 from trawl_ros.identification.result import result
 from trawl_ros.identification.table import channel_table, closing_lines, coefficient_table
-from trawl_ros.identification.window_records import REASONS, RejectedWindow
+from trawl_ros.identification.window_records import REASONS, RejectedWindow, WindowOptions
 from trawl_ros.instruments.samples import RangeSample, WinchSample
 
 
 def make(sea, model, prior):
-    return Identification(model, prior, sea.OBSERVABLES, sea.pressure_to_depth)
+    options = WindowOptions(settle_s=120.0, settle_passages=0.0, speed_tolerance=0.15)
+    return Identification(model, prior, sea.OBSERVABLES, sea.pressure_to_depth, options)
 
 
 @pytest.fixture(scope='module')

@@ -19,9 +19,12 @@ from trawl_ros.instruments.samples import (
     WinchSample,
 )
 
+# The closed-form sea settles at once; its legs are kept short.
+SHORT = {'settle_s': 120.0, 'settle_passages': 0.0, 'speed_tolerance': 0.15}
+
 
 def run(sea, samples, **options):
-    finder = SteadyWindowFinder(sea.pressure_to_depth, WindowOptions(**options))
+    finder = SteadyWindowFinder(sea.pressure_to_depth, WindowOptions(**{**SHORT, **options}))
     found = [item for sample in samples for item in finder.feed(sample)]
     found += finder.finish()
     return finder, [item for item in found if isinstance(item, SteadyWindow)]
@@ -194,6 +197,17 @@ def test_a_channel_that_never_speaks_is_missing(sea, calm):
     assert finder.rejected['missing channel'] == 1
 
 
+def test_a_long_gear_is_given_longer_than_a_short_one(sea, model):
+    held = {}
+    for length in (200.0, 900.0):
+        samples = sea.tow(model, [sea.Leg(length, 2.0, 1200.0)])
+        _, windows = run(sea, samples, settle_passages=1.8, settle_s=180.0)
+        held[length] = (windows[0].start_ns - samples[0].stamp) / 1e9
+    # The time to tow 1.8 times warp and net (200 m), to the next ten seconds of the grid.
+    assert held[200.0] == pytest.approx(1.8 * 400.0 / 2.0, abs=15.0)
+    assert held[900.0] == pytest.approx(1.8 * 1100.0 / 2.0, abs=15.0)
+
+
 def test_turning_is_not_steady(sea, model):
     finder, windows = run(sea, sea.tow(model, [sea.Leg(500.0, 2.0, 400.0, turn=0.002)]))
     assert windows == []
@@ -216,7 +230,7 @@ def test_a_log_that_has_no_yaw_rate_is_no_fault(sea, calm):
 
 def test_gear_that_still_drifts_is_unsteady_though_winch_and_speed_are_held(sea, model):
     legs = [sea.Leg(400.0, 2.0, 60.0), sea.Leg(600.0, 2.0, 205.0)]
-    finder = SteadyWindowFinder(sea.pressure_to_depth)
+    finder = SteadyWindowFinder(sea.pressure_to_depth, WindowOptions(**SHORT))
     found = [item for s in sea.tow(model, legs, lag_s=90.0) for item in finder.feed(s)]
     details = [item.detail for item in found if isinstance(item, RejectedWindow)]
     assert any('drifts by' in detail for detail in details)

@@ -98,6 +98,7 @@ def session(open_graph, steady_bag, gear_path, tmp_path_factory):
             IdentificationNode,
             gear=str(gear_path),
             settle_s=SETTLE_S,
+            settle_passages=0.0,
             window_s=WINDOW_S,
             output=str(Session.output),
         )

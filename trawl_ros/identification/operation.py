@@ -9,6 +9,9 @@ import numpy as np
 from trawl_ros.identification.channels import CHANNELS, INPUTS
 from trawl_ros.identification.window_records import WindowOptions
 
+SLOWEST = 0.5
+"""Speed (m/s) below which the settling time grows no more."""
+
 
 @dataclass(frozen=True)
 class Block:
@@ -47,9 +50,10 @@ class Operation:
 
     def __init__(self, options: WindowOptions) -> None:
         self._options = options
-        self.settle_blocks = math.ceil(options.settle_s / options.block_s)
         self.window_blocks = math.ceil(options.window_s / options.block_s)
-        self._blocks: deque[Block] = deque(maxlen=self.settle_blocks + self.window_blocks)
+        longest = max(options.settle_s, options.longest_settle_s)
+        self.most_blocks = math.ceil(longest / options.block_s) + self.window_blocks
+        self._blocks: deque[Block] = deque(maxlen=self.most_blocks)
 
     def add(self, block: Block) -> None:
         """Append the next block; one that does not follow the last starts afresh."""
@@ -58,18 +62,32 @@ class Operation:
         self._blocks.append(block)
 
     @property
+    def settle_blocks(self) -> int:
+        """Blocks the gear is given to settle at the warp lengths and speed of the window."""
+        options = self._options
+        settle = options.settle_s
+        window = [block.inputs for block in list(self._blocks)[-self.window_blocks :]]
+        if window and all(None not in inputs for inputs in window):
+            port, starboard, speed = np.mean(np.array(window, dtype=float), axis=0)
+            gear = max(port, starboard) + options.net_length
+            passage = gear / max(speed, SLOWEST)
+            settle = max(settle, options.settle_passages * passage)
+            settle = min(settle, max(options.settle_s, options.longest_settle_s))
+        return math.ceil(settle / options.block_s)
+
+    @property
     def full(self) -> bool:
         """Whether settling time and window are both covered."""
-        return len(self._blocks) == self._blocks.maxlen
+        return len(self._blocks) >= self.settle_blocks + self.window_blocks
 
     def inputs(self) -> np.ndarray:
         """Mean inputs (3,) over the window's blocks; only after `unheld` gave None."""
-        window = list(self._blocks)[self.settle_blocks :]
+        window = list(self._blocks)[-self.window_blocks :]
         return np.mean(np.array([block.inputs for block in window], dtype=float), axis=0)
 
     def unheld(self) -> Unheld | None:
         """Why inputs or heading were not held over settling time and window, or None."""
-        blocks = list(self._blocks)
+        blocks = list(self._blocks)[-(self.settle_blocks + self.window_blocks) :]
         for i, name in enumerate(INPUTS):
             silent = sum(block.inputs[i] is None for block in blocks)
             if silent:
@@ -97,7 +115,7 @@ class Operation:
         limit = self._options.heading_tolerance
         headings = np.array([block.heading for block in blocks if block.heading is not None])
         if len(headings):
-            window = [b.heading for b in blocks[self.settle_blocks :] if b.heading is not None]
+            window = [b.heading for b in blocks[-self.window_blocks :] if b.heading is not None]
             middle = circular_median(np.array(window)) if window else headings[-1]
             turn = float(np.max(np.abs(_wrap(headings - middle))))
             if turn > limit:

@@ -103,7 +103,8 @@ class Identification:
         options = self.window_options
         return (
             f'no steady window was found, so nothing is estimated: one needs '
-            f'{options.settle_s:g} s with warp lengths, speed and heading held and then '
+            f'{options.settle_s:g} s, or {options.settle_passages:g} gear lengths towed, with warp '
+            f'lengths, speed and heading held and then '
             f'{options.window_s:g} s of steady readings (rejected: {counts or "none"})'
         )
 

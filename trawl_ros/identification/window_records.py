@@ -20,14 +20,21 @@ REASONS = {
 """Every reason for a rejection, and what its count counts."""
 
 
+MAY_BE_ZERO = ('settle_s', 'settle_passages', 'net_length', 'longest_settle_s', 'reorder_s')
+
+
 @dataclass(frozen=True)
 class WindowOptions:
     """When a window counts as steady.
 
     Attributes
     ----------
-    settle_s
-        Time (s) the gear is given after the last change of warp length, speed or heading.
+    settle_s, settle_passages, net_length
+        Time the gear is given after the last change of warp length, speed or heading: at least
+        ``settle_s`` (s), and so long that the ship tows ``settle_passages`` times the length of
+        the gear, warp and ``net_length`` (m), for a change runs down the gear at towing speed.
+    longest_settle_s
+        No more than this (s) is asked.
     window_s
         Length (s) of a window.
     block_s
@@ -58,12 +65,15 @@ class WindowOptions:
         A window is decided without a channel that lags the winch by more than this (s).
     """
 
-    settle_s: float = 300.0
+    settle_s: float = 180.0
+    settle_passages: float = 1.8
+    net_length: float = 200.0
+    longest_settle_s: float = 1800.0
     window_s: float = 60.0
     block_s: float = 10.0
     max_windows_per_state: int = 2
     length_tolerance: float = 1.0
-    speed_tolerance: float = 0.15
+    speed_tolerance: float = 0.08
     heading_tolerance: float = 0.06
     drift_fraction: float = 0.005
     significance: float = 0.001
@@ -76,7 +86,7 @@ class WindowOptions:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if not value >= 0.0 or (value == 0.0 and field.name not in ('settle_s', 'reorder_s')):
+            if not value >= 0.0 or (value == 0.0 and field.name not in MAY_BE_ZERO):
                 raise TrawlError(f'{field.name} is {value}, expected a positive number')
         if self.window_s < 2.0 * self.block_s:
             raise TrawlError(

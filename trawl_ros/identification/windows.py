@@ -120,7 +120,7 @@ class SteadyWindowFinder:
             self._next_block = int(oldest[0]) // self._block_ns
         found: list[SteadyWindow | RejectedWindow] = []
         end_block = watermark // self._block_ns
-        history = self._operation.settle_blocks + self._operation.window_blocks
+        history = self._operation.most_blocks
         if end_block - self._next_block > 2 * history:
             # A hole longer than any look-back needs no block by block walk.
             stamps = self._buffers['port_length'].between(

@@ -217,7 +217,7 @@ def relax(
     tolerance: float,
     time_step: float,
     free: np.ndarray | None = None,
-    limit: int = 150,
+    limit: int = 300,
 ) -> tuple[State, int, float]:
     """Drive the forces to zero.
 
@@ -238,6 +238,7 @@ def relax(
     hold = None if free is None else sp.diags(np.where(free, 0.0, 1.0))
     keep = None if free is None else sp.diags(np.where(free, 1.0, 0.0))
     iteration = 0
+    last = np.inf
     while True:
         here = linearised(model, state, tow)
         force = here.force if free is None else np.where(free, here.force, 0.0)
@@ -258,7 +259,10 @@ def relax(
         body = step[3 * n :].reshape(2, 6)
         size = max(np.abs(step[: 3 * n]).max(), np.abs(body[:, :3]).max()) / LIMIT_METRES
         size = max(size, np.abs(body[:, 3:]).max() / LIMIT_RADIANS)
-        tau = max(tau / 1.5, 0.3) if size > 1.0 else min(3.0 * tau, 1e9)
+        # Bars that flip between slack and taut raise the residual and ask for shorter steps.
+        growth = 3.0 if residual < last else max(0.25, last / residual)
+        tau = max(tau / 1.5, 0.3) if size > 1.0 else min(max(growth * tau, 0.3), 1e9)
+        last = residual
         state = state.moved(step / max(size, 1.0))
 
 
