@@ -43,7 +43,7 @@ class EstimatorOptions:
     largest_step: float = 1.0
     relinearise: float = 0.5
     relinearise_final: float = 0.02
-    tolerance: float = 1e-3
+    tolerance: float = 5e-3
 
     def __post_init__(self) -> None:
         for field in fields(self):

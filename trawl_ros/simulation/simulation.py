@@ -89,11 +89,11 @@ class Simulation:
             )
         self.model = model
         self.command = command
-        self._start = (command, heading, stamp)
         self._period = round(period * NANOSECONDS)
         self._reached: Instant | None = None
         self._stepper = Stepper(model)
         self.now = self._first(command, heading, stamp)
+        self._start = (command, self.now)
 
     def _first(self, command: Command, heading: float, stamp: int) -> Instant:
         point = OperatingPoint(
@@ -108,13 +108,10 @@ class Simulation:
         )
 
     def reset(self) -> None:
-        """Back to the start."""
-        command, heading, stamp = self._start
-        self.command = command
-        # A new one, for what the old one has kept would change the last digits.
+        """Back to the start: the same tow comes again, to the last digit."""
+        self.command, self.now = self._start
         self._stepper = Stepper(self.model)
         self._reached = None
-        self.now = self._first(command, heading, stamp)
 
     def advance(self) -> Instant:
         """One period on. A command takes effect with the next step of the solver.
