@@ -13,18 +13,18 @@ from rich.console import Console
 from trawl_ros.bags.reader import summarise
 from trawl_ros.cli.demo_folder import DemoFolder
 from trawl_ros.cli.demo_report import load_result, print_result
-from trawl_ros.cli.files import FOLDER, SCENARIO, packaged
+from trawl_ros.cli.files import FOLDER, SCENARIO
 from trawl_ros.cli.gear_figure import gear_figure
-from trawl_ros.cli.identify import true_coefficients
 from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.cli.trial_figures import history_figure, read_history
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import packaged
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.messages.topics import INSTRUMENTS, TRUTH, absolute
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_water
-from trawl_ros.scenario.scenario import Scenario, load_scenario
+from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients
 
 if TYPE_CHECKING:
     from trawl_ros.nodes.monitor import Monitor

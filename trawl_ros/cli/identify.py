@@ -1,29 +1,26 @@
 """``trawl identify``."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
 import click
-import numpy as np
 from rich.console import Console
 
-from trawl_ros.cli.files import BAG, FOLDER, SCENARIO, empty_folder, packaged
+from trawl_ros.cli.files import BAG, FOLDER, SCENARIO
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.cli.samples import SampleStream
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.figures import draw_figures
 from trawl_ros.identification.from_gear import identification_for
 from trawl_ros.identification.pipeline import Identification, WindowUsed
 from trawl_ros.identification.report import Report, report
-from trawl_ros.identification.result import result
 from trawl_ros.identification.table import channel_table, closing_lines, coefficient_table
+from trawl_ros.identification.writing import write_report
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import NAMESPACE
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.scenario.scenario import load_scenario
+from trawl_ros.scenario.scenario import true_coefficients
 
 TABLE_WIDTH = 100
 
@@ -56,7 +53,7 @@ def command(
     Writes identification.json and figures.
     """
     empty_folder(out, force=force)
-    true_values = None if truth is None else true_coefficients(truth)
+    true_values = None if truth is None else true_coefficients(packaged(truth, 'scenarios'))
     options = EstimatorOptions(prior_weight=0.0) if no_prior else None
     identification = identification_for(load_gear(gear), estimator_options=options)
     console = error_console()
@@ -70,29 +67,6 @@ def command(
         found = report(identification, true_values)
     write_report(found, out)
     print_report(found)
-
-
-def true_coefficients(path: Path) -> np.ndarray:
-    """Read the coefficients (12,) that a scenario's plant has."""
-    values = load_scenario(packaged(path, 'scenarios')).plant.board.coefficients
-    return np.array([getattr(values, name) for name in COEFFICIENTS])
-
-
-def write_report(found: Report, folder: Path) -> None:
-    """Write ``identification.json`` and the figures.
-
-    Raises
-    ------
-    TrawlError
-        If the folder cannot be written to.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(result(found), indent=2)
-        (folder / 'identification.json').write_text(f'{text}\n', encoding='utf-8')
-        draw_figures(found, folder)
-    except OSError as reason:
-        raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
 
 
 def print_report(found: Report) -> None:

@@ -5,7 +5,8 @@ from pathlib import Path
 import click
 
 from trawl_ros.bags.import_log import import_log
-from trawl_ros.cli.files import BAG, packaged
+from trawl_ros.cli.files import BAG
+from trawl_ros.files import packaged
 
 
 @click.command('import-log')

@@ -8,10 +8,11 @@ from rich.console import Console
 from rich.table import Table
 
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.cli.files import BAG, SCENARIO, packaged
+from trawl_ros.cli.files import BAG, SCENARIO
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.errors import BagError
+from trawl_ros.files import packaged
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.markers import gear_markers

@@ -1,0 +1,65 @@
+"""``trawl demo``: the whole chain, each node a process of its own."""
+
+import json
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.bags.reader import summarise
+from trawl_ros.messages.topics import TRUTH, absolute
+from trawl_ros.model.board import COEFFICIENTS
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+SHORT = """\
+description: one steady state and a little more
+gear: coarse.yaml
+heading_deg: 90.0
+start: {warp_length_m: 200.0, speed_m_s: 2.3}
+steps:
+  - {name: hold, minutes: 6.8}
+  - {name: veer, minutes: 0.2, warp_length_m: 205.0}
+truth_rate_hz: 1.0
+"""
+
+
+def test_the_chain_loses_nothing_and_ends_with_an_estimate(run, trial, tmp_path):
+    trial.write_text(SHORT)
+    out = tmp_path / 'demo'
+    done = run('demo', '--scenario', trial, '--out', out)
+    assert done.exit_code == 0, done.output
+    summary = json.loads((out / 'summary.json').read_text())
+    assert summary['finished'] is True
+    assert summary['minutes_at_sea'] == pytest.approx(7.0)
+    assert summary['windows'] >= 1
+    assert list(summary['coefficients']) == list(COEFFICIENTS)
+    assert summary['coefficients']['a1']['truth'] == pytest.approx(1.19)
+    assert summary['messages_lost'] == 0
+    for count in summary['messages'].values():
+        assert count['published'] == count['recorded']
+    truth = absolute('truth/winch')
+    assert summary['messages'][truth]['recorded'] == 421
+    counts = {topic.topic: topic.count for topic in summarise(out / 'bag').topics}
+    for topic in TRUTH:
+        assert counts[absolute(topic.name)] == summary['messages'][absolute(topic.name)]['recorded']
+    assert json.loads((out / 'identification.json').read_text())['windows'] == summary['windows']
+    assert len(list(out.glob('*.png'))) >= 3
+    assert set(summary['figures']) == {path.name for path in out.glob('*.png')}
+    assert 'as many as were published' in done.stdout
+
+
+def test_a_folder_of_somebody_else_is_refused_before_anything_starts(run, tmp_path):
+    (tmp_path / 'mine').write_text('mine')
+    done = run('demo', '--out', tmp_path)
+    assert done.exit_code == 1
+    assert f'{tmp_path}: holds files that no demo has made' in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ['mine']
+
+
+def test_a_tow_that_cannot_start_ends_the_demo_with_the_node_s_words(run, trial, tmp_path):
+    trial.write_text(SHORT.replace('warp_length_m: 200.0', 'warp_length_m: 10.0'))
+    done = run('demo', '--scenario', trial, '--out', tmp_path / 'demo')
+    assert done.exit_code == 1
+    assert 'sim_node ended with code 1' in done.stderr
+    assert 'start: warp 10 m at 2.3 m/s' in done.stderr
