@@ -9,8 +9,7 @@ from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from std_srvs.srv import Trigger
 
-from trawl_ros.cli.files import empty_folder
-from trawl_ros.cli.identify import true_coefficients
+from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.estimator_options import EstimatorOptions
@@ -35,6 +34,7 @@ from trawl_ros.nodes.parameters import Flag, Number, Text
 from trawl_ros.nodes.qos import CONSUMER
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
+from trawl_ros.scenario.scenario import true_coefficients
 
 STATUS = 'identification/status'
 FINISH = 'identification/finish'
@@ -94,7 +94,7 @@ class IdentificationNode(TrawlNode):
         self._worker = IdentificationWorker(
             identification,
             folder,
-            true_coefficients(Path(truth)) if truth else None,
+            true_coefficients(packaged(Path(truth), 'scenarios')) if truth else None,
             self._publish,
             self._progress.done,
         )

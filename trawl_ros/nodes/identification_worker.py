@@ -12,11 +12,11 @@ from threading import Event, Thread
 
 import numpy as np
 
-from trawl_ros.cli.identify import write_report
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.pipeline import Identification, WindowUsed
 from trawl_ros.identification.report import report
+from trawl_ros.identification.writing import write_report
 from trawl_ros.instruments.samples import Sample
 
 QUIET_S = 0.5

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from trawl_ros.cli.files import packaged
 from trawl_ros.errors import MessageError
+from trawl_ros.files import packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 from std_srvs.srv import Trigger
 
-from trawl_ros.cli.files import packaged
 from trawl_ros.errors import MessageError, TrawlError
+from trawl_ros.files import packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import (
     VESSEL_COMMAND,

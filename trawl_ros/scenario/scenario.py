@@ -7,6 +7,8 @@ from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+
 from trawl_ros.errors import InstrumentError, ScenarioError, TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -16,6 +18,7 @@ from trawl_ros.instruments.parameters import (
     default_instruments_with,
     load_instruments,
 )
+from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
 from trawl_ros.simulation.simulation import Command
 from trawl_ros.validation import load_yaml, validated
@@ -154,3 +157,9 @@ def _lengths(record: StartRecord | StepRecord) -> tuple[float | None, float | No
     if record.warp_length_m is not None:
         return record.warp_length_m, record.warp_length_m
     return record.port_warp_length_m, record.starboard_warp_length_m
+
+
+def true_coefficients(path: str | Path) -> np.ndarray:
+    """Read the coefficients (12,) that a scenario's plant has, in the order of eq. 36."""
+    values = load_scenario(path).plant.board.coefficients
+    return np.array([getattr(values, name) for name in COEFFICIENTS])
