@@ -29,7 +29,7 @@ from trawl_ros.share import share_path
 from trawl_ros.solver.equilibrium import steady_state
 
 SECOND = 1_000_000_000
-LEGS = ((500.0, 2.1), (520.0, 2.1))
+LEGS = ((200.0, 2.3), (220.0, 2.3))
 
 TRIAL = """\
 description: a few seconds of towing
