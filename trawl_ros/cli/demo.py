@@ -142,8 +142,8 @@ def _tow(
         progress.update(scenario.duration_s)
         took = progress.elapsed_s
     # Sources before the recorder, so that it gets their last messages.
-    for node in (*INSTRUMENT_NODES, 'bag_recorder'):
-        processes.stop(node)
+    processes.stop(*INSTRUMENT_NODES)
+    processes.stop('bag_recorder')
     return took
 
 

@@ -86,30 +86,25 @@ class Processes:
         self.check()
         return code == 0
 
-    def stop(self, node: str) -> None:
-        """End a node as Ctrl-C does.
+    def stop(self, *nodes: str) -> None:
+        """End nodes as Ctrl-C does, all of them at once.
 
         Raises
         ------
         NodeFailed
-            If it fails in doing so, or does not end in time.
+            If one fails in doing so, or does not end in time.
         """
-        process = self._running.pop(node)
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-        try:
-            code = process.wait(END_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-            raise NodeFailed(self._failure(node, None)) from None
-        if code:
-            raise NodeFailed(self._failure(node, code))
-
-    def stop_all(self) -> None:
-        """End all nodes, the last started first."""
-        for node in reversed(list(self._running)):
-            self.stop(node)
+        for node in nodes:
+            if self._running[node].poll() is None:
+                self._running[node].send_signal(signal.SIGINT)
+        for node in nodes:
+            try:
+                code = self._running[node].wait(END_S)
+            except subprocess.TimeoutExpired:
+                raise NodeFailed(self._failure(node, None)) from None
+            if code:
+                raise NodeFailed(self._failure(node, code))
+            del self._running[node]
 
     def _failure(self, node: str, code: int | None) -> str:
         ended = f'did not end within {END_S:g} s' if code is None else f'ended with code {code}'
