@@ -35,7 +35,7 @@ def test_the_sample_trial_is_refitted_as_well_as_the_paper_fitted_its_own(fitted
     for channel, error in PAPER.items():
         assert fitted['channels'][channel]['mnae_held_out'] <= error, channel
     assert set(fitted['coefficients']) == set(
-        'a1 c1 a2 c2 b3 c3 a4 c4 b5 c5 a6 c6'.split()
+        ['a1', 'c1', 'a2', 'c2', 'b3', 'c3', 'a4', 'c4', 'b5', 'c5', 'a6', 'c6']
     )
 
 
