@@ -37,7 +37,7 @@ def test_the_closed_form_has_the_derivatives_it_claims(sea, model):
 
 def test_without_noise_the_truth_is_found(sea, model, prior):
     windows = sea.trial_windows(model, np.random.default_rng(0), noise=0.0)
-    _, estimate = estimated(sea, model, prior, windows, prior_weight=0.0)
+    _, estimate = estimated(sea, model, prior, windows, prior_weight=0.0, tolerance=1e-4)
     assert estimate.converged, estimate.reason
     np.testing.assert_allclose(estimate.values, sea.TRUTH, atol=1e-6)
     assert estimate.objective < 1e-6

@@ -46,7 +46,8 @@ class _Stop:
 
     def __exit__(self, *_: object) -> None:
         for number, handler in self._before.items():
-            signal.signal(number, handler)
+            # Asked to end, the process is leaving: a second signal must not make that unclean.
+            signal.signal(number, signal.SIG_IGN if self.wishes else handler)
 
 
 def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int:
