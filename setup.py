@@ -82,6 +82,7 @@ setup(
     ],
     install_requires=[
         'click>=8.1,<9',
+        'lz4>=4,<5',
         'matplotlib>=3.6,<4',
         'mcap>=1.6,<2',
         'numpy>=1.26,<3',
@@ -90,6 +91,7 @@ setup(
         'rich>=13,<16',
         'rosbags>=0.11.9,<0.12',
         'scipy>=1.11,<2',
+        'zstandard>=0.22,<1',
     ],
     extras_require={'ros': ROS, 'test': TEST},
     entry_points={
