@@ -54,6 +54,9 @@ TEST = [
     'uv>=0.5,<1',
 ]
 
+# Other programs that `trawl validate` and `trawl benchmark` are held against.
+PEERS = ['moordyn>=2.7,<2.8', 'MoorPy>=1.3,<1.4', 'trawlkit>=1.1,<1.2']
+
 
 def tree(folder: str) -> list[tuple[str, list[str]]]:
     """All files below `folder`, to be installed in the same sub-folders of the share folder."""
@@ -73,7 +76,7 @@ setup(
     maintainer_email='trawl_ros@example.org',
     python_requires='>=3.10',
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
-    package_data={PACKAGE: ['py.typed']},
+    package_data={PACKAGE: ['py.typed', '*/templates/*.j2']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
@@ -82,6 +85,7 @@ setup(
     ],
     install_requires=[
         'click>=8.1,<9',
+        'jinja2>=3.1,<4',
         'lz4>=4,<5',
         'matplotlib>=3.6,<4',
         'mcap>=1.6,<2',
@@ -93,7 +97,7 @@ setup(
         'scipy>=1.11,<2',
         'zstandard>=0.22,<1',
     ],
-    extras_require={'ros': ROS, 'test': TEST},
+    extras_require={'ros': ROS, 'test': [*TEST, *PEERS], 'peers': PEERS},
     entry_points={
         'console_scripts': [
             *(f'{node} = {PACKAGE}.nodes.{node}:main' for node in NODES),

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.bags.units import UNITS, units_of
 from trawl_ros.errors import LogError
-from trawl_ros.validation import Record, load_yaml, validated
+from trawl_ros.schema import Record, load_yaml, validated
 
 UNIX_SECONDS = 'seconds'
 """In place of a format: the column counts seconds since 1970-01-01 UTC."""

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import type_hash
-from trawl_ros.validation import validated
+from trawl_ros.schema import validated
 
 FILE_NAME = 'metadata.yaml'
 MAX_BYTES = 16_000_000

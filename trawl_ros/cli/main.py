@@ -17,6 +17,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'tow': ('tow', 'Tow a scenario and record what the instruments report as a bag.'),
         'identify': ('identify', 'Refit the twelve board coefficients from recorded bags.'),
         'trim': ('trim', 'Find fastening points that give the boards wanted angles.'),
+        'validate': ('validate', "Check the model's claims and write the report."),
         'scenarios': ('scenarios', 'List the scenarios that come with the package.'),
         'import-log': ('import_log', 'Turn a CSV log from sea into a bag.'),
         'bag': ('bag', 'Look into bags.'),

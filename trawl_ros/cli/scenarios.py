@@ -6,8 +6,8 @@ from rich.table import Table
 
 from trawl_ros.errors import ScenarioError
 from trawl_ros.scenario.records import ScenarioRecord
+from trawl_ros.schema import load_yaml, validated
 from trawl_ros.share import share_path
-from trawl_ros.validation import load_yaml, validated
 
 
 @click.command('scenarios')

@@ -8,8 +8,8 @@ from pydantic import Field, model_validator
 
 from trawl_ros.errors import InstrumentError, TrawlError
 from trawl_ros.instruments.channel import ErrorModel
+from trawl_ros.schema import Record, load_yaml, validated
 from trawl_ros.share import share_path
-from trawl_ros.validation import Record, load_yaml, validated
 
 Rate = Annotated[float, Field(gt=0, le=100)]
 NotNegative = Annotated[float, Field(ge=0)]

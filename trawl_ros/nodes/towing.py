@@ -70,9 +70,7 @@ class CommandedTow:
 
     def command_vessel(self, speed: float, turn_rate: float) -> None:
         """Ask for a speed through the water (m/s) and a rate of turn (rad/s, to port)."""
-        self.simulation.command = replace(
-            self.simulation.command, speed=speed, turn_rate=turn_rate
-        )
+        self.simulation.command = replace(self.simulation.command, speed=speed, turn_rate=turn_rate)
 
     def reset(self) -> None:
         """Back to the start."""

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.gear.records import CurrentAt
-from trawl_ros.validation import Record
+from trawl_ros.schema import Record
 
 Length = Annotated[float, Field(gt=0, lt=3000)]
 Speed = Annotated[float, Field(ge=0.5, le=4)]

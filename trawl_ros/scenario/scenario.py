@@ -20,8 +20,8 @@ from trawl_ros.instruments.parameters import (
 )
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
+from trawl_ros.schema import load_yaml, validated
 from trawl_ros.simulation.simulation import Command
-from trawl_ros.validation import load_yaml, validated
 
 
 @dataclass(frozen=True)

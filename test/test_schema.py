@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.complaints import unit_of
 from trawl_ros.errors import GearError
-from trawl_ros.validation import Record, load_yaml, validated
+from trawl_ros.schema import Record, load_yaml, validated
 
 
 class Warp(Record):

@@ -1,0 +1,1 @@
+"""Checks of the model's claims: closed forms, convergence, the paper, peers, branches."""

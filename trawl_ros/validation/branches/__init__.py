@@ -1,0 +1,1 @@
+"""Where steady states exist, and what is said where none does."""

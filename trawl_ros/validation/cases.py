@@ -1,0 +1,53 @@
+"""The cases of ``trawl validate``, in the order of the report."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+
+from trawl_ros.errors import TrawlError
+from trawl_ros.validation.check import Case
+
+SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        'closed_forms': (),
+        'convergence': (),
+        'paper': (),
+        'peers': (),
+        'branches': (),
+    }
+)
+"""Sub-package of `trawl_ros.validation` → its modules, each with a ``CASE`` of that name."""
+
+TITLES: Mapping[str, str] = MappingProxyType(
+    {
+        'closed_forms': 'Closed forms',
+        'convergence': 'Convergence',
+        'paper': 'The paper, section IV',
+        'peers': 'Peers',
+        'branches': 'Branches',
+    }
+)
+
+NAMES: tuple[str, ...] = tuple(name for names in SECTIONS.values() for name in names)
+
+
+def section_of(name: str) -> str:
+    """The section a case belongs to.
+
+    Raises
+    ------
+    TrawlError
+        If there is no such case.
+    """
+    for section, names in SECTIONS.items():
+        if name in names:
+            return section
+    raise TrawlError(f'{name}: no such case; expected one of {", ".join(NAMES)}')
+
+
+def load_case(name: str) -> Case:
+    """Import one case."""
+    module = import_module(f'trawl_ros.validation.{section_of(name)}.{name}')
+    case = module.CASE
+    assert isinstance(case, Case)
+    return case

@@ -1,0 +1,1 @@
+"""How the answers settle as time and gear are cut finer."""

@@ -1,0 +1,1 @@
+"""Section IV of the founding paper, remade."""

@@ -1,0 +1,98 @@
+"""Runs cases, several at a time, each in a process of its own."""
+
+import multiprocessing
+import re
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from trawl_ros.errors import TrawlError
+from trawl_ros.validation.cases import load_case, section_of
+from trawl_ros.validation.check import Check, Outcome, Table
+
+PROCESS = multiprocessing.get_context('spawn')
+DPI = 110
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure that was drawn: its file in the report's folder, and its caption."""
+
+    file: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A case that was run, with its ``seconds`` of wall clock."""
+
+    name: str
+    title: str
+    section: str
+    checks: tuple[Check, ...]
+    pictures: tuple[Picture, ...]
+    tables: tuple[Table, ...]
+    text: str
+    seconds: float
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check of the case holds."""
+        return all(check.ok for check in self.checks)
+
+
+def run_cases(
+    names: Sequence[str], folder: Path, *, small: bool, workers: int
+) -> Iterator[Finished]:
+    """Run cases and give each as it ends; figures go into ``folder``/figures.
+
+    Raises
+    ------
+    TrawlError
+        If there is no case of one of these names.
+    """
+    for name in names:
+        section_of(name)
+    (folder / 'figures').mkdir(parents=True, exist_ok=True)
+    with ProcessPoolExecutor(workers, mp_context=PROCESS) as pool:
+        pending = [pool.submit(run_case, name, folder, small=small) for name in names]
+        try:
+            for future in as_completed(pending):
+                yield future.result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def run_case(name: str, folder: Path, *, small: bool) -> Finished:
+    """Run one case here and draw its figures.
+
+    A case whose model has no answer is a case that fails, not the end of the report.
+    """
+    case = load_case(name)
+    began = time.perf_counter()
+    try:
+        outcome = case.run(small)
+    except TrawlError as error:
+        check = Check('ran', 'the case ran to its end', 0.0, 1.0, note=str(error))
+        outcome = Outcome((check,))
+    seconds = time.perf_counter() - began
+    pictures = []
+    for drawing in outcome.drawings:
+        file = f'figures/{name}_{drawing.name}.png'
+        drawing.figure.savefig(folder / file, dpi=DPI)
+        pictures.append(Picture(file, drawing.caption))
+    keys = [check.key for check in outcome.checks]
+    assert len(set(keys)) == len(keys), f'{name}: two checks share a key'
+    assert all(re.fullmatch(r'\w+', key) for key in keys), f'{name}: {keys}'
+    return Finished(
+        name=name,
+        title=case.title,
+        section=section_of(name),
+        checks=outcome.checks,
+        pictures=tuple(pictures),
+        tables=outcome.tables,
+        text=outcome.text,
+        seconds=seconds,
+    )

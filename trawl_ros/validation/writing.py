@@ -1,0 +1,90 @@
+"""The report of validation as JSON, Markdown and HTML."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+from trawl_ros import __version__
+from trawl_ros.validation.cases import NAMES, TITLES
+from trawl_ros.validation.check import Check
+from trawl_ros.validation.run import Finished
+
+JSON, REPORTS = 'validation.json', ('report.html', 'report.md')
+
+
+def write_report(folder: Path, finished: Sequence[Finished], *, small: bool) -> None:
+    """Write ``validation.json``, ``report.html`` and ``report.md`` into a folder."""
+    ordered = sorted(finished, key=lambda case: NAMES.index(case.name))
+    figures = {
+        f'{case.name}.{check.key}': check_record(check) for case in ordered for check in case.checks
+    }
+    (folder / JSON).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + '\n')
+    environment = Environment(
+        loader=PackageLoader('trawl_ros.validation', 'templates'),
+        autoescape=select_autoescape(['html']),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters['number'] = number
+    environment.filters['expectation'] = expectation
+    environment.filters['cell'] = cell
+    sections = [
+        (title, [case for case in ordered if case.section == section])
+        for section, title in TITLES.items()
+    ]
+    for name in REPORTS:
+        text = environment.get_template(f'{name}.j2').render(
+            sections=[(title, cases) for title, cases in sections if cases],
+            passed=sum(check.ok for case in ordered for check in case.checks),
+            total=sum(len(case.checks) for case in ordered),
+            failing=[(case, check) for case in ordered for check in case.checks if not check.ok],
+            small=small,
+            version=__version__,
+        )
+        (folder / name).write_text(text.rstrip() + '\n')
+
+
+def check_record(check: Check) -> dict[str, object]:
+    """One check as plain values; what could not be measured is null."""
+    expected = check.expected
+    return {
+        'what': check.what,
+        'measured': check.measured if check.measured == check.measured else None,
+        'expected': list(expected) if isinstance(expected, tuple) else expected,
+        'tolerance': check.tolerance,
+        'rule': check.rule,
+        'unit': check.unit,
+        'ok': bool(check.ok),
+        'note': check.note,
+    }
+
+
+def number(value: float) -> str:
+    """A figure with as many digits as one reads."""
+    if value != value:
+        return 'not measured'
+    return f'{value:.4g}' if abs(value) < 1e4 else f'{value:.0f}'
+
+
+def expectation(check: Check) -> str:
+    """What is expected, in signs."""
+    unit = f' {check.unit}' if check.unit else ''
+    if isinstance(check.expected, tuple):
+        low, high = check.expected
+        return f'{number(low)} to {number(high)}{unit}'
+    text = f'{number(check.expected)}{unit}'
+    if check.rule == 'at_most':
+        return f'≤ {text}'
+    if check.rule == 'at_least':
+        return f'≥ {text}'
+    if check.rule == 'relative':
+        return f'{text} ± {number(100 * check.tolerance)} %'
+    return f'{text} ± {number(check.tolerance)}' if check.tolerance else text
+
+
+def cell(text: str) -> str:
+    """Text in a cell of a Markdown table."""
+    return text.replace('|', '\\|').replace('\n', ' ')
