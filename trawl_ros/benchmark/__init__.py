@@ -1,0 +1,1 @@
+"""Side by side with other tools: what is measured for `trawl benchmark`."""
