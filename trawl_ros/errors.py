@@ -3,6 +3,11 @@
 Every message names the file, key or topic, what was found there and what was expected.
 """
 
+from typing import Literal
+
+Refusal = Literal['none found', 'collapsed', 'surfaced', 'outside law', 'unstable']
+"""Why there is no usable steady state."""
+
 
 class TrawlError(Exception):
     """Base of all errors that are the input's fault; commands print it and exit with 1."""
@@ -33,4 +38,11 @@ class LogError(TrawlError):
 
 
 class NoSteadyState(TrawlError):
-    """The gear has no usable steady state at the wanted warp length and speed."""
+    """The gear has no usable steady state at the wanted warp length and speed.
+
+    ``reason`` says why in a word; where a root was found, which of its faults came first.
+    """
+
+    def __init__(self, message: str, reason: Refusal = 'none found') -> None:
+        super().__init__(message)
+        self.reason: Refusal = reason

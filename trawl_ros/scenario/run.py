@@ -129,7 +129,8 @@ def require_steady_states(scenario: Scenario, model: GearModel) -> None:
             except NoSteadyState as reason:
                 raise NoSteadyState(
                     f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed at '
-                    'which the gear tows steadily'
+                    'which the gear tows steadily',
+                    reason.reason,
                 ) from reason
 
 

@@ -101,7 +101,9 @@ def find_equilibrium(
     attack = np.array([seen.port_attack, seen.starboard_attack])
     if outward_normal_lift(state).min() < COLLAPSED_NORMAL or attack.min() < 0.0:
         angles = ', '.join(f'{np.degrees(a):.1f}' for a in attack)
-        raise NoSteadyState(f'{where}: only a collapsed state was found, attack angles {angles}°')
+        raise NoSteadyState(
+            f'{where}: only a collapsed state was found, attack angles {angles}°', 'collapsed'
+        )
     return Equilibrium(
         point=point,
         tow=tow,
@@ -193,18 +195,22 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
     """Check an equilibrium for what `steady_state` promises."""
     where = _where(found.point)
     if found.surfaced:
-        raise NoSteadyState(f'{where}: the gear breaks the surface by {found.highest:.1f} m')
+        raise NoSteadyState(
+            f'{where}: the gear breaks the surface by {found.highest:.1f} m', 'surfaced'
+        )
     if found.outside_law:
         attack = np.degrees(max(found.observables.port_attack, found.observables.starboard_attack))
         raise NoSteadyState(
             f'{where}: a board works at {attack:.1f}° of attack, outside the '
-            f'range of its law ({np.degrees(LAW_RANGE[1]):.0f}°)'
+            f'range of its law ({np.degrees(LAW_RANGE[1]):.0f}°)',
+            'outside law',
         )
     motion = stability(model, found.state, found.tow)
     if not motion.stable:
         raise NoSteadyState(
             f'{where}: the steady state is unstable, it grows by a factor e in '
-            f'{1 / motion.growth:.0f} s'
+            f'{1 / motion.growth:.0f} s',
+            'unstable',
         )
     return SteadyState(found, motion)
 
