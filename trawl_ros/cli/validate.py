@@ -8,9 +8,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from trawl_ros.cli.files import FOLDER
 from trawl_ros.cli.progress import error_console
 from trawl_ros.files import empty_folder
+from trawl_ros.reporting import number
 from trawl_ros.validation.cases import NAMES
 from trawl_ros.validation.run import Finished, run_cases
-from trawl_ros.validation.writing import number, write_report
+from trawl_ros.validation.writing import write_report
 
 
 @click.command('validate')

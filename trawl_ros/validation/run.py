@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.reporting import DPI
 from trawl_ros.validation.cases import load_case, section_of
 from trawl_ros.validation.check import Check, Outcome, Table
 
 PROCESS = multiprocessing.get_context('spawn')
-DPI = 110
 
 
 @dataclass(frozen=True)

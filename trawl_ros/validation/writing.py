@@ -4,9 +4,8 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-
 from trawl_ros import __version__
+from trawl_ros.reporting import number, templates
 from trawl_ros.validation.cases import NAMES, TITLES
 from trawl_ros.validation.check import Check
 from trawl_ros.validation.run import Finished
@@ -21,16 +20,8 @@ def write_report(folder: Path, finished: Sequence[Finished], *, small: bool) -> 
         f'{case.name}.{check.key}': check_record(check) for case in ordered for check in case.checks
     }
     (folder / JSON).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + '\n')
-    environment = Environment(
-        loader=PackageLoader('trawl_ros.validation', 'templates'),
-        autoescape=select_autoescape(['html']),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters['number'] = number
+    environment = templates('trawl_ros.validation')
     environment.filters['expectation'] = expectation
-    environment.filters['cell'] = cell
     sections = [
         (title, [case for case in ordered if case.section == section])
         for section, title in TITLES.items()
@@ -62,13 +53,6 @@ def check_record(check: Check) -> dict[str, object]:
     }
 
 
-def number(value: float) -> str:
-    """A figure with as many digits as one reads."""
-    if value != value:
-        return 'not measured'
-    return f'{value:.4g}' if abs(value) < 1e4 else f'{value:.0f}'
-
-
 def expectation(check: Check) -> str:
     """What is expected, in signs."""
     unit = f' {check.unit}' if check.unit else ''
@@ -83,8 +67,3 @@ def expectation(check: Check) -> str:
     if check.rule == 'relative':
         return f'{text} ± {number(100 * check.tolerance)} %'
     return f'{text} ± {number(check.tolerance)}' if check.tolerance else text
-
-
-def cell(text: str) -> str:
-    """Text in a cell of a Markdown table."""
-    return text.replace('|', '\\|').replace('\n', ' ')
