@@ -11,8 +11,14 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         'closed_forms': (),
         'convergence': (),
-        'paper': (),
-        'peers': (),
+        'paper': (
+            'warp_sweep',
+            'installation',
+            'degrees_of_freedom',
+            'identified',
+            'sentences',
+        ),
+        'peers': ('moordyn_wire', 'moorpy_wire'),
         'branches': (),
     }
 )

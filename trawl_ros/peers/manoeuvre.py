@@ -1,0 +1,105 @@
+"""Hauling, then a turn, as smooth functions of time for any program to follow."""
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+
+TURN_RATE = float(np.radians(0.5))
+"""Of the ship in the turn, rad/s."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """A rate that swells to ``top`` within ``rise`` seconds, stays, and fades as it swelled, so
+    that ``total`` is covered; it starts at ``start`` (s).
+
+    It swells as half a cosine wave, for a winch or a rudder gives no jerk that would ring in
+    the wire.
+    """
+
+    start: float
+    total: float
+    top: float
+    rise: float
+
+    @property
+    def end(self) -> float:
+        """Time at which the rate is zero again, s."""
+        return self.start + self.total / self.top + self.rise
+
+    def rate(self, time: float) -> float:
+        """The rate at one time."""
+        ramp = min(time - self.start, self.end - time, self.rise)
+        return 0.5 * self.top * (1.0 - cos(pi * max(ramp, 0.0) / self.rise))
+
+    def covered(self, time: float) -> float:
+        """Integral of the rate up to one time."""
+        since, left = max(time - self.start, 0.0), max(self.end - time, 0.0)
+        if since < self.rise:
+            return self._swelling(since)
+        if left < self.rise:
+            return self.total - self._swelling(left)
+        return self.top * (since - 0.5 * self.rise)
+
+    def _swelling(self, since: float) -> float:
+        return 0.5 * self.top * (since - self.rise / pi * sin(pi * since / self.rise))
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """What ship and winch do.
+
+    Attributes
+    ----------
+    length
+        Unstretched length at the start, m.
+    speed
+        Of the ship through still water, m/s, constant.
+    haul
+        Length over time, m; negative ``total`` and ``top`` haul in.
+    turn
+        Course over time, rad.
+    duration
+        s.
+    """
+
+    length: float
+    speed: float
+    haul: Pace
+    turn: Pace
+    duration: float
+
+    def length_at(self, time: float) -> float:
+        """Unstretched length, m."""
+        return self.length + self.haul.covered(time)
+
+    def length_rate(self, time: float) -> float:
+        """Rate of the unstretched length, m/s, out positive."""
+        return self.haul.rate(time)
+
+    def velocity(self, time: float) -> np.ndarray:
+        """Velocity (3,) of the block, m/s."""
+        course = self.turn.covered(time)
+        return self.speed * np.array([cos(course), sin(course), 0.0])
+
+    def track(self, times: np.ndarray) -> np.ndarray:
+        """Places (n, 3) of the block at rising, closely spaced times, m; Simpson's rule."""
+        ends = np.array([self.velocity(t) for t in times])
+        middles = np.array([self.velocity(t) for t in 0.5 * (times[1:] + times[:-1])])
+        steps = np.diff(times)[:, None] / 6.0 * (ends[:-1] + 4.0 * middles + ends[1:])
+        return np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+
+
+def haul_and_turn(length: float = 600.0, speed: float = 2.0) -> Manoeuvre:
+    """Haul 200 m at 0.5 m/s, then turn by 90° at 0.5°/s, each from and to a steady pace."""
+    haul = Pace(start=20.0, total=-200.0, top=-0.5, rise=10.0)
+    turn = Pace(start=haul.end + 55.0, total=pi / 2, top=TURN_RATE, rise=20.0)
+    return Manoeuvre(length, speed, haul, turn, duration=turn.end + 220.0)
+
+
+def short_manoeuvre(length: float = 600.0, speed: float = 2.0) -> Manoeuvre:
+    """The beginnings of both: 10 m of hauling and 20° of turn."""
+    haul = Pace(start=5.0, total=-10.0, top=-0.5, rise=10.0)
+    turn = Pace(start=haul.end, total=pi / 9, top=TURN_RATE, rise=20.0)
+    return Manoeuvre(length, speed, haul, turn, duration=turn.end + 10.0)
