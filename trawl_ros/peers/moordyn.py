@@ -14,6 +14,9 @@ import numpy as np
 
 from trawl_ros.peers.absent import PeerFailed, peer
 
+HEADER = 9
+"""Bytes of a file of MoorDyn's state before its numbers: a name and a version."""
+
 
 class MoorDyn:
     """One system of lines and points; close it, or use it in a ``with`` statement.
@@ -66,6 +69,21 @@ class MoorDyn:
         except RuntimeError as error:
             raise PeerFailed(f'MoorDyn broke down at {time:.2f} s: {error}') from None
         return np.reshape(force, (-1, 3))
+
+    def restart(self, places: np.ndarray, velocities: np.ndarray) -> None:
+        """Put all points, (p, 3) m in their order, and let them move, (p, 3) m/s; those that
+        are coupled stay where they are. For lines of one segment this is the whole state.
+        """
+        file = Path(self._folder.name) / 'state'
+        self._module.SaveState(self._system, str(file))
+        content = bytearray(file.read_bytes())
+        # A header, the number of words and of things, then each thing, points first: rows,
+        # columns, and a row of place and velocity.
+        words = np.frombuffer(content, '<f8', offset=HEADER)
+        rows = words[2 : 2 + 8 * len(places)].reshape(-1, 8)
+        rows[:, 2:5], rows[:, 5:8] = places, velocities
+        file.write_bytes(content)
+        self._module.LoadState(self._system, str(file))
 
     def place(self, point: int) -> np.ndarray:
         """Where a point (from 0) is, (3,) m."""

@@ -13,7 +13,7 @@ from trawl_ros.peers.towed_wire import Towed, TowedWire
 
 BLOCK, LUMP, WIRE_LINE = 0, 1, 0
 
-COUPLING_STEP = 0.1
+COUPLING = 0.1
 """Longest time (s) over which MoorDyn sees the block in uniform motion."""
 
 SETTLING = 2500.0
@@ -21,10 +21,29 @@ SETTLING = 2500.0
 
 
 class MoorDynWire:
-    """The wire in MoorDyn, cut into ``segments``; it starts straight, towed along x."""
+    """The wire in MoorDyn; it starts straight, towed along x.
+
+    Parameters
+    ----------
+    wire, segments
+        The wire and how finely it is cut.
+    scheme, step
+        MoorDyn's name of its time scheme, and its step (s).
+    lump
+        Where the lump starts, m behind and below the block.
+    coupling
+        Longest time (s) over which the block is in uniform motion.
+    """
 
     def __init__(
-        self, wire: TowedWire, segments: int, scheme: str, step: float, lump: tuple[float, float]
+        self,
+        wire: TowedWire,
+        segments: int,
+        scheme: str,
+        step: float,
+        lump: tuple[float, float],
+        *,
+        coupling: float = COUPLING,
     ) -> None:
         make = LineType(
             diameter=wire.diameter,
@@ -51,7 +70,8 @@ class MoorDynWire:
         text = input_file((make,), points, lines, Options(scheme, step, wire.density, wire.gravity))
         self._wire = wire
         self._time, self._block = 0.0, np.zeros(3)
-        self._coupling = step * max(1, int(COUPLING_STEP / step))
+        # A whole number of steps, though neither is exact in binary.
+        self._coupling = step * max(1, int(coupling / step + 1e-9))
         self._system = MoorDyn(text, self._block, wire.speed * np.array([1.0, 0.0, 0.0]))
 
     def settle(self, duration: float = SETTLING) -> Towed:
