@@ -60,7 +60,8 @@ def run(small: bool) -> Outcome:
             'the half segment that hangs on it. The manoeuvre hauls '
             f'{-manoeuvre.haul.total:g} m at 0.5 m/s and then turns the ship by '
             f'{np.degrees(manoeuvre.turn.total):.0f}° at 0.5°/s and {WIRE.speed:g} m/s. '
-            f'{PEER}: {SCHEME} in steps of {STEP:g} s; here: generalised-α in steps of {OWN_STEP:g} s.'
+            f'{PEER}: {SCHEME} in steps of {STEP:g} s; here: generalised-α '
+            f'in steps of {OWN_STEP:g} s.'
         ),
     )
 
