@@ -1,5 +1,6 @@
 """The map of steady states: what a walk finds, what a second branch would look like to it."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from trawl_ros.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.validation.branches.lattices import Lattice, speed_lattice
 from trawl_ros.validation.branches.steady_states import CASE
 from trawl_ros.validation.branches.walk import Place, Search, judged, walk
+from trawl_ros.validation.writing import check_record
 
 
 @pytest.fixture(scope='module')
@@ -29,6 +31,7 @@ def lattice(model: GearModel) -> Lattice:
 def test_every_check_of_the_small_map_holds() -> None:
     outcome = CASE.run(True)
     assert [check.key for check in outcome.checks if not check.ok] == []
+    json.dumps([check_record(check) for check in outcome.checks])
     assert len(outcome.drawings) == 2
 
 

@@ -1,5 +1,7 @@
 """The case on the time step: the smooth manoeuvre is smooth, and an order is read off rightly."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -7,11 +9,13 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.validation.convergence.manoeuvres import History, smooth_tow
 from trawl_ros.validation.convergence.time_step import CASE, convergence
+from trawl_ros.validation.writing import check_record
 
 
 def test_every_check_of_the_small_case_holds() -> None:
     outcome = CASE.run(True)
     assert [check.key for check in outcome.checks if not check.ok] == []
+    json.dumps([check_record(check) for check in outcome.checks])
 
 
 def test_the_smooth_manoeuvre_moves_as_its_rates_say(model: GearModel) -> None:

@@ -136,7 +136,7 @@ def smoothness_checks(lattice: Lattice) -> Iterator[Check]:
     )
     for k, (name, read) in enumerate(GROWING.items()):
         falls = sum(
-            read(long) <= read(short) for short, long in _neighbouring(lattice, along=(1, 0))
+            bool(read(long) <= read(short)) for short, long in _neighbouring(lattice, along=(1, 0))
         )
         yield Check(
             f'grows_{k + 1}',

@@ -63,7 +63,7 @@ SMALL = Size(
     lengths=(300.0, 500.0),
     speeds=(2.1, 2.6),
     angle_lengths=(500.0,),
-    degrees=(-10.0, 0.0, 5.0),
+    degrees=(-10.0, 0.0),
     collapses=((500.0, 2.1),),
     hopeless_starts=1,
 )
