@@ -9,13 +9,12 @@ import pytest
 
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import rotation
 from trawl_ros.model.observables import observe
-from trawl_ros.model.state import State, Tow
-from trawl_ros.model.water import Water
+from trawl_ros.model.state import Tow
 from trawl_ros.solver import stepper as stepper_module
 from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.stepper import Motion, Stepper, at_rest
+from trawl_ros.validation.closed_forms.free_rotation import momentum_and_energy, spinning
 
 Boundary = Callable[[float], Tow]
 
@@ -77,68 +76,15 @@ def test_it_converges_with_the_square_of_the_step(model: GearModel, steady: Stea
     assert first < 0.01
 
 
-@pytest.fixture(scope='module')
-def spinning(bare_model) -> tuple[GearModel, State, Tow]:
-    """Two boards spinning freely where there is neither water nor gravity."""
-    void = Water(density=1e-12, gravity=0.0)
-    model = bare_model({'weight_in_water_n_m': 28.0}, 2, void)
-    gear = model.gear.board
-    inertia = gear.inertia
-    model = replace(
-        model,
-        board=replace(
-            model.board,
-            mass=gear.mass_kg,
-            inertia=np.array(
-                [
-                    [inertia.xx_kg_m2, -inertia.xy_kg_m2, 0.0],
-                    [-inertia.xy_kg_m2, inertia.yy_kg_m2, 0.0],
-                    [0.0, 0.0, inertia.zz_kg_m2],
-                ]
-            ),
-        ),
-    )
-    tow = Tow(
-        np.array([[0.0, 5.0, 0.0], [0.0, -5.0, 0.0]]),
-        np.zeros((2, 3)),
-        np.full(2, 25.0),
-        np.zeros(2),
-    )
-    nodes = tow.blocks.repeat(2, axis=0) + np.tile([[-10.0, 0, 0], [-20.0, 0, 0]], (2, 1))
-    turn = rotation(np.array([0.3, -0.2, 0.5]))
-    state = State(
-        nodes=nodes,
-        board_positions=np.zeros((2, 3)),
-        board_rotations=np.stack([turn, turn.T]),
-        node_velocities=np.zeros((4, 3)),
-        board_velocities=np.array([[1.0, 0.2, -0.1], [0.5, 0.0, 0.0]]),
-        # About the axis of middle inertia a spin is unstable: it tumbles.
-        board_rates=np.stack([turn @ [1.0, 0.01, 0.02], turn.T @ [0.4, 0.5, 0.6]]),
-    )
-    return model, state, tow
-
-
-def momentum_and_energy(model: GearModel, state: State) -> tuple[np.ndarray, float]:
-    """Angular momentum (2, 3) and kinetic energy of both boards, from the inertia tensor."""
-    mirror = np.stack([np.ones(2), np.array([1.0, -1.0]), np.ones(2)], 1)
-    body = mirror[:, :, None] * model.board.inertia * mirror[:, None, :]
-    turn = state.board_rotations
-    inertia = turn @ body @ np.swapaxes(turn, 1, 2)
-    spin = np.einsum('sij,sj->si', inertia, state.board_rates)
-    energy = 0.5 * np.einsum('si,si->', spin, state.board_rates)
-    energy += 0.5 * model.board.mass * np.sum(state.board_velocities**2)
-    return spin, float(energy)
-
-
 @pytest.mark.usefixtures('solved_to_rounding')
-def test_a_free_board_keeps_its_energy_and_angular_momentum(spinning) -> None:
-    model, state, tow = spinning
+def test_a_free_board_keeps_its_energy_and_angular_momentum() -> None:
+    model, state, tow = spinning()
     inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
     first = np.linalg.solve(inertia, forces(model, state, tow))
     before, energy = momentum_and_energy(model, state)
     errors = []
-    for h in (0.05, 0.025):
-        end = run(model, Motion(state, first, first), lambda t: tow, h, 10.0).state
+    for h in (0.2, 0.1):
+        end = run(model, Motion(state, first, first), lambda t: tow, h, 50.0).state
         after, left = momentum_and_energy(model, end)
         errors.append(
             (np.abs(after - before).max() / np.abs(before).max(), abs(left / energy - 1.0))
@@ -151,12 +97,12 @@ def test_a_free_board_keeps_its_energy_and_angular_momentum(spinning) -> None:
     assert energies.max() < 1e-4
 
 
-def test_without_the_gyroscopic_moment_it_would_not(spinning) -> None:
-    model, state, tow = spinning
+def test_without_the_gyroscopic_moment_it_would_not() -> None:
+    model, state, tow = spinning()
     generalised = forces(model, state, tow)[3 * model.nodes :].reshape(2, 6)
     spin, _ = momentum_and_energy(model, state)
     np.testing.assert_allclose(
         generalised[:, 3:], -np.cross(state.board_rates, spin), rtol=1e-9, atol=1e-9
     )
-    assert np.abs(generalised[:, 3:]).max() > 100.0
+    assert np.abs(generalised[:, 3:]).max() > 50.0
     np.testing.assert_allclose(generalised[:, :3], 0.0, atol=1e-9)

@@ -9,7 +9,14 @@ from trawl_ros.validation.check import Case
 
 SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        'closed_forms': (),
+        'closed_forms': (
+            'towed_wire',
+            'catenary',
+            'sinking_line',
+            'board_law',
+            'free_rotation',
+            'energy_budget',
+        ),
         'convergence': ('time_step', 'refinement'),
         'paper': (
             'warp_sweep',

@@ -1,0 +1,183 @@
+"""The load on one otter board, written anew from the paper and from what is read into it.
+
+It shares nothing with `trawl_ros.model.board`: the axes come from the board's three vertices in
+fixed axes (eq. 7-11) instead of a rotation matrix, each side has its own handedness, and what
+holds outside the law's range is built from slopes.
+"""
+
+from dataclasses import dataclass
+from math import asin, copysign, cos, hypot, pi, radians, sqrt
+
+import numpy as np
+from scipy.interpolate import BPoly, PPoly, make_interp_spline
+
+from trawl_ros.gear.records import BoardRecord
+
+INNER, OUTER = radians(-40.0), radians(90.0)
+"""Attack angles at which lift and moments are gone."""
+
+FULL = radians(40.0)
+"""Attack and slip up to which eq. 14 holds as it stands."""
+
+ROUNDING = radians(4.0)
+
+
+def _sloping(angles: list[float], slopes: list[float]) -> PPoly:
+    """A curve through the origin, by its slope, which is straight between the given angles."""
+    curve = PPoly.from_spline(make_interp_spline(angles, slopes, k=1)).antiderivative()
+    curve.c[-1] -= float(curve(0.0))
+    return curve
+
+
+RESTING_ATTACK = _sloping(
+    [-pi, -ROUNDING, 0.0, FULL, FULL + ROUNDING, pi], [0.0, 0.0, 1.0, 1.0, 0.0, 0.0]
+)
+RESTING_SLIP = _sloping(
+    [-pi, -FULL - ROUNDING, -FULL, FULL, FULL + ROUNDING, pi], [0.0, 0.0, 1.0, 1.0, 0.0, 0.0]
+)
+FACING = _sloping([-pi, -ROUNDING, 0.0, pi], [-1.0, -1.0, 1.0, 1.0])
+"""Attack angle as drag meets it: turned over for flow on the inner face."""
+
+FADING = BPoly.from_derivatives(
+    [-pi, INNER, 0.0, FULL, OUTER, pi],
+    [[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
+)
+
+
+@dataclass(frozen=True)
+class PaperBoard:
+    """One board under way.
+
+    ``a``, ``b``, ``c``: places (3,) of the vertices where warp, upper and lower bridle are
+    fastened, m, ``va``, ``vb``, ``vc`` their velocities, m/s; ``rate`` rad/s; ``water`` its
+    velocity there, m/s; ``density`` kg/m³. ``port`` says which side.
+    """
+
+    record: BoardRecord
+    port: bool
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    va: np.ndarray
+    vb: np.ndarray
+    vc: np.ndarray
+    rate: np.ndarray
+    water: np.ndarray
+    density: float
+    gravity: float
+
+    @property
+    def k_d(self) -> float:
+        """1 in the left-handed frames of starboard, -1 in those of port (eq. 8)."""
+        return -1.0 if self.port else 1.0
+
+    def axes(self) -> list[np.ndarray]:
+        """Axes x, y, z of the board in fixed axes (eq. 7-11).
+
+        The turn between model frame and board is that of the vertices in the gear file.
+        """
+        points = self.record.fastening
+        home = _model_axes(
+            np.array(points.warp_m),
+            np.array(points.upper_bridle_m),
+            np.array(points.lower_bridle_m),
+            -1.0,
+        )
+        here = _model_axes(self.a, self.b, self.c, self.k_d)
+        return [
+            here[0] * home[0][i] + here[1] * home[1][i] + here[2] * home[2][i] for i in range(3)
+        ]
+
+    def relative_flow(self) -> tuple[float, float, float]:
+        """u_x, u_y, u_z of the water against the board (eq. 3, 4)."""
+        relative = self.water - (self.va + self.vb + self.vc) / 3.0
+        x, y, z = (float(relative @ axis) for axis in self.axes())
+        return x, y, z
+
+    def load(self) -> tuple[np.ndarray, np.ndarray]:
+        """Force (3,) N and moment (3,) N m in fixed axes: eq. 12-14, 19, and turning."""
+        record, n = self.record, self.axes()
+        ux, uy, uz = self.relative_flow()
+        u = sqrt(ux * ux + uy * uy + uz * uz)
+        cx, cy, cz, cmx, cmy, cmz = coefficients(
+            record, attack(ux, uy), record.slip_sign * attack(ux, uz)
+        )
+        part = (ux * ux + uy * uy) / (u * u) / cos(FULL) ** 2
+        spanwise = 1.0 if part >= 1.0 else part * (2.0 - part)
+        pressure = 0.5 * self.density * record.area_m2 * u * u * spanwise
+        if record.force_axes == 'flow':
+            plane = hypot(ux, uy)
+            along = (ux * n[0] + uy * n[1]) / plane
+            outside = (uy * n[0] - ux * n[1]) / plane
+            force = pressure * (cx * along + cy * outside + cz * n[2])
+        else:
+            force = pressure * (cx * n[0] + cy * n[1] + cz * n[2])
+        force = force - (record.mass_kg - record.volume_m3 * self.density) * np.array(
+            [0.0, 0.0, self.gravity]
+        )
+        b, chord = record.span_m, record.chord_m
+        turns = (
+            record.moment_signs[0] * cmx * b,
+            record.moment_signs[1] * cmy * hypot(b, chord),
+            record.moment_signs[2] * cmz * chord,
+        )
+        # About left-handed axes a positive turn is a left-hand screw.
+        screw = turns[0] * n[0] + turns[1] * n[1] + turns[2] * n[2]
+        strips = self._strips(u)
+        slowing = [strips[i] * float(self.rate @ n[i]) * n[i] for i in range(3)]
+        return force, -self.k_d * pressure * screw - slowing[0] - slowing[1] - slowing[2]
+
+    def _strips(self, u: float) -> tuple[float, float, float]:
+        """Resistance to turning about x, y, z, N m s, added up over strips of the board.
+
+        A strip at r meets the flow u at ω r / u more, and lifts with the slope against it.
+        """
+        lift = 0.5 * self.density * u * u * self.record.rotary_slope
+        places, shares = np.polynomial.legendre.leggauss(4)
+
+        def about(width: float, other: float) -> float:
+            r, dr = 0.5 * width * places, 0.5 * width * shares
+            return float(np.sum(lift * (r / u) * r * other * dr))
+
+        b, chord = self.record.span_m, self.record.chord_m
+        return about(b, chord), 0.0, about(chord, b)
+
+
+def _model_axes(a: np.ndarray, b: np.ndarray, c: np.ndarray, k_d: float) -> list[np.ndarray]:
+    """x, y, z of the model frame from its vertices (eq. 7-10)."""
+    ac, bc = a - c, b - c
+    z = bc / np.linalg.norm(bc)
+    normal = np.cross(ac, bc)
+    y = k_d * normal / np.linalg.norm(normal)
+    return [k_d * np.cross(z, y), y, z]
+
+
+def attack(ux: float, other: float) -> float:
+    """Eq. 1 (with u_y) and eq. 2 (with u_z), carried on beyond 90° where the arcsine folds."""
+    angle = asin(other / sqrt(ux * ux + other * other))
+    return angle if ux < 0.0 else copysign(pi, other) - angle
+
+
+def coefficients(record: BoardRecord, alpha: float, beta: float) -> tuple[float, ...]:
+    """The six coefficients of eq. 14, and their stated continuation outside 0-40°."""
+    k = record.coefficients
+    if 0.0 <= alpha <= FULL and abs(beta) <= FULL:
+        return (
+            k.a1 * alpha + k.c1,
+            k.a2 * alpha + k.c2,
+            k.b3 * beta + k.c3,
+            k.a4 * alpha + k.c4,
+            k.b5 * beta + k.c5,
+            k.a6 * alpha + k.c6,
+        )
+    fade = float(FADING(alpha))
+    rest, slip = float(RESTING_ATTACK(alpha)), float(RESTING_SLIP(beta))
+    drag = k.a1 * float(RESTING_ATTACK(FACING(alpha))) + k.c1
+    return (
+        max(drag, 0.0),
+        fade * (k.a2 * rest + k.c2),
+        fade * k.b3 * slip + k.c3,
+        fade * (k.a4 * rest + k.c4),
+        fade * k.b5 * slip + k.c5,
+        fade * (k.a6 * rest + k.c6),
+    )

@@ -1,0 +1,30 @@
+"""How an error falls as a line is cut finer."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+
+def order(segments: Sequence[int], errors: Sequence[float]) -> float:
+    """Power of the segments' length with which errors fall, by a straight line through logs."""
+    return -float(np.polyfit(np.log(segments), np.log(errors), 1)[0])
+
+
+def drawn(segments: Sequence[int], errors: Mapping[str, Sequence[float]], title: str) -> Figure:
+    """Relative errors over segments, both logarithmic, beside a line of second order."""
+    figure = Figure(figsize=(6.4, 4.6), layout='constrained')
+    axes = figure.add_subplot()
+    for (label, values), mark in zip(errors.items(), 'osd^v', strict=False):
+        axes.loglog(
+            segments, values, mark + '-', label=f'{label}: order {order(segments, values):.2f}'
+        )
+    largest = max(values[0] for values in errors.values())
+    count = np.asarray(segments, float)
+    axes.loglog(count, 2.0 * largest * (count[0] / count) ** 2, 'k:', label='second order')
+    axes.set(title=title, xlabel='segments', ylabel='relative error')
+    axes.set_xticks(segments, [str(number) for number in segments], minor=False)
+    axes.minorticks_off()
+    axes.grid(alpha=0.3)
+    axes.legend()
+    return figure
