@@ -55,3 +55,24 @@ def test_a_board_beyond_the_range_of_its_law_is_refused(
     turned = model.with_board(installation=(np.radians(18.0), 0.0, 0.0))
     with pytest.raises(NoSteadyState, match=r'outside the range of its law \(40°\)'):
         steady_state(turned, 500.0, 2.1, start=steady.equilibrium)
+
+
+def test_a_shape_that_still_moves_at_another_speed_gives_no_state_of_that_speed(
+    model: GearModel, steady: SteadyState
+) -> None:
+    point = OperatingPoint(500.0, 500.0, 2.2)
+    found = find_equilibrium(model, point, near=steady.equilibrium.state)
+    np.testing.assert_allclose(found.state.node_velocities[:, 0], 2.2)
+    expected = find_equilibrium(model, point).observables.array()
+    np.testing.assert_allclose(found.observables.array(), expected, rtol=1e-6, atol=1e-7)
+
+
+def test_why_a_state_is_refused_is_also_said_in_a_word(
+    model: GearModel, steady: SteadyState
+) -> None:
+    turned = model.with_board(installation=(np.radians(-20.0), 0.0, 0.0))
+    with pytest.raises(NoSteadyState, match=r'outward normals -\d') as collapsed:
+        steady_state(turned, 500.0, 2.1, start=steady.equilibrium)
+    with pytest.raises(NoSteadyState) as surfaced:
+        steady_state(model, 200.0, 3.5)
+    assert (collapsed.value.reason, surfaced.value.reason) == ('collapsed', 'surfaced')

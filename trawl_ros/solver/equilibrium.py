@@ -23,6 +23,7 @@ from trawl_ros.model.observables import (
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.factor import factorised
 from trawl_ros.solver.first_guess import (
+    at_velocity,
     carried_over,
     coarser_model,
     first_guess,
@@ -89,7 +90,8 @@ def find_equilibrium(
     """
     tow = steady_tow(model, point)
     if near is not None:
-        state, iterations, residual = relax(model, near, tow, tolerance=TOLERANCE, time_step=10.0)
+        here = at_velocity(near, tow.block_velocities.mean(0))
+        state, iterations, residual = relax(model, here, tow, tolerance=TOLERANCE, time_step=10.0)
     elif start is not None:
         state, iterations, residual = relax(
             model,
@@ -108,10 +110,14 @@ def find_equilibrium(
         )
     seen = observe(model, state, tow)
     attack = np.array([seen.port_attack, seen.starboard_attack])
-    if outward_normal_lift(state).min() < COLLAPSED_NORMAL or attack.min() < 0.0:
+    lift = outward_normal_lift(state)
+    if lift.min() < COLLAPSED_NORMAL or attack.min() < 0.0:
         angles = ', '.join(f'{np.degrees(a):.1f}' for a in attack)
+        lean = ', '.join(f'{np.degrees(np.arcsin(up)):.1f}' for up in lift)
         raise NoSteadyState(
-            f'{where}: only a collapsed state was found, attack angles {angles}°', 'collapsed'
+            f'{where}: only a collapsed state was found, attack angles {angles}°, outward normals '
+            f'{lean}° up',
+            'collapsed',
         )
     return Equilibrium(
         point=point,

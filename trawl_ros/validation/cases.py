@@ -10,7 +10,7 @@ from trawl_ros.validation.check import Case
 SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         'closed_forms': (),
-        'convergence': (),
+        'convergence': ('time_step', 'refinement'),
         'paper': (
             'warp_sweep',
             'installation',
@@ -19,7 +19,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
             'sentences',
         ),
         'peers': ('moordyn_wire', 'moorpy_wire'),
-        'branches': (),
+        'branches': ('steady_states',),
     }
 )
 """Sub-package of `trawl_ros.validation` → its modules, each with a ``CASE`` of that name."""

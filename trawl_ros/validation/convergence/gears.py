@@ -1,0 +1,54 @@
+"""Steady observables of the default gear, cut as it is and finer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+
+SPEED = 2.1
+"""Speed through the water, m/s."""
+
+AROUND_ZERO = ('pitch', 'slip')
+"""Angles that may well be zero: pitch passes through it as warps grow longer."""
+
+REFERENCE = np.radians(30.0)
+"""What differences of these angles are set against: 30°, up to which the paper compares boards
+in Fig. 5."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Observables (lengths, observables) of one gear; NaN where it has no steady state."""
+
+    name: str
+    nodes: int
+    seen: np.ndarray
+
+
+def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> Row:
+    """Solve one gear at all warp lengths, from the middle one outward."""
+    model = build_model(gear)
+    seen = np.full((len(lengths), len(OBSERVABLES)), np.nan)
+    start: Equilibrium | None = None
+    for k in sorted(range(len(lengths)), key=lambda k: abs(k - len(lengths) // 2)):
+        try:
+            found = find_equilibrium(model, OperatingPoint(lengths[k], lengths[k], SPEED), start)
+        except NoSteadyState:
+            continue
+        start = start or found
+        seen[k] = found.observables.array()
+    return Row(name, model.nodes, seen)
+
+
+def differences(seen: np.ndarray, fine: np.ndarray) -> np.ndarray:
+    """Differences from the finer gear as shares: of its value, or of `REFERENCE` for angles
+    around zero. All arrays end with the observables.
+    """
+    around = np.array([name.endswith(AROUND_ZERO) for name in OBSERVABLES])
+    return (seen - fine) / np.where(around, REFERENCE, np.abs(fine))

@@ -1,0 +1,91 @@
+"""Two ways of hauling at a chosen time step: with smooth inputs, and as ship and winches do it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import observe
+from trawl_ros.model.state import State, Tow
+from trawl_ros.simulation.simulation import Command, Simulation, tow_of
+from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.stepper import Stepper, at_rest
+
+SAMPLE = 0.8
+"""Time (s) between the instants that are compared; a whole multiple of every step."""
+
+START = Command(port_length=500.0, starboard_length=500.0, speed=2.1)
+
+HAULING = np.array([1.0, 0.8])
+"""Share of the largest speed with which the port and starboard winch haul."""
+
+GAIN = 0.2
+"""Speed (m/s) that the ship gains meanwhile."""
+
+
+@dataclass(frozen=True)
+class History:
+    """A manoeuvre at one time step: ``seen`` (samples, observables) and ``places`` (samples,
+    coordinates) of all nodes and boards.
+    """
+
+    step: float
+    seen: np.ndarray
+    places: np.ndarray
+
+
+def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
+    """What ship and winches impose at a time when both winches haul with one wave of a cosine,
+    up to their largest speed and back to rest, and the ship gains speed with half of one.
+    """
+    wave = 2 * np.pi * t / duration
+    hauled = 0.5 * model.gear.winch.max_speed_m_s * HAULING
+    way = 0.5 * GAIN * (t - duration / np.pi * np.sin(0.5 * wave))
+    faster = 0.5 * GAIN * (1.0 - np.cos(0.5 * wave))
+    ahead = np.array([1.0, 0.0, 0.0])
+    return replace(
+        tow,
+        blocks=tow.blocks + t * tow.block_velocities + way * ahead,
+        block_velocities=tow.block_velocities + faster * ahead,
+        lengths=tow.lengths - hauled * (t - np.sin(wave) * duration / (2 * np.pi)),
+        length_rates=-hauled * (1.0 - np.cos(wave)),
+    )
+
+
+def smooth_haul(model: GearModel, start: Equilibrium, step: float, duration: float) -> History:
+    """The stepper through the smooth manoeuvre, from a steady state."""
+    stepper, motion = Stepper(model), at_rest(start.state)
+    each = round(SAMPLE / step)
+    seen, places = [], []
+    for k in range(1, round(duration / step) + 1):
+        tow = smooth_tow(model, start.tow, k * step, duration)
+        motion = stepper.step(motion, tow, step)
+        if k % each == 0:
+            seen.append(observe(model, motion.state, tow).array())
+            places.append(_places(motion.state))
+    return History(step, np.array(seen), np.array(places))
+
+
+def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) -> History:
+    """The simulation hauls ``hauled`` metres to port and less to starboard while the ship gains
+    speed: both with the accelerations of the gear file, which set in and end abruptly.
+    """
+    simulation = Simulation(model, START, period=0.5 * step)
+    simulation.command = Command(
+        START.port_length - hauled * HAULING[0],
+        START.starboard_length - hauled * HAULING[1],
+        START.speed + 0.5 * GAIN,
+    )
+    each = round(2 * SAMPLE / step)
+    seen, places = [], []
+    for k in range(1, round(2 * duration / step) + 1):
+        now = simulation.advance()
+        if k % each == 0:
+            tow = tow_of(model, now.ship, now.winches)
+            seen.append(observe(model, now.motion.state, tow).array())
+            places.append(_places(now.motion.state))
+    return History(step, np.array(seen), np.array(places))
+
+
+def _places(state: State) -> np.ndarray:
+    return np.concatenate([state.nodes.ravel(), state.board_positions.ravel()])
