@@ -69,22 +69,28 @@ def test_the_kite_lifts_whatever_the_course() -> None:
     np.testing.assert_allclose(turned[[1, 0, 2]], load(0.0, (-2.0, 0.0, 0.0)), atol=1e-9)
 
 
-def test_the_two_carrying_nodes_share_the_kite_and_lie_on_the_headrope(
+def test_the_headropes_centre_and_a_point_behind_it_share_the_kite(
     model: GearModel, random_case
 ) -> None:
     model, state, tow = random_case(model, 11)
     bare = replace(model, kite=replace(model.kite, area=0.0, mass=0.0, volume=0.0))
     change = forces(model, state, tow) - forces(bare, state, tow)
-    front, rear = model.layout.kite
-    x, v = state.nodes, state.node_velocities
-    whole = kite_physics.load(model.kite, x[front], x[rear], v[front], v[rear], model.water)
+    held = model.layout.kite
+    carriers = held.weights @ state.nodes[held.nodes]
+    motion = held.weights @ state.node_velocities[held.nodes]
+    whole = kite_physics.load(model.kite, *carriers, *motion, model.water)
     nodes = change[: 3 * model.nodes].reshape(-1, 3)
-    # What is left of a difference of forces a thousand times larger.
-    np.testing.assert_allclose(nodes[[front, rear]], [whole / 2] * 2, rtol=1e-6, atol=1e-6)
-    nodes[[front, rear]] = 0.0
+    np.testing.assert_allclose(nodes.sum(axis=0), whole, rtol=1e-6, atol=1e-6)
+    front, ahead, behind = held.nodes
+    assert front == model.layout.headrope[len(model.layout.headrope) // 2]
+    assert front == ahead
+    # The point behind lies between two nodes: its half is shared by how near they are.
+    share = held.weights[1, 2]
+    assert 0.0 < share < 1.0
+    np.testing.assert_allclose(nodes[front], whole * (1 - share / 2), rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(nodes[behind], whole * share / 2, rtol=1e-6, atol=1e-6)
+    nodes[held.nodes] = 0.0
     assert np.abs(change[: 3 * model.nodes]).max() == 0.0
-    head = model.layout.headrope
-    assert front == head[len(head) // 2]
 
 
 def test_clumps_pull_down_and_floats_up_by_what_the_gear_file_says(model: GearModel) -> None:

@@ -69,7 +69,9 @@ def test_a_symmetric_tow_is_symmetric(table, speed: float) -> None:
             side, _, rest = name.partition('_')
             if side == 'port':
                 sign = -1.0 if rest == 'roll' else 1.0
-                assert value == pytest.approx(sign * seen[f'starboard_{rest}'], rel=1e-8), name
+                assert value == pytest.approx(
+                    sign * seen[f'starboard_{rest}'], rel=1e-8, abs=1e-9
+                ), name
 
 
 def test_the_five_lines_of_the_readme_run(capsys) -> None:
@@ -188,19 +190,22 @@ def test_installation_angles_do_what_the_paper_reports(default_model: GearModel,
     assert eta['port_inclination'] > 0.0
 
 
-def test_a_finer_net_tells_nearly_the_same(gear: GearRecord, table) -> None:
+def test_a_net_finer_than_the_real_meshes_tells_nearly_the_same(gear: GearRecord, table) -> None:
+    # 68 real meshes go around the mouth.
     coarse = table[2.1][3].observables
-    point = OperatingPoint(500.0, 500.0, 2.1)
-    fine = find_equilibrium(build_model(gear.refined(net=2)), point).observables
-    for name, tolerance in (
-        ('door_spread', 0.03),
-        ('door_depth', 0.03),
-        ('net_depth', 0.04),
-        ('warp_tension', 0.02),
-        ('vertical_opening', 0.04),
-        ('port_attack', 0.02),
+    netting = gear.netting.model_copy(update={'around': 72})
+    model = build_model(gear.model_copy(update={'netting': netting}))
+    fine = find_equilibrium(model, OperatingPoint(500.0, 500.0, 2.1)).observables
+    for name in (
+        'door_spread',
+        'door_depth',
+        'net_depth',
+        'warp_tension',
+        'vertical_opening',
+        'horizontal_opening',
+        'port_attack',
     ):
-        assert getattr(fine, name) == pytest.approx(getattr(coarse, name), rel=tolerance), name
+        assert getattr(fine, name) == pytest.approx(getattr(coarse, name), rel=0.02), name
 
 
 def test_finer_warps_and_bridles_tell_the_same(gear: GearRecord, table) -> None:

@@ -67,12 +67,12 @@ def test_predictions_carry_values_derivatives_and_a_warm_start(
 ) -> None:
     predictor = Predictor(model)
     first = predictor.predict(model.coefficients, 500.0, 500.0, 2.1)
-    np.testing.assert_allclose(first.values, steady.observables.array(), rtol=1e-7)
+    np.testing.assert_allclose(first.values, steady.observables.array(), rtol=1e-7, atol=1e-8)
     assert np.abs((first.jacobian - exact) / np.abs(exact).max(axis=0)).max() < 1e-6
     changed = model.coefficients * 1.02
     warm = predictor.predict(changed, 500.0, 500.0, 2.1, first.state)
     cold = predictor.predict(changed, 500.0, 500.0, 2.1)
-    np.testing.assert_allclose(warm.values, cold.values, rtol=1e-7)
+    np.testing.assert_allclose(warm.values, cold.values, rtol=1e-7, atol=1e-8)
     # To first order the derivatives say what two per cent of every coefficient do.
     expected = first.values + first.jacobian[:, :12] @ (changed - model.coefficients)
     assert abs(warm.values[0] - expected[0]) < 0.1 * abs(warm.values[0] - first.values[0])

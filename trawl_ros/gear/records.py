@@ -188,9 +188,12 @@ class NettingRecord(Record):
     ``around`` numerical meshes stand for the real ones of every row; a numerical row is as
     long as keeps the angle of the meshes. ``body`` sections become netting, the ``codend``
     sections one line of ``codend_segments`` with the drag of its twine at the stated angle.
+    Behind each stretched circumference of ``halved_at_circumference_m`` half as many numerical
+    meshes go around as before it.
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
+    halved_at_circumference_m: Annotated[tuple[Positive, ...], Field(max_length=4)] = ()
     body: Annotated[tuple[SectionRecord, ...], Field(min_length=1, max_length=30)]
     codend: Annotated[tuple[SectionRecord, ...], Field(min_length=1, max_length=10)]
     codend_segments: Annotated[int, Field(ge=2, le=100)]
@@ -207,12 +210,16 @@ class NettingRecord(Record):
 
 
 class KiteRecord(Record):
-    """The canvas kite on the headrope's centre."""
+    """The canvas kite on the headrope's centre.
+
+    Its rear carrying point lies ``chord_m`` of stretched netting behind the headrope.
+    """
 
     area_m2: Positive
     mass_kg: NotNegative
     volume_m3: NotNegative
     setting_deg: Degrees
+    chord_m: Positive
     lift_slope: NotNegative
     drag_base: NotNegative
     drag_growth: NotNegative

@@ -100,9 +100,10 @@ def board_loads(model: GearModel, state: State) -> np.ndarray:
 
 def kite_load(model: GearModel, state: State) -> np.ndarray:
     """Force (3,) on the kite."""
-    front, rear = model.layout.kite
-    x, v = state.nodes, state.node_velocities
-    return kite_physics.load(model.kite, x[front], x[rear], v[front], v[rear], model.water)
+    held = model.layout.kite
+    front, rear = held.weights @ state.nodes[held.nodes]
+    front_velocity, rear_velocity = held.weights @ state.node_velocities[held.nodes]
+    return kite_physics.load(model.kite, front, rear, front_velocity, rear_velocity, model.water)
 
 
 def bar_end_forces(
@@ -127,7 +128,8 @@ def forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     np.add.at(total, model.ends[:, 0], at_start)
     np.add.at(total, model.ends[:, 1], at_end)
     total[:n] += lump_forces(model, state)
-    total[list(model.layout.kite)] += 0.5 * kite_load(model, state)
+    held = model.layout.kite
+    np.add.at(total, held.nodes, outer(held.shares, kite_load(model, state)))
     ropes = total[n : n + 6].reshape(2, 3, 3)
     boards = board_loads(model, state)
     boards = boards + np.concatenate([ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1)
@@ -193,7 +195,8 @@ def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
     np.add.at(total, model.ends[:, 0], slopes.pull + 0.5 * slopes.load)
     np.add.at(total, model.ends[:, 1], -slopes.pull + 0.5 * slopes.load)
     total[:n] += lump_forces(model, state)
-    total[list(model.layout.kite)] += 0.5 * kite_force
+    held = model.layout.kite
+    np.add.at(total, held.nodes, outer(held.shares, kite_force))
     ropes = total[n : n + 6].reshape(2, 3, 3)
     boards = body_force + np.concatenate(
         [ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1
@@ -259,15 +262,15 @@ def _board_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarra
 
 
 def _kite_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The kite's load by the complex step in its two nodes' positions and velocities."""
-    ends = list(model.layout.kite)
+    """The kite's load by the complex step in its two carriers' positions and velocities."""
+    held = model.layout.kite
     steps = (1j * STEP * np.eye(12)).reshape(12, 2, 2, 3)
-    x = state.nodes[ends] + steps[:, 0]
-    v = state.node_velocities[ends] + steps[:, 1]
+    x = held.weights @ state.nodes[held.nodes] + steps[:, 0]
+    v = held.weights @ state.node_velocities[held.nodes] + steps[:, 1]
     load = kite_physics.load(model.kite, x[:, 0], x[:, 1], v[:, 0], v[:, 1], model.water)
-    slopes = 0.5 * (load.imag / STEP).T
-    both = np.concatenate([slopes, slopes])
-    return -both[None, :, :6], -both[None, :, 6:], load[0].real
+    slopes = (load.imag / STEP).T.reshape(3, 2, 6) @ np.kron(held.weights, np.eye(3))
+    blocks = np.einsum('i,jvk->vijk', held.shares, slopes).reshape(2, 9, 9)
+    return -blocks[:1], -blocks[1:], load[0].real
 
 
 def _lump_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray]:
@@ -308,7 +311,7 @@ def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     body[:, 3:, 3:] = board_physics.world_inertia(model.board, OUTWARD, turn)
     density = model.water.density_at(state.nodes[:, 2])
     lumps = (model.lump_mass + density * model.lump_added)[:, None, None] * np.eye(3)
-    canvas = 0.5 * model.kite.mass * np.eye(6)[None]
+    canvas = model.kite.mass * np.diag(np.repeat(model.layout.kite.shares, 3))[None]
     hung = model.pattern.hung
     return model.pattern.gather(
         [bars[model.pattern.plain], half[hung], rigged, body, lumps, canvas]

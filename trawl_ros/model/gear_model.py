@@ -12,7 +12,7 @@ import numpy as np
 
 from trawl_ros.gear.records import BridleRecord, FrameRopeRecord, GearRecord, RopeRecord
 from trawl_ros.model.board import COEFFICIENTS, Board
-from trawl_ros.model.kite import Kite
+from trawl_ros.model.kite import Kite, KiteNodes
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.netting import NetMesh, build_net
 from trawl_ros.model.pattern import Pattern, build_pattern
@@ -37,7 +37,7 @@ class Layout:
     net: np.ndarray
     headrope: np.ndarray
     footrope: np.ndarray
-    kite: tuple[int, int]
+    kite: KiteNodes
     top_warp_bars: np.ndarray
     lines: tuple[tuple[str, np.ndarray, np.ndarray], ...]
 
@@ -239,7 +239,7 @@ def _add_bridles(
 def build_model(gear: GearRecord) -> GearModel:
     """Turn a gear file's record into arrays."""
     water, board = build_water(gear), build_board(gear)
-    mesh = build_net(gear.netting)
+    mesh = build_net(gear.netting, gear.kite.chord_m)
     build = _Builder()
     warp_row = _rope_row(gear.warp, water)
     segments = gear.warp.segments
@@ -292,7 +292,7 @@ def build_model(gear: GearRecord) -> GearModel:
     guess = np.full((build.count, 3), np.nan)
     guess[net] = mesh.positions
     ends = np.array([[build.resolve(a), build.resolve(b)] for a, b in build.ends])
-    kite_nodes = (int(net[mesh.kite[0]]), int(net[mesh.kite[1]]))
+    kite = replace(mesh.kite, nodes=net[mesh.kite.nodes])
     return GearModel(
         gear=gear,
         water=water,
@@ -313,7 +313,7 @@ def build_model(gear: GearRecord) -> GearModel:
             net=net,
             headrope=net[mesh.headrope],
             footrope=net[mesh.footrope],
-            kite=kite_nodes,
+            kite=kite,
             top_warp_bars=np.array(top_bars),
             lines=tuple(
                 (name, np.array([build.resolve(p) for p in points]), np.array(bars))
@@ -322,7 +322,7 @@ def build_model(gear: GearRecord) -> GearModel:
         ),
         first_guess=guess,
         net_mesh=mesh,
-        pattern=build_pattern(build.count, ends, kite_nodes),
+        pattern=build_pattern(build.count, ends, kite.nodes),
     )
 
 

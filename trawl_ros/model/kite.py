@@ -23,6 +23,25 @@ class Kite:
     drag_growth: float
 
 
+@dataclass(frozen=True)
+class KiteNodes:
+    """The nodes that hold the kite: ``nodes`` (3,) numbers, one of which may be there twice,
+    and ``weights`` (2, 3) that make its front and rear carrying points of them.
+    """
+
+    nodes: np.ndarray
+    weights: np.ndarray
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Share (3,) of the kite's load on each node; both carriers hold half of it."""
+        return self.weights.mean(axis=0)
+
+
+NO_KITE = KiteNodes(np.zeros(3, int), np.zeros((2, 3)))
+"""For gear without a kite, whose area and mass are zero as well."""
+
+
 def attack_angle(kite: Kite, front: np.ndarray, rear: np.ndarray, flow: np.ndarray) -> np.ndarray:
     """Attack angle a_c (rad): pitch of the line through both carrying nodes in the vertical
     plane (eq. 31), plus the rise of the flow (eq. 32), plus the setting angle.

@@ -5,6 +5,9 @@ together: rest length = stretched circumference / (2 around). Then a numerical m
 same angle as the real ones, and ``real meshes around / around`` real bars lie side by side in
 each numerical bar: twine length, area, volume, stiffness and knots are kept, row by row.
 
+Toward the codend rows get short, which would not make the answer better: where the gear file
+says so, two numerical meshes are joined to one, which is twice as long.
+
 Nodes of even rows lie at multiples of the angular pitch from the top, those of odd rows half
 a pitch further, so the net is its own mirror image and has a node at the headrope's centre.
 The codend is one line: its meshes are too small for rows, and their drag is put on its nodes.
@@ -14,10 +17,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from trawl_ros.gear.records import NettingRecord, SectionRecord
-
-SLICES = 64
-"""Slices along a row over which the sections' properties are summed."""
+from trawl_ros.gear.records import NettingRecord
+from trawl_ros.model.kite import KiteNodes
+from trawl_ros.model.netting_rows import Profile, Row, rows_of
 
 
 @dataclass(frozen=True)
@@ -42,8 +44,8 @@ class NetMesh:
     ``bars`` its netting; ``knot_area`` (m²) and ``knot_volume`` (m³) per node;
     ``line_drag_area`` C_D S (m²) of the codend's nodes; ``headrope`` and ``footrope`` the
     nodes from port to starboard wing tip, with their ropes' rest lengths as shares of the
-    bosom and the wing edges; ``wing_end`` the pairs of nodes joined by the wing-end lines;
-    ``kite`` the two nodes that carry it.
+    bosom and the wing edges; ``wing_ends`` the nodes joined by the wing-end lines;
+    ``kite`` what carries the kite.
     """
 
     positions: np.ndarray
@@ -55,109 +57,63 @@ class NetMesh:
     footrope: list[int]
     edge_rest: float
     wing_ends: list[list[int]]
-    kite: tuple[int, int]
+    kite: KiteNodes
     twine_area: float = 0.0
     rows: int = field(default=0)
 
 
-class _Profile:
-    """Real netting as functions of the stretched distance from the mouth."""
-
-    def __init__(self, sections: tuple[SectionRecord, ...]) -> None:
-        self.sections = sections
-        self.edges = np.cumsum([0.0, *(s.length_m for s in sections)])
-
-    @property
-    def length(self) -> float:
-        return float(self.edges[-1])
-
-    def at(self, x: float) -> tuple[SectionRecord, float]:
-        """Section at ``x`` and its stretched circumference there."""
-        k = int(
-            np.clip(np.searchsorted(self.edges, x, side='right') - 1, 0, len(self.sections) - 1)
-        )
-        s = self.sections[k]
-        share = (x - self.edges[k]) / s.length_m
-        return s, s.front_circumference_m + share * (
-            s.back_circumference_m - s.front_circumference_m
-        )
-
-    def per_mesh_column(self, front: float, back: float, around: int) -> dict[str, float]:
-        """Sums over [front, back] for one of ``around`` columns of bars, per bar."""
-        total = dict.fromkeys(('area', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'), 0.0)
-        dx = (back - front) / SLICES
-        for x in front + (np.arange(SLICES) + 0.5) * dx:
-            section, circumference = self.at(float(x))
-            parallel = circumference / section.mesh_m / around
-            d = section.twine_diameter_m
-            twine = np.pi / 4 * d**2
-            total['area'] += parallel * d * dx
-            total['volume'] += parallel * twine * dx
-            total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx
-            total['stiffness'] += parallel * twine * section.twine_modulus_pa * dx
-            # Two knots per mesh and mesh length, shared by the two bars of a column.
-            knots = parallel / (section.mesh_m / 2) * dx / 2
-            total['knots'] += knots * np.pi / 4 * d**2
-            total['knot_volume'] += knots * np.pi / 6 * d**3
-        return total
-
-
-def _row_lengths(profile: _Profile, around: int) -> np.ndarray:
-    """Rest lengths of the rows, in proportion to the circumference, filling the body."""
-    lengths = []
-    x = 0.0
-    while x < profile.length:
-        _, circumference = profile.at(x)
-        # The circumference shrinks along the row: use the one at its middle.
-        _, middle = profile.at(min(x + circumference / (4 * around), profile.length))
-        lengths.append(middle / (2 * around))
-        x += lengths[-1]
-    rows = np.array(lengths)
-    if x - profile.length > 0.5 * rows[-1] and len(rows) > 1:
-        rows = rows[:-1]
-    return rows * profile.length / rows.sum()
-
-
-def build_net(net: NettingRecord) -> NetMesh:
-    """Group the netting of a gear into nodes and bars."""
+def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
+    """Group the netting of a gear into nodes and bars; see `KiteRecord` for the kite's chord."""
     n = net.around
-    body, codend = _Profile(net.body), _Profile(net.codend)
-    rows = _row_lengths(body, n)
+    body = Profile(net.body)
+    rows = rows_of(body, n, net.halved_at_circumference_m)
     wing_rows = n // 12
-    pitch = 2 * np.pi / n
+    wing_row = net.body[0].front_circumference_m / (2 * n)
+    wings = [
+        Row(k * wing_row, (k + 1) * wing_row, n, k % 2 == 1, False) for k in range(-wing_rows, 0)
+    ]
     index: dict[tuple[int, int], int] = {}
     positions: list[tuple[float, float, float]] = []
 
-    def add(row: int, j: int, x: float, radius: float) -> None:
-        phi = (j + 0.5 * (row % 2)) * pitch
-        index[row, j] = len(positions)
-        positions.append((x, radius * np.sin(phi), 0.6 * radius * np.cos(phi)))
-
-    edges = np.concatenate([[0.0], np.cumsum(rows)])
-    wing_length = wing_rows * rows[0]
-    for row in range(-wing_rows, len(rows) + 1):
-        x = row * rows[0] if row < 0 else edges[row]
-        _, circumference = body.at(max(x, 0.0))
+    def add(edge: int, x: float, around: int, odd: bool) -> None:
+        _, circumference = body.at(x)
         radius = 0.4 * circumference / (2 * np.pi)
-        for j in range(n):
-            if row >= 0 or _in_wing(row, j, n, wing_rows):
-                add(row, j, -0.85 * (x + wing_length), radius)
+        for j in range(around):
+            if edge >= 0 or _in_wing(edge, j, n, wing_rows):
+                phi = (j + 0.5 * odd) * 2 * np.pi / around
+                index[edge, j] = len(positions)
+                positions.append(
+                    (
+                        -0.85 * (x + wing_rows * wing_row),
+                        radius * np.sin(phi),
+                        0.6 * radius * np.cos(phi),
+                    )
+                )
+
+    for k, row in enumerate([*wings, *rows], -wing_rows):
+        add(k, row.front, row.around, row.odd)
+    last = rows[-1]
+    add(len(rows), last.back, last.columns, not last.joins and not last.odd)
     bars: list[NetBar] = []
     knot_area = np.zeros(len(positions) + net.codend_segments)
     knot_volume = np.zeros_like(knot_area)
-    for row in range(-wing_rows, len(rows)):
-        front, back = (edges[row], edges[row + 1]) if row >= 0 else (0.0, rows[0])
-        sums = body.per_mesh_column(front, back, n)
-        for j in range(n):
-            for step in (0, 1):
-                other = (j - 1 + (row % 2) + step) % n
-                if (row, j) in index and (row + 1, other) in index:
-                    a, b = index[row, j], index[row + 1, other]
-                    bars.append(_bar(a, b, back - front, sums, 'netting'))
-                    knot_area[[a, b]] += 0.5 * sums['knots'] * net.knot_diameters**2
-                    knot_volume[[a, b]] += 0.5 * sums['knot_volume'] * net.knot_diameters**3
+    for k, row in enumerate([*wings, *rows], -wing_rows):
+        sums = body.per_mesh_column(row.front, row.back, row.columns)
+        for j in range(row.around):
+            for other in _behind(row, j):
+                if (k, j) not in index or (k + 1, other) not in index:
+                    continue
+                a, b = index[k, j], index[k + 1, other]
+                # Half of the column of a bar on a wing's edge is cut away.
+                share = 0.5 if _on_edge(k, j, other, n, wing_rows) else 1.0
+                own = {key: share * value for key, value in sums.items()}
+                bars.append(_bar(a, b, row.rest, own, 'netting'))
+                knot_area[[a, b]] += 0.5 * own['knots'] * net.knot_diameters**2
+                knot_volume[[a, b]] += 0.5 * own['knot_volume'] * net.knot_diameters**3
     line_drag = np.zeros(len(positions) + net.codend_segments)
-    _add_codend(net, codend, index, len(rows), positions, bars, line_drag)
+    ring = [index[len(rows), j] for j in range(last.columns)]
+    codend = Profile((*body.behind(last.back), *net.codend))
+    _add_codend(net, codend, ring, positions, bars, line_drag)
     top, bottom = 0, n // 2
     rim_top = _rim(index, n, wing_rows, top)
     rim_bottom = _rim(index, n, wing_rows, bottom)
@@ -169,12 +125,27 @@ def build_net(net: NettingRecord) -> NetMesh:
         line_drag_area=line_drag,
         headrope=rim_top,
         footrope=rim_bottom,
-        edge_rest=rows[0],
+        edge_rest=wing_row,
         wing_ends=_wing_ends(index, n, wing_rows),
-        kite=(index[0, 0], index[2 * wing_rows, 0]),
+        kite=_kite_nodes(rows, index, kite_chord),
         twine_area=sum(bar.area * bar.rest for bar in bars),
         rows=len(rows),
     )
+
+
+def _kite_nodes(
+    rows: tuple[Row, ...], index: dict[tuple[int, int], int], chord: float
+) -> KiteNodes:
+    """The headrope's centre, and a point ``chord`` (m, stretched) behind it between the nodes
+    that lie along the top.
+    """
+    top = [k for k, row in enumerate(rows) if not row.odd]
+    places = np.array([rows[k].front for k in top])
+    behind = int(np.clip(np.searchsorted(places, chord), 1, len(top) - 1))
+    a, b = places[behind - 1], places[behind]
+    share = (chord - a) / (b - a)
+    nodes = [index[0, 0], index[top[behind - 1], 0], index[top[behind], 0]]
+    return KiteNodes(np.array(nodes), np.array([[1.0, 0.0, 0.0], [0.0, 1.0 - share, share]]))
 
 
 def _bar(a: int, b: int, rest: float, sums: dict[str, float], group: str) -> NetBar:
@@ -190,6 +161,13 @@ def _bar(a: int, b: int, rest: float, sums: dict[str, float], group: str) -> Net
     )
 
 
+def _behind(row: Row, j: int) -> tuple[int, ...]:
+    """Nodes of the back edge that the bars of node ``j`` of the front edge go to."""
+    if row.joins:
+        return (((j + 1) // 2) % row.columns,)
+    return ((j - 1 + row.odd) % row.around, (j + row.odd) % row.around)
+
+
 def _angle_index(row: int, j: int) -> int:
     """Angle from the top in half pitches, so that it is whole on every row."""
     return 2 * j + row % 2
@@ -202,6 +180,17 @@ def _in_wing(row: int, j: int, n: int, wing_rows: int) -> bool:
     half = _angle_index(row, j) % (2 * n)
     reach = 2 * wing_rows + row
     return min(abs(half - n // 2), abs(half - 3 * n // 2)) <= reach
+
+
+def _on_edge(row: int, j: int, other: int, n: int, wing_rows: int) -> bool:
+    """Whether the bar from (row, j) to (row + 1, other) lies along the cut edge of a wing."""
+    if row >= 0:
+        return False
+    half, next_half = _angle_index(row, j) % (2 * n), _angle_index(row + 1, other) % (2 * n)
+    return (
+        min(abs(half - n // 2), abs(half - 3 * n // 2)) == 2 * wing_rows + row
+        and min(abs(next_half - n // 2), abs(next_half - 3 * n // 2)) == 2 * wing_rows + row + 1
+    )
 
 
 def _rim(index: dict[tuple[int, int], int], n: int, wing_rows: int, middle: int) -> list[int]:
@@ -236,17 +225,15 @@ def _wing_ends(index: dict[tuple[int, int], int], n: int, wing_rows: int) -> lis
 
 def _add_codend(
     net: NettingRecord,
-    codend: _Profile,
-    index: dict[tuple[int, int], int],
-    last_row: int,
+    codend: Profile,
+    ring: list[int],
     positions: list[tuple[float, float, float]],
     bars: list[NetBar],
     line_drag: np.ndarray,
 ) -> None:
-    """One line behind the body; the last ring is gathered on its first node."""
-    n, m = net.around, net.codend_segments
+    """One line behind the last whole row, whose nodes are all tied to its first node."""
+    m = net.codend_segments
     step = codend.length / m
-    ring = [index[last_row, j] for j in range(n)]
     tail = positions[ring[0]][0]
     mesh_angle = np.radians(net.codend_mesh_angle_deg)
     # Eq. 23 and 24 along the flow for a bar at the stated angle, as C_D S per twine area.

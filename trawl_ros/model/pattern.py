@@ -37,8 +37,10 @@ class Pattern:
         return np.bincount(self.slot, weights=values, minlength=len(self.indices))
 
 
-def build_pattern(nodes: int, ends: np.ndarray, kite: tuple[int, int]) -> Pattern:
-    """The pattern of a gear with ``nodes`` free nodes and bars between the points ``ends``."""
+def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> Pattern:
+    """The pattern of a gear with ``nodes`` free nodes bars between the points ``ends``
+    and a kite held at the three nodes ``kite``.
+    """
     i, j = ends.T
     dof = 3 * nodes + 12
     free_i, free_j = i < nodes, j < nodes
@@ -54,7 +56,7 @@ def build_pattern(nodes: int, ends: np.ndarray, kite: tuple[int, int]) -> Patter
         np.concatenate([body[board], node[j[rigged]]], 1),
         body,
         node,
-        node[list(kite)].reshape(1, 6),
+        node[kite].reshape(1, 9),
     ]
     rows = np.concatenate([np.repeat(g, g.shape[1], 1).ravel() for g in groups])
     cols = np.concatenate([np.tile(g, (1, g.shape[1])).ravel() for g in groups])

@@ -22,7 +22,14 @@ from trawl_ros.model.observables import (
 )
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.factor import factorised
-from trawl_ros.solver.first_guess import at_velocity, first_guess, shifted_to
+from trawl_ros.solver.first_guess import (
+    at_velocity,
+    carried_over,
+    coarser_model,
+    first_guess,
+    shifted_to,
+    softened,
+)
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.stability import Stability, stability
 
@@ -31,6 +38,9 @@ TOLERANCE = 1e-4
 
 WARM_LIMIT = 60
 """Iterations after which a warm start is given up for a cold one."""
+
+WARM_TIME_STEP = 1e3
+"""First time step (s) from a known state nearby: nearly Newton's own."""
 
 LIMIT_METRES, LIMIT_RADIANS = 10.0, 0.1
 """Largest step of a node or board, and of a board's attitude."""
@@ -88,7 +98,7 @@ def find_equilibrium(
             shifted_to(model, start.state, start.tow, tow),
             tow,
             tolerance=TOLERANCE,
-            time_step=10.0,
+            time_step=WARM_TIME_STEP,
             limit=WARM_LIMIT,
         )
     if (near is None and start is None) or residual > TOLERANCE:
@@ -122,27 +132,35 @@ def find_equilibrium(
 
 
 def _cold(model: GearModel, point: OperatingPoint, tow: Tow) -> tuple[State, int, float]:
-    """From a first guess: boards keep their attitude until ropes and net have found a shape.
+    """From the shape of a coarser net or, for the coarsest, from a first guess.
 
     Unequal warps are reached from equal ones: the boards' first attitudes are equal too.
     """
     even = replace(tow, lengths=np.full(2, tow.lengths.mean()))
-    state = first_guess(model, even, point.heading)
-    state, _, _ = relax(
-        model,
-        state,
-        even,
-        tolerance=100.0,
-        time_step=2.0,
-        free=without_attitude(model),
-        limit=120,
-    )
-    state, iterations, residual = relax(model, state, even, tolerance=TOLERANCE, time_step=1.0)
+    soft = softened(model)
+    coarse = coarser_model(model)
+    spent = 0
+    if coarse is None:
+        state = first_guess(model, even, point.heading)
+        # Boards keep their attitude until ropes and net have found a shape.
+        held = without_attitude(model)
+        state, spent, _ = relax(
+            soft, state, even, tolerance=1000.0, time_step=2.0, free=held, limit=120
+        )
+    else:
+        state, spent, residual = _cold(coarse, point, even)
+        if residual > TOLERANCE:
+            return state, spent, residual
+        state = carried_over(coarse, state, model)
+    state, more, _ = relax(soft, state, even, tolerance=100.0, time_step=1.0, limit=200)
+    state, most, residual = relax(model, state, even, tolerance=TOLERANCE, time_step=1.0)
+    spent += more + most
     if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:
-        return state, iterations, residual
-    return relax(
+        return state, spent, residual
+    state, more, residual = relax(
         model, shifted_to(model, state, even, tow), tow, tolerance=TOLERANCE, time_step=2.0
     )
+    return state, spent + more, residual
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,14 @@
 """A first guess of the gear's shape, and shifting a known shape to other warp lengths."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
+from scipy.interpolate import RBFInterpolator
 
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import block_forces, forces, linearised
-from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.gear_model import OUTWARD, GearModel, build_model
 from trawl_ros.model.numerics import STEP, about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.factor import factorised
@@ -14,6 +17,15 @@ ATTACK = np.radians(20.0)
 LEAN = np.radians(14.0)
 DEPTH_SHARE, SPREAD_SHARE = 0.22, 0.16
 """Depth and sideways reach of a board as shares of the warp length, roughly as gears tow."""
+
+COARSE_AROUND = (48, 24)
+"""Meshes around the mouth of the coarser nets whose shape is found first."""
+
+NEIGHBOURS = 12
+"""Nodes of the coarser net that say where one of the finer net lies."""
+
+SOFTNESS = 0.3
+"""Share of its stiffness that `softened` leaves to a rope."""
 
 
 def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
@@ -52,6 +64,59 @@ def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
         ),
         tow.block_velocities.mean(0),
     )
+
+
+def coarser_model(model: GearModel) -> GearModel | None:
+    """The same gear with a coarser net, whose shape is found sooner; None when it has one."""
+    coarser = [around for around in COARSE_AROUND if around < model.gear.netting.around]
+    if not coarser:
+        return None
+    coarse = _coarse(model.gear, coarser[0])
+    return replace(
+        coarse,
+        coefficients=model.coefficients,
+        board=model.board,
+        kite=model.kite,
+        water=model.water,
+    )
+
+
+@lru_cache(maxsize=4)
+def _coarse(gear: GearRecord, around: int) -> GearModel:
+    netting = gear.netting.model_copy(update={'around': around})
+    return build_model(gear.model_copy(update={'netting': netting}))
+
+
+def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
+    """The shape of a coarser net as a guess for a finer one; warps and bridles are cut alike.
+
+    The net's displacement from the shape it was built in is a smooth function of the place
+    there, which is the same for both.
+    """
+    layout = coarse.layout
+    built = coarse.net_mesh.positions
+    shape = RBFInterpolator(
+        built, found.nodes[layout.net] - built, neighbors=NEIGHBOURS, kernel='linear'
+    )
+    fine = model.net_mesh.positions
+    nodes = np.empty((model.nodes, 3))
+    nodes[model.layout.net] = fine + shape(fine)
+    for ours, theirs in (
+        *zip(model.layout.warps, layout.warps, strict=True),
+        *zip(model.layout.bridles, layout.bridles, strict=True),
+    ):
+        nodes[ours] = found.nodes[theirs]
+    return replace(
+        found, nodes=nodes, node_velocities=np.tile(found.node_velocities[0], (model.nodes, 1))
+    )
+
+
+def softened(model: GearModel) -> GearModel:
+    """The same gear with softer ropes and netting, in which fewer bars flip between slack and
+    taut on the way to a shape.
+    """
+    soft = np.where(model.warp_side >= 0, 1.0, SOFTNESS)
+    return replace(model, bars=replace(model.bars, stiffness=soft * model.bars.stiffness))
 
 
 def at_velocity(state: State, velocity: np.ndarray) -> State:

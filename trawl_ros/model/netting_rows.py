@@ -1,0 +1,123 @@
+"""Netting along its length: what the real one has, and the rows of bars that stand for it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.gear.records import SectionRecord
+
+SLICES = 64
+"""Slices along a row over which the sections' properties are summed."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of bars over the stretched distances ``front`` to ``back`` (m) from the mouth.
+
+    ``around`` nodes are on its front edge, those of an odd edge (``odd``) half a pitch further
+    than the top. With ``joins`` each two of them are tied to one of the ``around / 2`` nodes of
+    the back edge.
+    """
+
+    front: float
+    back: float
+    around: int
+    odd: bool
+    joins: bool
+
+    @property
+    def rest(self) -> float:
+        """Unstretched length of its bars, m."""
+        return self.back - self.front
+
+    @property
+    def columns(self) -> int:
+        """Meshes around, of two bars each, that its bars stand for."""
+        return self.around // 2 if self.joins else self.around
+
+
+class Profile:
+    """Real netting as functions of the stretched distance from the mouth."""
+
+    def __init__(self, sections: tuple[SectionRecord, ...]) -> None:
+        self.sections = sections
+        self.edges = np.cumsum([0.0, *(s.length_m for s in sections)])
+
+    @property
+    def length(self) -> float:
+        """Of the netting, m."""
+        return float(self.edges[-1])
+
+    def behind(self, x: float) -> tuple[SectionRecord, ...]:
+        """What is left of the sections behind ``x``."""
+        left = []
+        for section, front, back in zip(self.sections, self.edges, self.edges[1:], strict=False):
+            if back > x:
+                start = max(x, float(front))
+                _, circumference = self.at(start)
+                changes = {'length_m': back - start, 'front_circumference_m': circumference}
+                left.append(section.model_copy(update=changes))
+        return tuple(left)
+
+    def at(self, x: float) -> tuple[SectionRecord, float]:
+        """Section at ``x`` and its stretched circumference there."""
+        k = int(
+            np.clip(np.searchsorted(self.edges, x, side='right') - 1, 0, len(self.sections) - 1)
+        )
+        s = self.sections[k]
+        share = max(x - self.edges[k], 0.0) / s.length_m
+        return s, s.front_circumference_m + share * (
+            s.back_circumference_m - s.front_circumference_m
+        )
+
+    def per_mesh_column(self, front: float, back: float, around: int) -> dict[str, float]:
+        """Sums over [front, back] per bar, for two bars in each of ``around`` meshes.
+
+        What lies ahead of the mouth is netting like that at the mouth.
+        """
+        total = dict.fromkeys(('area', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'), 0.0)
+        dx = (back - front) / SLICES
+        for x in front + (np.arange(SLICES) + 0.5) * dx:
+            section, circumference = self.at(float(x))
+            parallel = circumference / section.mesh_m / around
+            d = section.twine_diameter_m
+            twine = np.pi / 4 * d**2
+            total['area'] += parallel * d * dx
+            total['volume'] += parallel * twine * dx
+            total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx
+            total['stiffness'] += parallel * twine * section.twine_modulus_pa * dx
+            # Two knots per mesh and mesh length, shared by the two bars of a column.
+            knots = parallel / (section.mesh_m / 2) * dx / 2
+            total['knots'] += knots * np.pi / 4 * d**2
+            total['knot_volume'] += knots * np.pi / 6 * d**3
+        return total
+
+
+def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tuple[Row, ...]:
+    """Rows as long as makes ``around`` meshes as wide as the real ones, as many as fit into the
+    body.
+
+    Parameters
+    ----------
+    profile
+        Of the body.
+    around
+        Numerical meshes around the mouth.
+    halved_at
+        Stretched circumferences (m), falling, below which half as many meshes go around.
+    """
+    rows: list[Row] = []
+    x, odd, pending = 0.0, False, list(halved_at)
+    while True:
+        _, circumference = profile.at(x)
+        # The circumference shrinks along the row: use the one at its middle.
+        _, middle = profile.at(min(x + circumference / (4 * around), profile.length))
+        end = x + middle / (2 * around)
+        if end > profile.length:
+            return tuple(rows)
+        joins = bool(pending) and circumference <= pending[0] and odd and around % 2 == 0
+        rows.append(Row(x, end, around, odd, joins))
+        x, odd = end, not odd
+        if joins:
+            around, odd = around // 2, False
+            del pending[0]
