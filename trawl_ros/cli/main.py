@@ -18,6 +18,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'identify': ('identify', 'Refit the twelve board coefficients from recorded bags.'),
         'trim': ('trim', 'Find fastening points that give the boards wanted angles.'),
         'validate': ('validate', "Check the model's claims and write the report."),
+        'benchmark': ('benchmark', 'Measure how fast things are, beside other tools.'),
         'scenarios': ('scenarios', 'List the scenarios that come with the package.'),
         'import-log': ('import_log', 'Turn a CSV log from sea into a bag.'),
         'bag': ('bag', 'Look into bags.'),

@@ -1,0 +1,128 @@
+"""A hauling manoeuvre in steps of one length after another, under the very same ship."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.state import Tow
+from trawl_ros.simulation.ship import Ship, Winch
+from trawl_ros.simulation.simulation import Command, tow_of
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.stepper import Motion, Stepper, at_rest
+
+FROM, TO = Command(500.0, 500.0, 2.1), Command(400.0, 400.0, 1.9)
+"""100 m are hauled as fast as the winches can, while the ship slows down."""
+
+START = OperatingPoint(FROM.port_length, FROM.starboard_length, FROM.speed)
+
+FINEST_S = 0.05
+"""Step of the converged run, and of what ship and winches do in every run."""
+
+LOOK_EVERY_S = 2.0
+
+WATCHED = (
+    'door_spread', 'port_door_depth', 'starboard_door_depth', 'port_tension',
+    'starboard_tension', 'net_depth', 'vertical_opening', 'port_attack', 'starboard_attack',
+    'port_inclination', 'starboard_inclination',
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Haul:
+    """The manoeuvre of one gear: where it starts, and what ship and winches do, every
+    `FINEST_S` seconds from the start on.
+    """
+
+    model: GearModel
+    start: Motion
+    tows: tuple[Tow, ...]
+
+    @property
+    def duration_s(self) -> float:
+        """How long it takes, s."""
+        return FINEST_S * (len(self.tows) - 1)
+
+    def run(self, step_s: float) -> np.ndarray:
+        """Go through it in steps of one length, which divides `LOOK_EVERY_S`.
+
+        Returns
+        -------
+        (n, n_watched) array
+            What is `WATCHED`, every `LOOK_EVERY_S` seconds.
+
+        Raises
+        ------
+        StepFailed
+            When a step does not converge.
+        """
+        stride = round(step_s / FINEST_S)
+        looks = round(LOOK_EVERY_S / step_s)
+        columns = [OBSERVABLES.index(name) for name in WATCHED]
+        stepper, motion = Stepper(self.model), self.start
+        seen = []
+        for number, tow in enumerate(self.tows[stride::stride], 1):
+            motion = stepper.step(motion, tow, step_s)
+            if number % looks == 0:
+                seen.append(observe(self.model, motion.state, tow).array()[columns])
+        return np.array(seen)
+
+
+def haul_of(model: GearModel, duration_s: float, start: Equilibrium | None = None) -> Haul:
+    """The manoeuvre from the steady state at `FROM` on, which may be given."""
+    if start is None:
+        start = find_equilibrium(model, START)
+    tows = _tows(model, model.gear, round(duration_s / FINEST_S))
+    return Haul(model, at_rest(start.state), tows)
+
+
+def _tows(model: GearModel, gear: GearRecord, steps: int) -> tuple[Tow, ...]:
+    ship = Ship(np.zeros(3), 0.0, FROM.speed, 0.0)
+    winches = (Winch(FROM.port_length, 0.0), Winch(FROM.starboard_length, 0.0))
+    tows = [tow_of(model, ship, winches)]
+    current = model.water.current(np.array(0.0))
+    for _ in range(steps):
+        ship = ship.advanced(gear.ship, TO.speed, TO.turn_rate, current, FINEST_S)
+        winches = (
+            winches[0].advanced(gear.winch, TO.port_length, FINEST_S),
+            winches[1].advanced(gear.winch, TO.starboard_length, FINEST_S),
+        )
+        tows.append(tow_of(model, ship, winches))
+    return tuple(tows)
+
+
+@dataclass(frozen=True)
+class Error:
+    """Largest difference of a run from the converged one: of any watched observable, as a
+    share of the range it goes through (``of_range``) and of its mean size (``of_value``).
+    ``worst`` is the observable with the largest share of its range.
+    """
+
+    of_range: float
+    of_value: float
+    worst: str
+
+
+def error(seen: np.ndarray, converged: np.ndarray) -> Error:
+    """Hold a run against the converged one."""
+    difference = np.abs(seen - converged).max(axis=0)
+    by_range = difference / np.ptp(converged, axis=0)
+    by_value = difference / np.abs(converged).mean(axis=0)
+    return Error(float(by_range.max()), float(by_value.max()), WATCHED[int(by_range.argmax())])
+
+
+def largest_within(steps: Sequence[float], errors: Sequence[float], limit: float) -> int | None:
+    """Index of the largest step whose error, and that of all shorter ones, is below a limit.
+
+    ``steps`` rise; None when not even the first is good enough.
+    """
+    good = None
+    for index, (_, found) in enumerate(zip(steps, errors, strict=True)):
+        if not found < limit:
+            break
+        good = index
+    return good
