@@ -259,8 +259,8 @@ class GearRecord(Record):
     floats: FloatRecord
     identification: StartRecord
 
-    def refined(self, *, warp: int = 1, bridle: int = 1, net: int = 1) -> 'GearRecord':
-        """The same gear, cut finer by whole factors."""
+    def refined(self, *, warp: int = 1, bridle: int = 1, net: float = 1.0) -> 'GearRecord':
+        """The same gear, cut finer; the net as nearly as a multiple of 12 meshes allows."""
         return self.model_copy(
             update={
                 'warp': self.warp.model_copy(update={'segments': self.warp.segments * warp}),
@@ -269,8 +269,8 @@ class GearRecord(Record):
                 ),
                 'netting': self.netting.model_copy(
                     update={
-                        'around': self.netting.around * net,
-                        'codend_segments': self.netting.codend_segments * net,
+                        'around': 12 * round(self.netting.around * net / 12),
+                        'codend_segments': round(self.netting.codend_segments * net),
                     }
                 ),
             }

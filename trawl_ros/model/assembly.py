@@ -13,6 +13,7 @@ import numpy as np
 from trawl_ros.model import board as board_physics
 from trawl_ros.model import kite as kite_physics
 from trawl_ros.model import line
+from trawl_ros.model.compiled import compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import STILL, BarMotion
 from trawl_ros.model.numerics import STEP, length, outer, rotation, skew
@@ -165,19 +166,16 @@ def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
     points = points_of(model, state, tow)
     motion = motion_of(model, points, tow)
     slopes = line.linearised(model.bars, motion, model.water)
-    up = np.array([0.0, 0.0, 1.0])
-    by_height = 0.25 * outer(slopes.load_by_height, np.broadcast_to(up, slopes.load.shape))
-    half = 0.5 * slopes.load_by_vector
-    pull, damp = slopes.pull_by_vector, slopes.pull_by_stretching
-    flow = 0.25 * slopes.load_by_velocity
-    k = -np.block(
-        [
-            [-pull - half + by_height, pull + half + by_height],
-            [pull - half + by_height, -pull + half + by_height],
-        ]
+    k, c = np.empty((2, len(motion.rest), 6, 6))
+    _bar_blocks(
+        slopes.pull_by_vector,
+        slopes.pull_by_stretching,
+        slopes.load_by_vector,
+        slopes.load_by_velocity,
+        slopes.load_by_height,
+        k,
+        c,
     )
-    c = -np.block([[-damp + flow, damp + flow], [damp + flow, -damp + flow]])
-
     rig_k, rig_c = _rigged_blocks(model, state, points, slopes, k, c)
     body_k, body_c, body_force = _board_blocks(model, state)
     kite_k, kite_c, kite_force = _kite_blocks(model, state)
@@ -202,6 +200,32 @@ def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
         [ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1
     )
     return Linearised(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
+
+
+@compiled
+def _bar_blocks(
+    pull_by_vector: np.ndarray,
+    pull_by_stretching: np.ndarray,
+    load_by_vector: np.ndarray,
+    load_by_velocity: np.ndarray,
+    load_by_height: np.ndarray,
+    k: np.ndarray,
+    c: np.ndarray,
+) -> None:
+    """K and C (m, 6, 6) of bars between their two ends, of which each takes half the load."""
+    for n in range(len(k)):
+        for i in range(3):
+            for j in range(3):
+                pull, load = pull_by_vector[n, i, j], 0.5 * load_by_vector[n, i, j]
+                # Either end makes half of the bar's mean height and velocity.
+                height = 0.25 * load_by_height[n, i] if j == 2 else 0.0
+                k[n, i, j] = pull + load - height
+                k[n, i, 3 + j] = -pull - load - height
+                k[n, 3 + i, j] = -pull + load - height
+                k[n, 3 + i, 3 + j] = pull - load - height
+                damp, flow = pull_by_stretching[n, i, j], 0.25 * load_by_velocity[n, i, j]
+                c[n, i, j] = c[n, 3 + i, 3 + j] = damp - flow
+                c[n, i, 3 + j] = c[n, 3 + i, j] = -damp - flow
 
 
 def _lift(model: GearModel, points: Points) -> np.ndarray:
@@ -300,8 +324,8 @@ def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     points = points_of(model, state, tow)
     motion = motion_of(model, points, tow)
     half = 0.5 * line.mass(model.bars, motion, model.water)
-    zero = np.zeros_like(half)
-    bars = np.block([[half, zero], [zero, half]])
+    bars = np.zeros((len(half), 6, 6))
+    bars[:, :3, :3] = bars[:, 3:, 3:] = half
     lift = _lift(model, points)
     rigged = np.swapaxes(lift, 1, 2) @ bars[model.pattern.rigged] @ lift
     body = np.zeros((2, 6, 6))

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pattern:
     """Where the blocks of bars, boards, nodes and kite go in a (dof, dof) matrix.
 
@@ -28,6 +28,12 @@ class Pattern:
     def matrix(self, data: np.ndarray) -> sp.csc_matrix:
         """A matrix of data on this pattern."""
         return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.dof, self.dof))
+
+    def held(self, data: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Data with the rows and columns of what is not ``free`` (dof,) made the identity's."""
+        columns = np.repeat(np.arange(self.dof), np.diff(self.indptr))
+        kept = np.where(free[self.indices] & free[columns], data, 0.0)
+        return np.where((self.indices == columns) & ~free[columns], 1.0, kept)
 
     def gather(self, blocks: list[np.ndarray]) -> np.ndarray:
         """Sum the blocks of plain, hung and rigged bars, boards, nodes and kite, in this

@@ -8,10 +8,9 @@ a state it would also reach at sea, rather than to any root near the start.
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.sparse as sp
 
 from trawl_ros.errors import NoSteadyState
-from trawl_ros.model.assembly import linearised, mass
+from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.board import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import (
@@ -21,7 +20,7 @@ from trawl_ros.model.observables import (
     outward_normal_lift,
 )
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.factor import Factor, factorised
 from trawl_ros.solver.first_guess import (
     at_velocity,
     carried_over,
@@ -44,6 +43,13 @@ WARM_TIME_STEP = 1e3
 
 LIMIT_METRES, LIMIT_RADIANS = 10.0, 0.1
 """Largest step of a node or board, and of a board's attitude."""
+
+HEAVY = 1e2
+"""Time step (s) from which mass is too little to matter beside drag and stiffness."""
+
+KEEP_RATE, KEEP_SIZE = 0.25, 0.02
+"""A factorised matrix serves again after a step of at most this share of the limits, while it
+brings the force down to this share at least."""
 
 COLLAPSED_NORMAL = -0.2
 """Vertical part of a board's outward normal below which it has fallen on its face."""
@@ -264,33 +270,44 @@ def relax(
     """
     tau = time_step
     n = model.nodes
-    hold = None if free is None else sp.diags(np.where(free, 0.0, 1.0))
-    keep = None if free is None else sp.diags(np.where(free, 1.0, 0.0))
     iteration = 0
     last = np.inf
+    factor: Factor | None = None
     while True:
-        here = linearised(model, state, tow)
-        force = here.force if free is None else np.where(free, here.force, 0.0)
+        if factor is None:
+            here = linearised(model, state, tow)
+            force = here.force
+        else:
+            force = forces(model, state, tow)
+        if free is not None:
+            force = np.where(free, force, 0.0)
         residual = float(np.abs(force).max())
         if residual < tolerance or iteration == limit or not np.isfinite(residual):
             return state, iteration, residual
-        matrix = model.pattern.matrix(
-            here.stiffness + here.damping / tau + mass(model, state, tow) / tau**2
-        )
-        if keep is not None:
-            matrix = (keep @ matrix @ keep + hold).tocsc()
-        iteration += 1
-        try:
-            step = factorised(matrix).solve(force)
-        except RuntimeError:  # singular: a shorter time step adds mass and drag
-            tau /= 4.0
+        if factor is not None and residual > KEEP_RATE * last:
+            factor = None
             continue
+        iteration += 1
+        if factor is None:
+            data = here.stiffness + here.damping / tau
+            if tau < HEAVY:
+                data += mass(model, state, tow) / tau**2
+            try:
+                factor = factorised(
+                    model.pattern, data if free is None else model.pattern.held(data, free)
+                )
+            except RuntimeError:  # singular: a shorter time step adds mass and drag
+                tau /= 4.0
+                continue
+        step = factor.solve(force)
         body = step[3 * n :].reshape(2, 6)
         size = max(np.abs(step[: 3 * n]).max(), np.abs(body[:, :3]).max()) / LIMIT_METRES
         size = max(size, np.abs(body[:, 3:]).max() / LIMIT_RADIANS)
         # Bars that flip between slack and taut raise the residual and ask for shorter steps.
         growth = 3.0 if residual < last else max(0.25, last / residual)
         tau = max(tau / 1.5, 0.3) if size > 1.0 else min(max(growth * tau, 0.3), 1e9)
+        if size > KEEP_SIZE:
+            factor = None
         last = residual
         state = state.moved(step / max(size, 1.0))
 

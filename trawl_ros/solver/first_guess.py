@@ -157,4 +157,4 @@ def _tangent(model: GearModel, state: State, tow: Tow, change: np.ndarray) -> np
     longer = replace(tow, lengths=tow.lengths + 1j * STEP * change)
     push = forces(model, state, longer).imag / STEP
     stiffness = linearised(model, state, tow).stiffness
-    return factorised(model.pattern.matrix(stiffness)).solve(push)
+    return factorised(model.pattern, stiffness).solve(push)

@@ -58,7 +58,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
     stiffness = linearised(model, found.state, found.tow).stiffness
     moved = [_perturbed(model, found, index) for index in range(len(PARAMETERS))]
     pushes = np.column_stack([forces(*case).imag / STEP for case in moved])
-    shifts = solve_refined(model.pattern.matrix(stiffness), pushes)
+    shifts = solve_refined(model.pattern, stiffness, pushes)
     result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
     for index, (changed, state, tow) in enumerate(moved):
         along = state.moved(1j * STEP * shifts[:, index])

@@ -55,9 +55,8 @@ def stability(model: GearModel, state: State, tow: Tow) -> Stability:
     n = model.dof
     found = []
     for shift in SHIFTS:
-        solve = factorised(
-            matrix(shift**2 * inertia + shift * here.damping + here.stiffness.astype(complex))
-        ).solve
+        data = shift**2 * inertia + shift * here.damping + here.stiffness
+        solve = factorised(model.pattern, data).solve
 
         def apply(y: np.ndarray, s: complex = shift, solve: Solve = solve) -> np.ndarray:
             x, v = y[:n], y[n:]

@@ -9,13 +9,12 @@ it serves.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import SuperLU
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.factor import Factor, factorised
 
 SPECTRAL_RADIUS = 0.4
 """Share of the fastest vibration that is left after a step; 1 keeps all, 0 none."""
@@ -61,7 +60,7 @@ class Stepper:
         self._alpha_f = rho / (rho + 1)
         self._gamma = 0.5 + self._alpha_f - self._alpha_m
         self._beta = 0.25 * (self._gamma + 0.5) ** 2
-        self._factor: SuperLU | None = None
+        self._factor: Factor | None = None
         self._factor_step = 0.0
         self.factorisations = 0
 
@@ -107,11 +106,10 @@ class Stepper:
                 here = linearised(model, state, tow)
                 force = here.force
                 self._factor = factorised(
-                    model.pattern.matrix(
-                        here.stiffness
-                        + (by_velocity / by_position) * here.damping
-                        + inertia_data / by_position
-                    )
+                    model.pattern,
+                    here.stiffness
+                    + (by_velocity / by_position) * here.damping
+                    + inertia_data / by_position,
                 )
                 self._factor_step = h
                 self.factorisations += 1

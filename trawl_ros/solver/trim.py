@@ -17,7 +17,7 @@ from trawl_ros.model.numerics import STEP, about_axis
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.equilibrium import SteadyState, relax, steady_state, without_attitude
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.factor import factorised_part
 from trawl_ros.solver.first_guess import first_guess
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 
@@ -134,7 +134,7 @@ class _Search:
             here = linearised(model, state, tow)
             stiffness = model.pattern.matrix(here.stiffness)
             pushes = _by_points(model, state, tow)
-            solve = factorised(stiffness[moving][:, moving].tocsc()).solve
+            solve = factorised_part(stiffness[moving][:, moving].tocsc()).solve
             shifts = solve(np.column_stack([here.force[moving], pushes[moving]]))
             rows = stiffness[moments][:, moving]
             left_moment = here.force[moments] - rows @ shifts[:, 0]

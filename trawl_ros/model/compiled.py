@@ -1,0 +1,14 @@
+"""Compilation of loops, cached beside the module so that only the first start pays for it."""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+compiled: Any = njit(cache=True, error_model='numpy')
+
+
+def alike(*arrays: np.ndarray) -> list[np.ndarray]:
+    """Arrays of one kind, all real or all complex, as compiled loops take them."""
+    kind = complex if any(np.iscomplexobj(array) for array in arrays) else float
+    return [np.ascontiguousarray(array, kind) for array in arrays]
