@@ -1,5 +1,6 @@
 """The energy of a gear that is towed and hauled: what was put in is there, or went away."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,9 +10,10 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import Tow
+from trawl_ros.simulation.simulation import HALVINGS
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.stepper import Stepper, at_rest
+from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
 from trawl_ros.validation.check import Case, Check, Drawing, Outcome, Table
 from trawl_ros.validation.closed_forms.power import STORES, WORKS, Ledger
 from trawl_ros.validation.closed_forms.refinement import order
@@ -66,16 +68,27 @@ class Haul:
 
 
 @dataclass(frozen=True)
+class Instant:
+    """The gear in motion at a ``time`` (s), and what ship and winches impose then."""
+
+    time: float
+    motion: Motion
+    tow: Tow
+
+
+@dataclass(frozen=True)
 class Budget:
-    """``times`` (k,) s; ``works`` (k, 10) J done until then in the order of `WORKS`; ``stores``
-    (k, 3) J more than at first in the order of `STORES`; ``drum`` J that winches which take the
-    wire in at the block would have done.
+    """``times`` (k,) s, of ``steps`` steps and the halves of those that were halved; ``works``
+    (k, 10) J done until then in the order of `WORKS`; ``stores`` (k, 3) J more than at first in
+    the order of `STORES`; ``drum`` J that winches which take the wire in at the block would have
+    done.
     """
 
     times: np.ndarray
     works: np.ndarray
     stores: np.ndarray
     drum: float
+    steps: int
 
     @property
     def residual(self) -> np.ndarray:
@@ -95,23 +108,37 @@ class Budget:
 def budget(model: GearModel, start: Equilibrium, haul: Haul, h: float) -> Budget:
     """Tow and haul with steps of ``h`` seconds; powers by the trapezoid rule at every step."""
     ledger, stepper = Ledger.of(model), Stepper(model)
-    motion, tow = at_rest(start.state), start.tow
-    powers = [ledger.powers(motion, tow)]
-    energies = [ledger.energies(motion.state, tow)]
-    drum = [ledger.drum_power(motion.state, tow)]
+    path = [Instant(0.0, at_rest(start.state), start.tow)]
     steps = round(haul.seconds / h)
-    for k in range(steps):
-        tow = haul.boundary(start.tow, (k + 1) * h)
-        motion = stepper.step(motion, tow, h)
-        powers.append(ledger.powers(motion, tow))
-        energies.append(ledger.energies(motion.state, tow))
-        drum.append(ledger.drum_power(motion.state, tow))
+    for _ in range(steps):
+        path.extend(advanced(stepper, path[-1], lambda t: haul.boundary(start.tow, t), h, HALVINGS))
+    times = [now.time for now in path]
+    energies = np.array([ledger.energies(now.motion.state, now.tow) for now in path])
     return Budget(
-        times=h * np.arange(steps + 1),
-        works=cumulative_trapezoid(powers, dx=h, axis=0, initial=0.0),
-        stores=np.array(energies) - energies[0],
-        drum=float(trapezoid(drum, dx=h)),
+        times=np.array(times),
+        works=cumulative_trapezoid(
+            [ledger.powers(now.motion, now.tow) for now in path], times, axis=0, initial=0.0
+        ),
+        stores=energies - energies[0],
+        drum=float(
+            trapezoid([ledger.drum_power(now.motion.state, now.tow) for now in path], times)
+        ),
+        steps=steps,
     )
+
+
+def advanced(
+    stepper: Stepper, now: Instant, boundary: Callable[[float], Tow], h: float, halvings: int
+) -> list[Instant]:
+    """One step on; a step that fails is taken in halves, as a simulation does."""
+    tow = boundary(now.time + h)
+    try:
+        return [Instant(now.time + h, stepper.step(now.motion, tow, h), tow)]
+    except StepFailed:
+        if halvings == 0:
+            raise
+    first = advanced(stepper, now, boundary, 0.5 * h, halvings - 1)
+    return first + advanced(stepper, first[-1], boundary, 0.5 * h, halvings - 1)
 
 
 def run(small: bool) -> Outcome:
@@ -194,8 +221,8 @@ def _table(found: Budget) -> Table:
             (
                 words,
                 f'{1e-3 * work:.3f}',
-                f'{100 * work / found.put_in:.2g}',
-                f'{100 * work / winches:.2g}',
+                f'{100 * work / found.put_in:.4f}',
+                f'{100 * work / winches:.4f}',
             )
             for words, work in lines
         ),
@@ -205,10 +232,19 @@ def _table(found: Budget) -> Table:
 def _residuals(budgets: dict[float, Budget], left: list[float]) -> Table:
     return Table(
         'What is missing, by step.',
-        ('step [s]', 'most ever [J]', 'at the end [J]', 'most, of the winches’ work'),
+        (
+            'step [s]',
+            'steps',
+            'halved',
+            'most ever [J]',
+            'at the end [J]',
+            'most, of the winches’ work',
+        ),
         tuple(
             (
                 f'{h:g}',
+                str(found.steps),
+                str(len(found.times) - 1 - found.steps),
                 f'{most:.1f}',
                 f'{found.residual[-1]:.1f}',
                 f'{most / found.work("winches"):.1e}',

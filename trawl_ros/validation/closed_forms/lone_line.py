@@ -14,6 +14,7 @@ import numpy as np
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.kite import NO_KITE
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.pattern import build_pattern
 from trawl_ros.model.state import State, Tow
@@ -85,8 +86,8 @@ def lone_line(
         lump_volume=nothing,
         lump_drag_area=nothing,
         lump_added=nothing,
-        layout=replace(whole.layout, kite=(0, 1), top_warp_bars=np.array(top, int)),
-        pattern=build_pattern(nodes, ends, (0, 1)),
+        layout=replace(whole.layout, kite=NO_KITE, top_warp_bars=np.array(top, int)),
+        pattern=build_pattern(nodes, ends, NO_KITE.nodes),
     )
 
 

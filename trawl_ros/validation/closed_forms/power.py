@@ -116,7 +116,8 @@ class Ledger:
         strain_rate = (dot(along, bars.stretching) - bars.rest_rate * stretch) / bars.rest
         strained = model.bars.stiffness * strain_energy(stretch - 1.0)
         body = np.concatenate([state.board_velocities, state.board_rates], axis=1)
-        kite_velocity = state.node_velocities[list(model.layout.kite)].mean(0)
+        held = model.layout.kite
+        kite_velocity = held.shares @ state.node_velocities[held.nodes]
         inertia = self.massless.pattern.matrix(mass(self.massless, state, tow))
         works = {
             'ship': -np.sum(block_forces(model, state, tow) * tow.block_velocities),
@@ -140,13 +141,13 @@ class Ledger:
         strain = length(bars.vector) / bars.rest - 1.0
         strained = model.bars.stiffness * bars.rest * strain_energy(strain)
         board, kite, lumps = model.board, model.kite, state.nodes[:, 2]
-        canvas = list(model.layout.kite)
+        held = model.layout.kite
         place = np.sum(self._place_per_metre(bars.height) * bars.rest)
         place += np.sum(self._place(model.lump_mass, model.lump_volume, lumps))
         place += np.sum(self._place(board.mass, board.volume, state.board_positions[:, 2]))
-        place += self._place(kite.mass, kite.volume, lumps[canvas].mean())
+        place += self._place(kite.mass, kite.volume, held.shares @ lumps[held.nodes])
         node_mass = model.lump_mass.copy()
-        node_mass[canvas] += 0.5 * kite.mass
+        np.add.at(node_mass, held.nodes, held.shares * kite.mass)
         moving = np.sum(self._motion_per_metre(points) * bars.rest)
         moving += 0.5 * np.sum(node_mass * dot(state.node_velocities, state.node_velocities))
         moving += 0.5 * board.mass * np.sum(state.board_velocities**2)
