@@ -55,7 +55,7 @@ def manoeuvre(tow: Tow, t: float) -> Tow:
 @pytest.fixture
 def solved_to_rounding(monkeypatch) -> None:
     """Leave of a step's error only what the method itself makes."""
-    monkeypatch.setattr(stepper_module, 'TOLERANCE', 1e-10)
+    monkeypatch.setattr(stepper_module, 'TOLERANCE', 1e-8)
 
 
 @pytest.mark.usefixtures('solved_to_rounding')

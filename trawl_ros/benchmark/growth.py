@@ -120,9 +120,9 @@ def _size(model: GearModel, *, small: bool) -> Size:
 def _factor(model: GearModel, state: State, tow: Tow, repeats: int) -> tuple[float, float]:
     """CPU time (s) and memory (MB) of factorising the stiffness once and solving with it."""
     here = linearised(model, state, tow)
-    matrix = model.pattern.matrix(here.stiffness)
-    seconds = median_s(lambda: factorised(matrix).solve(here.force), repeats)
-    return seconds, factorised(matrix).nnz * NUMBER_BYTES / 1e6
+    pattern, data = model.pattern, here.stiffness
+    seconds = median_s(lambda: factorised(pattern, data).solve(here.force), repeats)
+    return seconds, factorised(pattern, data).fill * NUMBER_BYTES / 1e6
 
 
 def peak_mb() -> float:

@@ -192,8 +192,8 @@ def run(small: bool) -> Outcome:
 def _floor(momentum: dict[float, float]) -> Check:
     usual, short = momentum[STEPS[-1]], momentum[SHORT]
     worse = (
-        f'The stepper ends its iteration at a correction of {TOLERANCE:g} m or rad whatever the '
-        'step; what that leaves of an acceleration grows as the step gets shorter.'
+        f'The stepper ends its iteration at a correction of {TOLERANCE:g} m/s² or rad/s²; what '
+        'that leaves is not small beside the error of the method itself.'
     )
     return Check(
         'short_steps',
