@@ -13,10 +13,10 @@ import numpy as np
 from trawl_ros.model import board as board_physics
 from trawl_ros.model import kite as kite_physics
 from trawl_ros.model import line
-from trawl_ros.model.compiled import compiled
+from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import STILL, BarMotion
-from trawl_ros.model.numerics import STEP, length, outer, rotation, skew
+from trawl_ros.model.numerics import STEP, cross, length, outer, rotation, skew
 from trawl_ros.model.state import State, Tow
 
 
@@ -50,7 +50,7 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     """All points that bars can end at."""
     arms = np.einsum('sij,spj->spi', state.board_rotations, fastening(model))
     positions = state.board_positions[:, None] + arms
-    velocities = state.board_velocities[:, None] + np.cross(state.board_rates[:, None], arms)
+    velocities = state.board_velocities[:, None] + cross(state.board_rates[:, None], arms)
     return Points(
         np.concatenate([state.nodes, positions.reshape(6, 3), tow.blocks]),
         np.concatenate([state.node_velocities, velocities.reshape(6, 3), tow.block_velocities]),
@@ -62,17 +62,43 @@ def motion_of(
     model: GearModel, points: Points, tow: Tow, chosen: np.ndarray | slice = slice(None)
 ) -> BarMotion:
     """How all bars, or the ``chosen`` ones, lie and move."""
-    i, j = model.ends[chosen].T
     rest, rate = rest_lengths(model, tow)
-    x, v = points.positions, points.velocities
-    return BarMotion(
-        vector=x[j] - x[i],
-        stretching=v[j] - v[i],
-        velocity=0.5 * (v[i] + v[j]),
-        height=0.5 * (x[i, 2] + x[j, 2]),
-        rest=rest[chosen],
-        rest_rate=rate[chosen],
-    )
+    ends = model.ends[chosen]
+    x, v = alike(points.positions, points.velocities)
+    vector, stretching, velocity = np.empty((3, len(ends), 3), x.dtype)
+    height = np.empty(len(ends), x.dtype)
+    _motion(ends, x, v, vector, stretching, velocity, height)
+    return BarMotion(vector, stretching, velocity, height, rest[chosen], rate[chosen])
+
+
+@compiled
+def _motion(
+    ends: np.ndarray,
+    x: np.ndarray,
+    v: np.ndarray,
+    vector: np.ndarray,
+    stretching: np.ndarray,
+    velocity: np.ndarray,
+    height: np.ndarray,
+) -> None:
+    for n in range(len(ends)):
+        a, b = ends[n, 0], ends[n, 1]
+        for i in range(3):
+            vector[n, i] = x[b, i] - x[a, i]
+            stretching[n, i] = v[b, i] - v[a, i]
+            velocity[n, i] = 0.5 * (v[a, i] + v[b, i])
+        height[n] = 0.5 * (x[a, 2] + x[b, 2])
+
+
+@compiled
+def _gathered(
+    ends: np.ndarray, at_start: np.ndarray, at_end: np.ndarray, total: np.ndarray
+) -> None:
+    """Add what bars do at their two ends to the points there."""
+    for n in range(len(ends)):
+        for i in range(3):
+            total[ends[n, 0], i] += at_start[n, i]
+            total[ends[n, 1], i] += at_end[n, i]
 
 
 def lump_forces(model: GearModel, state: State) -> np.ndarray:
@@ -126,14 +152,13 @@ def forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     at_start, at_end = bar_end_forces(model, points, tow)
     n, size = model.nodes, len(points.positions)
     total = np.zeros((size, 3), dtype=at_start.dtype)
-    np.add.at(total, model.ends[:, 0], at_start)
-    np.add.at(total, model.ends[:, 1], at_end)
+    _gathered(model.ends, at_start, at_end, total)
     total[:n] += lump_forces(model, state)
     held = model.layout.kite
     np.add.at(total, held.nodes, outer(held.shares, kite_load(model, state)))
     ropes = total[n : n + 6].reshape(2, 3, 3)
     boards = board_loads(model, state)
-    boards = boards + np.concatenate([ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1)
+    boards = boards + np.concatenate([ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1)
     return np.concatenate([total[:n].ravel(), boards.ravel()])
 
 
@@ -190,14 +215,14 @@ def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
 
     n = model.nodes
     total = np.zeros((len(points.positions), 3))
-    np.add.at(total, model.ends[:, 0], slopes.pull + 0.5 * slopes.load)
-    np.add.at(total, model.ends[:, 1], -slopes.pull + 0.5 * slopes.load)
+    half = 0.5 * slopes.load
+    _gathered(model.ends, slopes.pull + half, half - slopes.pull, total)
     total[:n] += lump_forces(model, state)
     held = model.layout.kite
     np.add.at(total, held.nodes, outer(held.shares, kite_force))
     ropes = total[n : n + 6].reshape(2, 3, 3)
     boards = body_force + np.concatenate(
-        [ropes.sum(1), np.cross(points.arms, ropes).sum(1)], axis=1
+        [ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1
     )
     return Linearised(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
 

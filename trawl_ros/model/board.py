@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from trawl_ros.model.numerics import about_axis, angle, dot, length, transpose
+from trawl_ros.model.numerics import about_axis, angle, cross, dot, length, transpose
 from trawl_ros.model.water import Water
 
 COEFFICIENTS = ('a1', 'c1', 'a2', 'c2', 'b3', 'c3', 'a4', 'c4', 'b5', 'c5', 'a6', 'c6')
@@ -196,7 +196,7 @@ def flow_at(
     middle = mirror * board.fastening_points.mean(0)
     arm = np.einsum('...ij,...j->...i', rotation, middle)
     water_velocity = water.current(position[..., 2])
-    relative = water_velocity - velocity - np.cross(rate, arm)
+    relative = water_velocity - velocity - cross(rate, arm)
     flow = mirror * np.einsum('...ji,...j->...i', rotation, relative)
     ahead = -flow[..., 0]
     return BoardFlow(
@@ -260,7 +260,7 @@ def own_load(
     heavy = (board.mass - flow.density * board.volume) * water.gravity
     force = force - heavy[..., None] * np.array([0.0, 0.0, 1.0])
     spin = np.einsum('...ij,...j->...i', world_inertia(board, outward, rotation), rate)
-    return np.concatenate([force, moment - np.cross(rate, spin)], -1)
+    return np.concatenate([force, moment - cross(rate, spin)], -1)
 
 
 def inclination(rotation: np.ndarray) -> np.ndarray:
