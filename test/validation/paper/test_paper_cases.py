@@ -54,9 +54,8 @@ DIRECTIONS = (
     'growth_net_depth',
     'lean_growth',
     'upward_growth',
-    'tension_less',
 )
-"""Sentences that hold even for a net as coarse as it may be."""
+"""Sentences that hold for the coarser net of the small version too."""
 
 
 @pytest.mark.timeout(120)

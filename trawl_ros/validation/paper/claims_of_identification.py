@@ -138,10 +138,16 @@ def _deviations(fit: Refit) -> list[Claim]:
     def why(slope: str, degrees: float) -> str:
         std = float(fit.half_width(slope, np.radians([degrees]))[0])
         inside = away(slope, np.linspace(*fit.attack, 21)).max()
+        worked = f'the boards worked between {low:.0f}° and {high:.0f}°'
+        if low <= degrees <= high:
+            off = away(slope, np.radians([degrees]))[0]
+            return (
+                f'{worked}; at {degrees:.0f}° the line is off by {off:.2f}, and the readings '
+                f'leave it a standard deviation of {std:.2f}.'
+            )
         return (
-            f'the boards worked between {low:.0f}° and {high:.0f}°, where the line is off by '
-            f'{inside:.2f} at most; at {degrees:.0f}° it is drawn out beyond, with a standard '
-            f'deviation of {std:.2f}.'
+            f'{worked}, where the line is off by {inside:.2f} at most; at {degrees:.0f}° it is '
+            f'drawn out beyond, with a standard deviation of {std:.2f}.'
         )
 
     drag = away('a1', WORKING)

@@ -22,6 +22,7 @@ def installation_claims(changes: Changes) -> list[Claim]:
 
 
 def _zeta(changes: Changes) -> Claim:
+    most = max(RESULTS, key=lambda quantity: changes.largest((quantity,), 'zeta'))
     slip = changes.degrees('slip', 'zeta', TURN)
     against = changes.most_degrees('zeta') / changes.most_degrees('epsilon')
     return claim(
@@ -32,8 +33,8 @@ def _zeta(changes: Changes) -> Claim:
             'most that ±5° of ζ move spread, depth, opening and tension',
             changes.largest(RESULTS, 'zeta'),
             SPAN[0],
-            f'turning about y changes the slip angle, by {slip:+.1f}° with ζ +5°, and with it '
-            'C_z^F and C_y^M.',
+            f'most moved is the {most.replace("_", " ")}; the slip angle changes by '
+            f'{slip:+.1f}° with ζ +5°, and with it C_z^F and C_y^M.',
             rule='at_most',
             unit='%',
         ),

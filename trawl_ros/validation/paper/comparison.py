@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -14,8 +15,15 @@ from trawl_ros.model.observables import OBSERVABLES, Observables
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.validation.paper.point_board import point_board, point_observables
-from trawl_ros.validation.paper.sweeps import Sighting, sighting, warp_sweep
-from trawl_ros.validation.paper.trial import measured, warp_length, widest_speed
+from trawl_ros.validation.paper.sweeps import (
+    FEW_LENGTHS,
+    LENGTHS,
+    Sighting,
+    paper_model,
+    sighting,
+    warp_sweep,
+)
+from trawl_ros.validation.paper.trial import measured, trial_windows, warp_length, widest_speed
 
 Seen = Callable[[Equilibrium], Observables]
 
@@ -67,6 +75,13 @@ class Comparison:
 def column(channel: str) -> int:
     """Column of a quantity of eq. 35."""
     return [row.name for row in PAPER_CHANNELS].index(channel)
+
+
+@cache
+def compare_trial(small: bool) -> Comparison:
+    """Compare the gear of the paper with the sample trial; in a process once."""
+    lengths = FEW_LENGTHS if small else LENGTHS
+    return compare(paper_model(small), trial_windows(small), lengths)
 
 
 def compare(

@@ -5,9 +5,8 @@ from matplotlib.figure import Figure
 
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.validation.check import Case, Check, Drawing, Outcome, Table
-from trawl_ros.validation.paper.comparison import Comparison, column, compare
-from trawl_ros.validation.paper.sweeps import FEW_LENGTHS, LENGTHS, paper_model
-from trawl_ros.validation.paper.trial import trial_windows, warp_length
+from trawl_ros.validation.paper.comparison import Comparison, column, compare_trial
+from trawl_ros.validation.paper.trial import warp_length
 
 PANELS = (
     ('Fig. 13', 'door_spread', 'door spread [m]', 1.0),
@@ -19,8 +18,7 @@ PANELS = (
 
 def run(small: bool) -> Outcome:
     """Compare the two kinds of boards with the sample trial."""
-    lengths = FEW_LENGTHS if small else LENGTHS
-    seen = compare(paper_model(small), trial_windows(small), lengths)
+    seen = compare_trial(small)
     solved = np.isfinite(seen.trial_six).all(1) & np.isfinite(seen.trial_three).all(1)
     checks = (
         Check(

@@ -5,8 +5,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.validation.check import Case, Check, Drawing, Outcome, Table
-from trawl_ros.validation.paper.refit import Refit, refit
-from trawl_ros.validation.paper.sweeps import gear
+from trawl_ros.validation.paper.refit import Refit, refit_trial
 from trawl_ros.validation.paper.trial import trial_windows
 
 ATTACK = np.radians(np.linspace(0.0, 40.0, 81))
@@ -15,7 +14,7 @@ ATTACK = np.radians(np.linspace(0.0, 40.0, 81))
 def run(small: bool) -> Outcome:
     """Fit the default gear to the sample trial."""
     windows = trial_windows(small)
-    fit = refit(gear(small), windows)
+    fit = refit_trial(small)
     checks = (
         Check(
             'windows',

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -20,7 +21,8 @@ from trawl_ros.scenario.scenario import true_coefficients
 from trawl_ros.share import share_path
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction, Predictor
-from trawl_ros.validation.paper.trial import SCENARIO
+from trawl_ros.validation.paper.sweeps import gear
+from trawl_ros.validation.paper.trial import SCENARIO, trial_windows
 
 STAND_STILL = EstimatorOptions(tolerance=1e9)
 """No step is as large as this many std: windows are taken in, the coefficients stay."""
@@ -76,6 +78,12 @@ class Refit:
         part = self.estimate.covariance[first : first + 2, first : first + 2]
         basis = np.stack([attack, np.ones_like(attack)], -1)
         return np.sqrt(np.sum(basis @ part * basis, -1))
+
+
+@cache
+def refit_trial(small: bool) -> Refit:
+    """Fit the gear of the paper to the sample trial; in a process once."""
+    return refit(gear(small), trial_windows(small))
 
 
 def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> Refit:

@@ -7,30 +7,25 @@ from trawl_ros.validation.paper.claims_of_degrees import degree_claims
 from trawl_ros.validation.paper.claims_of_identification import identification_claims
 from trawl_ros.validation.paper.claims_of_installation import installation_claims
 from trawl_ros.validation.paper.claims_of_turned_boards import turned_board_claims
-from trawl_ros.validation.paper.comparison import compare
-from trawl_ros.validation.paper.refit import refit
+from trawl_ros.validation.paper.comparison import compare_trial
+from trawl_ros.validation.paper.refit import refit_trial
 from trawl_ros.validation.paper.sweeps import (
-    FEW_LENGTHS,
     FEW_TURNS,
-    LENGTHS,
     faster,
-    gear,
     installation_sweep,
     paper_model,
 )
-from trawl_ros.validation.paper.trial import trial_windows
 
 
 def run(small: bool) -> Outcome:
     """Work out everything the sentences speak of."""
-    windows = trial_windows(small)
     model = paper_model(small)
     changes = Changes(installation_sweep(model, FEW_TURNS), faster(model))
     claims = (
-        *identification_claims(refit(gear(small), windows)),
+        *identification_claims(refit_trial(small)),
         *installation_claims(changes),
         *turned_board_claims(changes),
-        *degree_claims(compare(model, windows, FEW_LENGTHS if small else LENGTHS)),
+        *degree_claims(compare_trial(small)),
     )
     agree = sum(one.agrees == 'yes' for one in claims)
     return Outcome(

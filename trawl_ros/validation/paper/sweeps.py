@@ -40,8 +40,8 @@ FEW_TURNS = (-TURN, 0.0, TURN)
 FASTER = 1.05
 """Factor on the speed that shows what pull alone does to the mouth."""
 
-COARSE = 12
-"""Meshes around the net in the small version."""
+COARSER = 2
+"""In the small version the net is so many times coarser."""
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,11 @@ class Sighting:
 
 
 def gear(small: bool) -> GearRecord:
-    """The gear of the paper; in the small version its net as coarse as it may be."""
+    """The gear of the paper; in the small version with a coarser net."""
     record = load_gear('kaifuha')
     if not small:
         return record
-    netting = record.netting.model_copy(update={'around': COARSE})
+    netting = record.netting.model_copy(update={'around': record.netting.around // COARSER})
     return record.model_copy(update={'netting': netting})
 
 

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -21,7 +22,8 @@ FEWER = 4
 """In the small version every so many states are used."""
 
 
-def trial_windows(small: bool) -> list[SteadyWindow]:
+@cache
+def trial_windows(small: bool) -> tuple[SteadyWindow, ...]:
     """The first steady window of each state of the trial, in the order of time."""
     finder = SteadyWindowFinder(build_water(load_gear('kaifuha')).depth)
     found = []
@@ -32,7 +34,7 @@ def trial_windows(small: bool) -> list[SteadyWindow]:
     for window in found:
         if isinstance(window, SteadyWindow):
             first.setdefault(window.state, window)
-    windows = list(first.values())
+    windows = tuple(first.values())
     return windows[::FEWER] if small else windows
 
 
