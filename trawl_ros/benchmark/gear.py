@@ -9,7 +9,16 @@ from matplotlib.figure import Figure
 
 from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.gears import default_gear
-from trawl_ros.benchmark.haul import FINEST_S, FROM, TO, Error, Haul, error, haul_of, largest_within
+from trawl_ros.benchmark.haul import (
+    CONVERGED_S,
+    FROM,
+    TO,
+    Error,
+    Haul,
+    error,
+    haul_of,
+    largest_within,
+)
 from trawl_ros.benchmark.row import Row
 from trawl_ros.benchmark.timing import median_s, timed
 from trawl_ros.benchmark.web import moordyn_web_factor
@@ -42,7 +51,7 @@ def measure(small: bool) -> Findings:
     """Run the manoeuvre at one step after another."""
     model = build_model(default_gear(small=small))
     haul = haul_of(model, 20.0 if small else 300.0)
-    converged, seconds = timed(lambda: haul.run(0.25 if small else FINEST_S))
+    converged, seconds = timed(lambda: haul.run(0.25 if small else CONVERGED_S))
     runs = [_run(haul, step, converged) for step in (STEPS_S[4:] if small else STEPS_S)]
     best = largest_within([run.step_s for run in runs], [run.of_range for run in runs], LIMIT)
     rows = []
@@ -69,8 +78,8 @@ def measure(small: bool) -> Findings:
         f'{haul.duration_s:.0f} s: the winches haul from {FROM.port_length:.0f} to '
         f'{TO.port_length:.0f} m and the ship slows from {FROM.speed:g} to {TO.speed:g} m/s, '
         f'both within what they can do. Spread, depths, tensions, opening, α and δ are held '
-        f'against a run in steps of {FINEST_S:g} s, which took {seconds:.0f} s; the error is the '
-        'largest difference at any time, as a share of the range that the observable goes '
+        f'against a run in steps of {CONVERGED_S:g} s, which took {seconds:.0f} s; the error is '
+        'the largest difference at any time, as a share of the range that the observable goes '
         'through. Ship and winches do the same in every run.',
     )
 

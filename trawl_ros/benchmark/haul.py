@@ -13,15 +13,18 @@ from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.simulation.simulation import Command, tow_of
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.stepper import Motion, Stepper, at_rest
+from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
 
 FROM, TO = Command(500.0, 500.0, 2.1), Command(400.0, 400.0, 1.9)
 """100 m are hauled as fast as the winches can, while the ship slows down."""
 
 START = OperatingPoint(FROM.port_length, FROM.starboard_length, FROM.speed)
 
-FINEST_S = 0.05
-"""Step of the converged run, and of what ship and winches do in every run."""
+FINEST_S = 0.025
+"""Step in which ship and winches move in every run, and the shortest that is taken."""
+
+CONVERGED_S = 0.05
+"""Step of the run that the others are held against."""
 
 LOOK_EVERY_S = 2.0
 
@@ -50,6 +53,8 @@ class Haul:
     def run(self, step_s: float) -> np.ndarray:
         """Go through it in steps of one length, which divides `LOOK_EVERY_S`.
 
+        A step that does not converge is taken in two halves, as in `Simulation`.
+
         Returns
         -------
         (n, n_watched) array
@@ -58,18 +63,28 @@ class Haul:
         Raises
         ------
         StepFailed
-            When a step does not converge.
+            When not even the shortest steps converge.
         """
         stride = round(step_s / FINEST_S)
         looks = round(LOOK_EVERY_S / step_s)
         columns = [OBSERVABLES.index(name) for name in WATCHED]
         stepper, motion = Stepper(self.model), self.start
         seen = []
-        for number, tow in enumerate(self.tows[stride::stride], 1):
-            motion = stepper.step(motion, tow, step_s)
+        for number, at in enumerate(range(stride, len(self.tows), stride), 1):
+            motion = self._advanced(stepper, motion, at, stride)
             if number % looks == 0:
-                seen.append(observe(self.model, motion.state, tow).array()[columns])
+                seen.append(observe(self.model, motion.state, self.tows[at]).array()[columns])
         return np.array(seen)
+
+    def _advanced(self, stepper: Stepper, motion: Motion, at: int, stride: int) -> Motion:
+        try:
+            return stepper.step(motion, self.tows[at], stride * FINEST_S)
+        except StepFailed:
+            if stride == 1:
+                raise
+            half = stride // 2
+            between = self._advanced(stepper, motion, at - half, stride - half)
+            return self._advanced(stepper, between, at, half)
 
 
 def haul_of(model: GearModel, duration_s: float, start: Equilibrium | None = None) -> Haul:

@@ -1,0 +1,181 @@
+"""How long a node takes from nothing to its first message, and what with."""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING
+
+from trawl_ros.benchmark.findings import Findings
+from trawl_ros.benchmark.gears import default_gear
+from trawl_ros.benchmark.row import Row
+from trawl_ros.benchmark.timing import median_s
+from trawl_ros.cli.processes import NodeFailed, Processes, Value
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.share import share_path
+from trawl_ros.solver.equilibrium import steady_state
+
+if TYPE_CHECKING:
+    from trawl_ros.benchmark.ear import Ear
+
+LIMIT_S = 3.0
+DOMAIN = 95
+PATIENCE_S = 30.0
+LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+REPEATS = 5
+HEAVIEST = 4
+"""How many of the packages that take longest to import are named."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A node, the topic of its first message, its parameters, and whether it needs a running
+    simulation for that message.
+    """
+
+    node: str
+    topic: str
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    needs_truth: bool = False
+
+
+TOW = Start('sim_node', 'truth/winch')
+
+
+def starts(folder: Path) -> tuple[Start, ...]:
+    """Every node; those without a stream of their own report on /diagnostics."""
+    return (
+        Start('bag_recorder', '/diagnostics', {'output': str(folder / 'bag')}),
+        Start('identification_node', '/diagnostics'),
+        Start('bag_player', 'winch/joint_states', {'bag': str(share_path('bags', 'sea_trial'))}),
+        TOW,
+        Start('winch_node', 'winch/joint_states', needs_truth=True),
+        Start('door_sensor_node', 'door/port/pressure', needs_truth=True),
+        Start('trawl_sonar_node', 'sonar/pressure', needs_truth=True),
+        Start('vessel_node', 'vessel/heading', needs_truth=True),
+    )
+
+
+def measure(small: bool) -> Findings:
+    """Start one node after another and wait for its first message."""
+    what = 'cold start of a node to its first message, wall, the slowest node'
+    if find_spec('rclpy') is None:
+        note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'
+        return Findings((Row(what, math.nan, 's', LIMIT_S, 'at_most', note),))
+    with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST):
+        # Imported here, for it needs ROS 2, which reads the environment when it starts.
+        from trawl_ros.benchmark.ear import Ear
+
+        folder = Path(name)
+        chosen = starts(folder)[:1] if small else starts(folder)
+        with Ear(DOMAIN) as ear:
+            times = {
+                start.node: _times(ear, start, folder, 1 if small else REPEATS) for start in chosen
+            }
+    slowest = max(times, key=lambda node: median(times[node]))
+    imports = import_s('trawl_ros.nodes.bag_recorder' if small else 'trawl_ros.nodes.sim_node')
+    total = sum(imports.values())
+    heaviest = ', '.join(
+        f'{name} {seconds:.2f} s' for name, seconds in imports.most_common(HEAVIEST)
+    )
+    rows = [Row(what, median(times[slowest]), 's', LIMIT_S, 'at_most', slowest)]
+    for node, found in times.items():
+        note = f'{min(found):.2f} to {max(found):.2f} s in {len(found)} starts'
+        rows.append(Row(f'{node}, wall', median(found), 's', note=note))
+    rows.append(Row('of it, imports, wall', total, 's', note=heaviest))
+    if not small:
+        model = build_model(default_gear(small=False))
+        seconds = median_s(lambda: steady_state(model, 500.0, 2.0), 3)
+        rows.append(
+            Row(
+                'of it, in sim_node, the first steady state', seconds, 's', note='stability checked'
+            )
+        )
+    return Findings(
+        tuple(rows),
+        text='A process is started as a user does it, and its first message arrives at a '
+        'subscriber that runs already: sim_node its truth, instruments a sample while a '
+        'simulation runs, bag_player what it replays, and the others, which wait for data, '
+        'their diagnostics, which come once a second. Discovery is part of it: where the first '
+        'announcements of a process are missed, the next come 3 s later. Files are in the '
+        "system's cache, and so is compiled code.",
+    )
+
+
+def _times(ear: 'Ear', start: Start, folder: Path, repeats: int) -> list[float]:
+    environment = {
+        'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(folder / 'log'), **LOCALHOST,
+    }  # fmt: skip
+    found = []
+    for _ in range(repeats):
+        with Processes(folder / 'output', environment) as processes:
+            if start.needs_truth:
+                _start_s(ear, processes, TOW)
+            found.append(_start_s(ear, processes, start))
+        _forget(folder)
+    return found
+
+
+def _forget(folder: Path) -> None:
+    """Move the bag of a recorder away, for the next one wants an empty place."""
+    bag = folder / 'bag'
+    if bag.exists():
+        bag.rename(folder / f'bag_{time.monotonic_ns()}')
+
+
+def _start_s(ear: 'Ear', processes: Processes, start: Start) -> float:
+    """Wall-clock time (s) from the start of the process to the first message.
+
+    Raises
+    ------
+    NodeFailed
+        If the node ends, or says nothing.
+    """
+    first = ear.waiting_for(start.node, start.topic)
+    try:
+        began = time.perf_counter()
+        processes.start(start.node, **start.parameters)
+        while (at := first.spin(0.01)) is None:
+            processes.check()
+            if time.perf_counter() - began > PATIENCE_S:
+                raise NodeFailed(f'{start.node}: no message on {start.topic} in {PATIENCE_S:g} s')
+        return at - began
+    finally:
+        first.close()
+
+
+def import_s(module: str) -> Counter[str]:
+    """Wall-clock time (s) that the import of a module takes in a new process, by package."""
+    command = [sys.executable, '-X', 'importtime', '-c', f'import {module}']
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    found: Counter[str] = Counter()
+    for line in said.splitlines():
+        own, _, rest = line.removeprefix('import time:').partition('|')
+        if own.strip().isdigit():
+            package = rest.partition('|')[2].strip().partition('.')[0]
+            found[package] += int(own) / 1e6  # type: ignore[assignment]
+    return found
+
+
+@contextmanager
+def _environment(wanted: Mapping[str, str]) -> Iterator[None]:
+    """Variables of this process, as they were again afterwards."""
+    before = {key: os.environ.get(key) for key in wanted}
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for key, value in before.items():
+            if value is None:
+                del os.environ[key]
+            else:
+                os.environ[key] = value
