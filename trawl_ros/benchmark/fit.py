@@ -86,13 +86,14 @@ def measure(small: bool) -> Findings:
     )  # fmt: skip
     return Findings(
         rows,
-        text=f'The model has {gear.netting.around} meshes around its net; the {len(windows)} states come from '
-        f'a plant with {MORE_DRAG:g} times the drag across its twine and the coefficients of '
-        'eq. 37, and carry errors as large as those of the instruments. All three start at the gear '
-        "file's start values. Gauss–Newton with differences is this package's estimator with "
-        'derivatives by forward differences. The coordinate search goes round the coefficients '
-        'as the founding paper describes it, on eq. 35 alone; it ends as soon as it is no worse '
-        'than the estimator. All solve each steady state from a known one nearby.',
+        text=f'The model has {gear.netting.around} meshes around its net; the {len(windows)} '
+        f'states come from a plant with {MORE_DRAG:g} times the drag across its twine and the '
+        'coefficients of eq. 37, and carry errors as large as those of the instruments. All '
+        "three start at the gear file's start values, and solve each steady state from a known "
+        "one nearby. Gauss–Newton with differences is this package's estimator with derivatives "
+        'by forward differences. The coordinate search goes round the coefficients as the '
+        'founding paper describes it, on eq. 35 alone; it ends as soon as it is no worse than '
+        'the estimator.',
     )
 
 

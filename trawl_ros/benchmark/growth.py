@@ -53,7 +53,7 @@ class Size:
 def measure(small: bool) -> Findings:
     """Time one refinement after another."""
     gear = default_gear(small=False)
-    sizes, refused = [], ''
+    sizes, refused = [], 'no finer one was tried'
     for around in AROUND[:2] if small else AROUND:
         model = build_model(with_around(gear, around))
         try:
