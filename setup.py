@@ -89,6 +89,7 @@ setup(
         'lz4>=4,<5',
         'matplotlib>=3.6,<4',
         'mcap>=1.6,<2',
+        'numba>=0.60,<1',
         'numpy>=1.26,<3',
         'pydantic>=2.7,<3',
         'PyYAML>=6,<7',

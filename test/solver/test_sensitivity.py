@@ -7,10 +7,11 @@ import pytest
 
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import OBSERVABLES, observe
-from trawl_ros.solver.equilibrium import SteadyState, relax
+from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.first_guess import at_velocity
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.predict import Predictor
+from trawl_ros.solver.relax import relax
 from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
 
 STEPS = dict.fromkeys(PARAMETERS, 2e-4) | {

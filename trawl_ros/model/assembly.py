@@ -221,9 +221,7 @@ def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
     held = model.layout.kite
     np.add.at(total, held.nodes, outer(held.shares, kite_force))
     ropes = total[n : n + 6].reshape(2, 3, 3)
-    boards = body_force + np.concatenate(
-        [ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1
-    )
+    boards = body_force + np.concatenate([ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1)
     return Linearised(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
 
 

@@ -10,6 +10,7 @@ from trawl_ros.schema import Record
 Length = Annotated[float, Field(gt=0, lt=3000)]
 Speed = Annotated[float, Field(ge=0.5, le=4)]
 Factor = Annotated[int, Field(ge=1, le=8)]
+NetFactor = Annotated[float, Field(ge=1, le=8)]
 Name = Annotated[str, Field(min_length=1, max_length=100)]
 
 MAX_HOURS = 48
@@ -68,11 +69,14 @@ class StepRecord(Record):
 
 
 class RefineRecord(Record):
-    """By which factors the plant is cut finer than the gear file says."""
+    """By which factors the plant is cut finer than the gear file says.
+
+    The net as nearly as a multiple of 12 meshes around its mouth allows.
+    """
 
     warp: Factor = 1
     bridle: Factor = 1
-    net: Factor = 1
+    net: NetFactor = 1.0
 
 
 class WaterOverrides(Record):

@@ -16,10 +16,11 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, about_axis
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.equilibrium import SteadyState, relax, steady_state, without_attitude
+from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.factor import factorised_part
 from trawl_ros.solver.first_guess import first_guess
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.relax import relax, without_attitude
 
 ITERATIONS = 30
 LIMIT = 0.3

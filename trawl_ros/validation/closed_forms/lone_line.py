@@ -19,7 +19,7 @@ from trawl_ros.model.line import BarProperties
 from trawl_ros.model.pattern import build_pattern
 from trawl_ros.model.state import State, Tow
 from trawl_ros.model.water import Water
-from trawl_ros.solver.equilibrium import relax
+from trawl_ros.solver.relax import relax
 
 Held = Literal['nowhere', 'at its start', 'at both ends']
 

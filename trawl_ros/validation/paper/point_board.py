@@ -13,7 +13,8 @@ from trawl_ros.errors import NoSteadyState
 from trawl_ros.model.board import COEFFICIENTS, coefficients_at
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import Observables, observe
-from trawl_ros.solver.equilibrium import TOLERANCE, Equilibrium, relax, without_attitude
+from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.relax import TOLERANCE, relax, without_attitude
 from trawl_ros.solver.trim import attitudes
 
 FORCES = ('c1', 'c2', 'c3')
