@@ -259,8 +259,13 @@ class GearRecord(Record):
     floats: FloatRecord
     identification: StartRecord
 
-    def refined(self, *, warp: int = 1, bridle: int = 1, net: float = 1.0) -> 'GearRecord':
-        """The same gear, cut finer; the net as nearly as a multiple of 12 meshes allows."""
+    def refined(
+        self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False
+    ) -> 'GearRecord':
+        """The same gear, cut finer; the net as nearly as a multiple of 12 meshes allows, and
+        with ``unjoined`` as many meshes around its end as around its mouth.
+        """
+        halved_at = () if unjoined else self.netting.halved_at_circumference_m
         return self.model_copy(
             update={
                 'warp': self.warp.model_copy(update={'segments': self.warp.segments * warp}),
@@ -270,6 +275,7 @@ class GearRecord(Record):
                 'netting': self.netting.model_copy(
                     update={
                         'around': 12 * round(self.netting.around * net / 12),
+                        'halved_at_circumference_m': halved_at,
                         'codend_segments': round(self.netting.codend_segments * net),
                     }
                 ),

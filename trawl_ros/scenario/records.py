@@ -71,12 +71,14 @@ class StepRecord(Record):
 class RefineRecord(Record):
     """By which factors the plant is cut finer than the gear file says.
 
-    The net as nearly as a multiple of 12 meshes around its mouth allows.
+    The net as nearly as a multiple of 12 meshes around its mouth allows; ``unjoined`` keeps
+    all of them to its end.
     """
 
     warp: Factor = 1
     bridle: Factor = 1
     net: NetFactor = 1.0
+    unjoined: bool = False
 
 
 class WaterOverrides(Record):

@@ -135,7 +135,7 @@ def _instruments(record: ScenarioRecord, path: Path) -> InstrumentParameters:
 
 def _plant(gear: GearRecord, record: ScenarioRecord, path: Path) -> GearRecord:
     factors = record.refine
-    finer = gear.refined(warp=factors.warp, bridle=factors.bridle, net=factors.net)
+    finer = gear.refined(**factors.model_dump())
     data = finer.model_dump()
     data['board']['coefficients'] |= record.coefficients.model_dump(exclude_none=True)
     data['water'] |= record.water.model_dump(exclude_none=True)

@@ -13,9 +13,9 @@ from trawl_ros.solver.equilibrium import (
     COLLAPSED_NORMAL,
     Equilibrium,
     find_equilibrium,
-    relax,
 )
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.relax import relax
 from trawl_ros.validation.branches.collapsed_starts import Tally, collapsed_shapes, tally
 from trawl_ros.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.validation.branches.lattices import (
