@@ -11,23 +11,39 @@ from trawl_ros.messages.diagnostics import read_statuses
 from trawl_ros.nodes.node import DIAGNOSTICS, TrawlNode
 from trawl_ros.nodes.qos import CONSUMER
 
+AT_REST_S = 0.5
+"""Time a subscriber is given to be found by what runs already."""
 
-class Ear:
-    """Listens on a ROS domain of its own while entered.
+
+class FirstMessage:
+    """Listens while entered, as a participant of its own: one that was there before, and knew
+    other nodes, may be found a heartbeat of the middleware (3 s) late.
 
     Parameters
     ----------
     domain
-        Its number.
+        ROS domain.
+    node
+        Name of the node; on /diagnostics only what it says of itself counts.
+    topic
+        Relative to the namespace of the project.
     """
 
-    def __init__(self, domain: int) -> None:
-        self._domain = domain
+    def __init__(self, domain: int, node: str, topic: str) -> None:
+        self._domain, self._node, self._topic = domain, node, topic
+        self._at: float | None = None
 
-    def __enter__(self) -> 'Ear':
+    def __enter__(self) -> 'FirstMessage':
         self._context = rclpy.Context()
         rclpy.init(args=[], context=self._context, domain_id=self._domain)
         self._executor = SingleThreadedExecutor(context=self._context)
+        self._listener = TrawlNode('ear', context=self._context)
+        handler = self._heard_of if self._topic == DIAGNOSTICS else self._heard
+        self._listener.listen(self._topic, handler, CONSUMER)
+        self._executor.add_node(self._listener)
+        end = time.monotonic() + AT_REST_S
+        while time.monotonic() < end:
+            self.spin(0.05)
         return self
 
     def __exit__(
@@ -36,26 +52,10 @@ class Ear:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._executor.remove_node(self._listener)
+        self._listener.destroy_node()
         self._executor.shutdown()
         rclpy.try_shutdown(context=self._context)
-
-    def waiting_for(self, node: str, topic: str) -> 'FirstMessage':
-        """Subscribe to a topic; on /diagnostics only what ``node`` says of itself counts."""
-        return FirstMessage(self._context, self._executor, node, topic)
-
-
-class FirstMessage:
-    """The first message of a topic since this was made."""
-
-    def __init__(
-        self, context: Any, executor: SingleThreadedExecutor, node: str, topic: str
-    ) -> None:
-        self._executor, self._node = executor, node
-        self._at: float | None = None
-        self._listener = TrawlNode(f'ear_{time.monotonic_ns()}', context=context)
-        handler = self._heard_of if topic == DIAGNOSTICS else self._heard
-        self._listener.listen(topic, handler, CONSUMER)
-        executor.add_node(self._listener)
 
     def _heard(self, message: Any) -> None:
         if self._at is None:
@@ -69,8 +69,3 @@ class FirstMessage:
         """When it came (s, of `time.perf_counter`); None while it has not."""
         self._executor.spin_once(timeout_sec=timeout_s)
         return self._at
-
-    def close(self) -> None:
-        """Listen no longer."""
-        self._executor.remove_node(self._listener)
-        self._listener.destroy_node()

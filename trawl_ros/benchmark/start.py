@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
 
 from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.gears import default_gear
@@ -23,9 +22,6 @@ from trawl_ros.cli.processes import NodeFailed, Processes, Value
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.share import share_path
 from trawl_ros.solver.equilibrium import steady_state
-
-if TYPE_CHECKING:
-    from trawl_ros.benchmark.ear import Ear
 
 LIMIT_S = 3.0
 DOMAIN = 95
@@ -72,15 +68,9 @@ def measure(small: bool) -> Findings:
         note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'
         return Findings((Row(what, math.nan, 's', LIMIT_S, 'at_most', note),))
     with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST):
-        # Imported here, for it needs ROS 2, which reads the environment when it starts.
-        from trawl_ros.benchmark.ear import Ear
-
         folder = Path(name)
         chosen = starts(folder)[:1] if small else starts(folder)
-        with Ear(DOMAIN) as ear:
-            times = {
-                start.node: _times(ear, start, folder, 1 if small else REPEATS) for start in chosen
-            }
+        times = {start.node: _times(start, folder, 1 if small else REPEATS) for start in chosen}
     slowest = max(times, key=lambda node: median(times[node]))
     imports = import_s('trawl_ros.nodes.bag_recorder' if small else 'trawl_ros.nodes.sim_node')
     total = sum(imports.values())
@@ -111,7 +101,7 @@ def measure(small: bool) -> Findings:
     )
 
 
-def _times(ear: 'Ear', start: Start, folder: Path, repeats: int) -> list[float]:
+def _times(start: Start, folder: Path, repeats: int) -> list[float]:
     environment = {
         'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(folder / 'log'), **LOCALHOST,
     }  # fmt: skip
@@ -119,8 +109,8 @@ def _times(ear: 'Ear', start: Start, folder: Path, repeats: int) -> list[float]:
     for _ in range(repeats):
         with Processes(folder / 'output', environment) as processes:
             if start.needs_truth:
-                _start_s(ear, processes, TOW)
-            found.append(_start_s(ear, processes, start))
+                _start_s(processes, TOW)
+            found.append(_start_s(processes, start))
         _forget(folder)
     return found
 
@@ -132,7 +122,7 @@ def _forget(folder: Path) -> None:
         bag.rename(folder / f'bag_{time.monotonic_ns()}')
 
 
-def _start_s(ear: 'Ear', processes: Processes, start: Start) -> float:
+def _start_s(processes: Processes, start: Start) -> float:
     """Wall-clock time (s) from the start of the process to the first message.
 
     Raises
@@ -140,8 +130,10 @@ def _start_s(ear: 'Ear', processes: Processes, start: Start) -> float:
     NodeFailed
         If the node ends, or says nothing.
     """
-    first = ear.waiting_for(start.node, start.topic)
-    try:
+    # Imported here, for it needs ROS 2, which reads the environment when it starts.
+    from trawl_ros.benchmark.ear import FirstMessage
+
+    with FirstMessage(DOMAIN, start.node, start.topic) as first:
         began = time.perf_counter()
         processes.start(start.node, **start.parameters)
         while (at := first.spin(0.01)) is None:
@@ -149,8 +141,6 @@ def _start_s(ear: 'Ear', processes: Processes, start: Start) -> float:
             if time.perf_counter() - began > PATIENCE_S:
                 raise NodeFailed(f'{start.node}: no message on {start.topic} in {PATIENCE_S:g} s')
         return at - began
-    finally:
-        first.close()
 
 
 def import_s(module: str) -> Counter[str]:
