@@ -55,7 +55,11 @@ TEST = [
 ]
 
 # Other programs that `trawl validate` and `trawl benchmark` are held against.
-PEERS = ['moordyn>=2.7,<2.8', 'MoorPy>=1.3,<1.4', 'trawlkit>=1.1,<1.2']
+PEERS = [
+    'moordyn>=2.7,<2.8',
+    'MoorPy>=1.3,<1.4',
+    'trawlkit>=1.1,<1.2; python_version >= "3.11"',
+]
 
 
 def tree(folder: str) -> list[tuple[str, list[str]]]:
