@@ -53,9 +53,9 @@ def test_the_clock_counts_work_and_no_waiting():
 
 def test_shorter_steps_of_the_haul_come_closer_to_the_converged_run(coarse):
     haul = haul_of(coarse.model, 8.0)
-    converged = haul.run(0.1)
+    converged = haul.run(0.1).seen
     assert len(converged) == 4
-    errors = [np.abs(haul.run(step) - converged).max(axis=0) for step in (0.25, 1.0)]
+    errors = [np.abs(haul.run(step).seen - converged).max(axis=0) for step in (0.25, 1.0)]
     assert (errors[0] <= errors[1]).all()
 
 

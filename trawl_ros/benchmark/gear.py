@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.benchmark.factor_cost import factor_cost
 from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.gears import default_gear
 from trawl_ros.benchmark.haul import (
@@ -35,11 +36,14 @@ REAL_TIME, OVER_MOORDYN = 100.0, 5.0
 
 @dataclass(frozen=True)
 class Run:
-    """The manoeuvre at one step: its error (None when a step failed) and times real time."""
+    """The manoeuvre at one step: its error (None when a step failed), times real time, and
+    factorisations per step.
+    """
 
     step_s: float
     error: Error | None
     factor: float
+    factorisations: float
 
     @property
     def of_range(self) -> float:
@@ -51,8 +55,8 @@ def measure(small: bool) -> Findings:
     """Run the manoeuvre at one step after another."""
     model = build_model(default_gear(small=small))
     haul = haul_of(model, 20.0 if small else 300.0)
-    converged, seconds = timed(lambda: haul.run(0.25 if small else CONVERGED_S))
-    runs = [_run(haul, step, converged) for step in (STEPS_S[4:] if small else STEPS_S)]
+    ride, seconds = timed(lambda: haul.run(0.25 if small else CONVERGED_S))
+    runs = [_run(haul, step, ride.seen) for step in (STEPS_S[4:] if small else STEPS_S)]
     best = largest_within([run.step_s for run in runs], [run.of_range for run in runs], LIMIT)
     rows = []
     if best is None:
@@ -61,7 +65,7 @@ def measure(small: bool) -> Findings:
     else:
         step = runs[best].step_s
         factor = haul.duration_s / median_s(lambda: haul.run(step), 1 if small else 3)
-        note = _words(runs[best], model)
+        note = _words(runs[best], haul)
     what = 'full gear with boards in 6-DOF, hauling, at the largest step with an error below 1 %'
     rows.append(Row(what, factor, '× real time', REAL_TIME, 'at_least', note))
     rows.append(_beside_moordyn(factor, model, small=small))
@@ -86,16 +90,24 @@ def measure(small: bool) -> Findings:
 
 def _run(haul: Haul, step_s: float, converged: np.ndarray) -> Run:
     try:
-        seen, seconds = timed(lambda: haul.run(step_s))
+        ride, seconds = timed(lambda: haul.run(step_s))
     except StepFailed:
-        return Run(step_s, None, math.nan)
-    return Run(step_s, error(seen, converged), haul.duration_s / seconds)
+        return Run(step_s, None, math.nan, math.nan)
+    return Run(
+        step_s,
+        error(ride.seen, converged),
+        haul.duration_s / seconds,
+        ride.factorisations * step_s / haul.duration_s,
+    )
 
 
-def _words(run: Run, model: GearModel) -> str:
+def _words(run: Run, haul: Haul) -> str:
+    model = haul.model
+    each_s, _ = factor_cost(model, haul.start.state, haul.tows[0], 3)
     return (
-        f'{model.nodes} nodes and {len(model.ends)} bars, steps of {run.step_s:g} s; at '
-        f'{run.factor / run.step_s:.0f} steps per second'
+        f'{model.nodes} nodes and {len(model.ends)} bars in steps of {run.step_s:g} s; a step '
+        f'takes {1e3 * run.step_s / run.factor:.1f} ms, {run.factorisations:.1f} factorisations '
+        f'of {1e3 * each_s:.1f} ms among it'
     )
 
 

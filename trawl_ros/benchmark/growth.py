@@ -7,22 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.benchmark.factor_cost import factor_cost
 from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.gears import default_gear, with_around
 from trawl_ros.benchmark.haul import START, haul_of
 from trawl_ros.benchmark.row import Row
 from trawl_ros.benchmark.timing import median_s
 from trawl_ros.errors import NoSteadyState
-from trawl_ros.model.assembly import linearised
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.equilibrium import find_equilibrium
-from trawl_ros.solver.factor import factorised
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 from trawl_ros.validation.check import Drawing
 
-AROUND = (12, 24, 36, 48, 72, 108)
+AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
 """Meshes around, from less than 150 net nodes to more than 5000; rows are as short as keeps the
 angle of the meshes."""
 
@@ -30,8 +28,6 @@ MOST_NODES = 5000.0
 
 EXPONENT = 1.6
 STEP_S = 0.2
-NUMBER_BYTES = 12
-"""Of one number in the factors: 8 for itself and 4 for its row."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +104,7 @@ def _size(model: GearModel, *, small: bool) -> Size:
     haul = haul_of(model, steps * STEP_S, known)
     longer = START.port_length + 20.0
     point = OperatingPoint(longer, longer, START.speed)
-    factor_s, factor_mb = _factor(model, known.state, known.tow, repeats)
+    factor_s, factor_mb = factor_cost(model, known.state, known.tow, repeats)
     return Size(
         around=model.gear.netting.around,
         nodes=len(model.layout.net),
@@ -118,14 +114,6 @@ def _size(model: GearModel, *, small: bool) -> Size:
         factor_mb=factor_mb,
         peak_mb=peak_mb(),
     )
-
-
-def _factor(model: GearModel, state: State, tow: Tow, repeats: int) -> tuple[float, float]:
-    """CPU time (s) and memory (MB) of factorising the stiffness once and solving with it."""
-    here = linearised(model, state, tow)
-    pattern, data = model.pattern, here.stiffness
-    seconds = median_s(lambda: factorised(pattern, data).solve(here.force), repeats)
-    return seconds, factorised(pattern, data).fill * NUMBER_BYTES / 1e6
 
 
 def peak_mb() -> float:

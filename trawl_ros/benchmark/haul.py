@@ -36,6 +36,16 @@ WATCHED = (
 
 
 @dataclass(frozen=True)
+class Ride:
+    """Once through the manoeuvre: ``seen`` (n, n_watched) is what is `WATCHED`, every
+    `LOOK_EVERY_S` seconds; ``factorisations`` of the stepper's matrix.
+    """
+
+    seen: np.ndarray
+    factorisations: int
+
+
+@dataclass(frozen=True)
 class Haul:
     """The manoeuvre of one gear: where it starts, and what ship and winches do, every
     `FINEST_S` seconds from the start on.
@@ -50,15 +60,10 @@ class Haul:
         """How long it takes, s."""
         return FINEST_S * (len(self.tows) - 1)
 
-    def run(self, step_s: float) -> np.ndarray:
+    def run(self, step_s: float) -> 'Ride':
         """Go through it in steps of one length, which divides `LOOK_EVERY_S`.
 
         A step that does not converge is taken in two halves, as in `Simulation`.
-
-        Returns
-        -------
-        (n, n_watched) array
-            What is `WATCHED`, every `LOOK_EVERY_S` seconds.
 
         Raises
         ------
@@ -74,7 +79,7 @@ class Haul:
             motion = self._advanced(stepper, motion, at, stride)
             if number % looks == 0:
                 seen.append(observe(self.model, motion.state, self.tows[at]).array()[columns])
-        return np.array(seen)
+        return Ride(np.array(seen), stepper.factorisations)
 
     def _advanced(self, stepper: Stepper, motion: Motion, at: int, stride: int) -> Motion:
         try:

@@ -18,14 +18,14 @@ from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.gears import default_gear
 from trawl_ros.benchmark.row import Row
 from trawl_ros.benchmark.timing import median_s
-from trawl_ros.cli.processes import NodeFailed, Processes, Value
+from trawl_ros.cli.processes import Processes, Value
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.share import share_path
 from trawl_ros.solver.equilibrium import steady_state
 
 LIMIT_S = 3.0
 DOMAIN = 95
-PATIENCE_S = 30.0
+PATIENCE_S = 15.0
 LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 REPEATS = 5
 HEAVIEST = 4
@@ -77,7 +77,11 @@ def measure(small: bool) -> Findings:
     heaviest = ', '.join(
         f'{name} {seconds:.2f} s' for name, seconds in imports.most_common(HEAVIEST)
     )
-    rows = [Row(what, median(times[slowest]), 's', LIMIT_S, 'at_most', slowest)]
+    note = (
+        f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s; what its fastest '
+        'start has no need of is waiting to be discovered'
+    )
+    rows = [Row(what, median(times[slowest]), 's', LIMIT_S, 'at_most', note)]
     for node, found in times.items():
         note = f'{min(found):.2f} to {max(found):.2f} s in {len(found)} starts'
         rows.append(Row(f'{node}, wall', median(found), 's', note=note))
@@ -123,12 +127,13 @@ def _forget(folder: Path) -> None:
 
 
 def _start_s(processes: Processes, start: Start) -> float:
-    """Wall-clock time (s) from the start of the process to the first message.
+    """Wall-clock time (s) from the start of the process to the first message; infinite when it
+    does not come in `PATIENCE_S`.
 
     Raises
     ------
     NodeFailed
-        If the node ends, or says nothing.
+        If the node ends.
     """
     # Imported here, for it needs ROS 2, which reads the environment when it starts.
     from trawl_ros.benchmark.ear import FirstMessage
@@ -139,7 +144,7 @@ def _start_s(processes: Processes, start: Start) -> float:
         while (at := first.spin(0.01)) is None:
             processes.check()
             if time.perf_counter() - began > PATIENCE_S:
-                raise NodeFailed(f'{start.node}: no message on {start.topic} in {PATIENCE_S:g} s')
+                return math.inf
         return at - began
 
 

@@ -1,6 +1,7 @@
 """The report of the benchmark as JSON and Markdown, with its figures."""
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,7 +64,7 @@ def row_record(row: Row) -> dict[str, object]:
     """One row as plain values; what could not be measured is null."""
     return {
         'what': row.what,
-        'value': row.value if row.value == row.value else None,
+        'value': row.value if math.isfinite(row.value) else None,
         'unit': row.unit,
         'target': row.target,
         'ok': bool(row.ok),
