@@ -10,6 +10,7 @@ from trawl_ros.identification.report import report
 from trawl_ros.identification.result import result
 from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.scenario.scenario import load_scenario, true_coefficients
 from trawl_ros.share import share_path
 
@@ -51,8 +52,10 @@ def test_the_sample_trial_is_of_the_papers_shape():
     assert len({speed for _, speed in states}) >= 3
     assert len(states) >= 15
     coarse = load_gear('kaifuha')
-    assert scenario.plant.netting.around == 2 * coarse.netting.around
     assert scenario.plant.warp.segments == 2 * coarse.warp.segments
+    assert scenario.plant.bridle.segments == 2 * coarse.bridle.segments
+    fine, own = (len(build_model(gear).layout.net) for gear in (scenario.plant, coarse))
+    assert fine > 2 * own
 
 
 def test_the_sample_trial_holds_what_its_metadata_states():
