@@ -16,8 +16,7 @@ AT_REST_S = 0.5
 
 
 class FirstMessage:
-    """Listens while entered, as a participant of its own: one that was there before, and knew
-    other nodes, may be found a heartbeat of the middleware (3 s) late.
+    """Listens while entered, as a participant of its own that has seen no earlier node.
 
     Parameters
     ----------
