@@ -19,9 +19,10 @@ from trawl_ros.solver.factor import Factor, factorised
 SPECTRAL_RADIUS = 0.4
 """Share of the fastest vibration that is left after a step; 1 keeps all, 0 none."""
 
-TOLERANCE = 2.5e-5
-"""Last correction of the acceleration (m/s² or rad/s²) at which a step is done: at steps of
-0.2 s it moves the gear by a millionth of a metre, and shorter steps stay of second order."""
+TOLERANCE = 1.25e-4
+"""Last correction of the gear's acceleration over the step (m/s³ or rad/s³) at which it is done:
+a millionth of a metre in steps of 0.2 s. Errors that are left add up over steps, so they have to
+fall faster than the square of the step."""
 
 KEEP_RATE = 0.35
 """Convergence slower than this factor per iteration asks for a new iteration matrix."""
@@ -121,7 +122,7 @@ class Stepper:
             if not np.isfinite(size) or (iteration > 2 and size > 10 * last):
                 raise StepFailed('the time step did not converge')
             new = new + correction * (min(1.0, LIMIT / max(size, LIMIT)) / by_position)
-            if size < TOLERANCE * h * h:
+            if size < TOLERANCE * h**3:
                 return self._finished(start, velocity, averaged, carried, share, new, h)
             if size > keep_rate * last:
                 self._factor = None

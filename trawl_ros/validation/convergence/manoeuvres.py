@@ -26,7 +26,7 @@ GAIN = 0.2
 @dataclass(frozen=True)
 class History:
     """A manoeuvre at one time step: ``seen`` (samples, observables) and ``places`` (samples,
-    coordinates) of all nodes and boards.
+    nodes and boards, 3) of all nodes and boards, m.
     """
 
     step: float
@@ -88,4 +88,4 @@ def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) ->
 
 
 def _places(state: State) -> np.ndarray:
-    return np.concatenate([state.nodes.ravel(), state.board_positions.ravel()])
+    return np.concatenate([state.nodes, state.board_positions])
