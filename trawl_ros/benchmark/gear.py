@@ -136,7 +136,8 @@ def _simulation(model: GearModel, duration_s: float) -> Row:
         'the same hauling in the steps that sim_node takes by default',
         duration_s / seconds,
         '× real time',
-        note=f'an instant every {period_s:g} s, steps of {2 * period_s:g} s; messages not counted; ran once',
+        note=f'an instant every {period_s:g} s, steps of {2 * period_s:g} s; messages not '
+        'counted; ran once',
     )
 
 

@@ -61,20 +61,20 @@ def measure(small: bool) -> Findings:
     step = exponent([size.nodes for size in sizes], [size.step_s for size in sizes])
     warm = exponent([size.nodes for size in sizes], [size.warm_s for size in sizes])
     linear = exponent([size.nodes for size in sizes], [size.factor_s for size in sizes])
-    upper = sizes[len(sizes) // 2 :]
-    local = exponent([s.nodes for s in upper], [s.step_s for s in upper])
-    local_warm = exponent([s.nodes for s in upper], [s.warm_s for s in upper])
+    upper = sizes[-max(2, len(sizes) // 2) :]
+    step_there = exponent([s.nodes for s in upper], [s.step_s for s in upper])
+    warm_there = exponent([s.nodes for s in upper], [s.warm_s for s in upper])
     rows = (
         Row('net nodes of the largest net', last.nodes, '', MOST_NODES, 'at_least', refused),
         Row(
             'exponent of the time per step in the number of net nodes', step, '', EXPONENT,
             'at_most', f'{span}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
-            f'{1e3 * last.step_s:.0f} ms; {local:.2f} in the finer half of the sizes',
+            f'{1e3 * last.step_s:.0f} ms; {step_there:.2f} in the finer half of the sizes',
         ),
         Row(
             'exponent of the time per steady state, warm', warm, '', EXPONENT, 'at_most',
             f'{span}; {1e3 * sizes[0].warm_s:.0f} to {1e3 * last.warm_s:.0f} ms; '
-            f'{local_warm:.2f} in the finer half of the sizes',
+            f'{warm_there:.2f} in the finer half of the sizes',
         ),
         Row(
             'exponent of one factorisation and solution', linear, '',

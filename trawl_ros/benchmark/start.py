@@ -78,8 +78,8 @@ def measure(small: bool) -> Findings:
         f'{name} {seconds:.2f} s' for name, seconds in imports.most_common(HEAVIEST)
     )
     note = (
-        f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s in {REPEATS} starts; why they '
-        'differ so was not established'
+        f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s '
+        f'in {len(times[slowest])} starts; why they differ so was not established'
     )
     rows = [Row(what, median(times[slowest]), 's', LIMIT_S, 'at_most', note)]
     for node, found in times.items():
@@ -99,8 +99,8 @@ def measure(small: bool) -> Findings:
         text='A process is started as a user does it, and its first message arrives at a '
         'subscriber that runs already: sim_node its truth, instruments a sample while a '
         'simulation runs, bag_player what it replays, and the others, which wait for data, '
-        'their diagnostics, which come once a second. Discovery by the middleware is part of it. Files are in the '
-        "system's cache, and so is compiled code.",
+        'their diagnostics, which come once a second. Discovery by the middleware is part of it. '
+        "Files are in the system's cache, and so is compiled code.",
     )
 
 
