@@ -42,13 +42,13 @@ def test_the_order_is_that_of_the_errors(order: float) -> None:
     rng = np.random.default_rng(1)
     exact, shape = rng.normal(size=(5, 22)), rng.normal(size=(5, 22))
     runs = [
-        History(step, exact + shape * step**order, (exact + shape * step**order)[:, :3])
+        History(step, exact + shape * step**order, (exact + shape * step**order)[:, None, :3])
         for step in (0.4, 0.2, 0.1, 0.0)
     ]
     found = convergence(runs)
     np.testing.assert_allclose(found.orders(), order)
     assert found.order(found.norm) == pytest.approx(order)
-    assert found.order(found.places) == pytest.approx(order)
+    assert found.order(found.places.max(1)) == pytest.approx(order)
     changes = np.ptp(exact, axis=0)
     np.testing.assert_allclose(
         found.errors[2], np.abs(shape).max(0) * 0.1**order / changes, rtol=1e-9
