@@ -9,7 +9,7 @@ from trawl_ros.benchmark.fit_rivals import CoordinateSearch, Counting, Differenc
 from trawl_ros.benchmark.fit_trial import plant_of, trial
 from trawl_ros.benchmark.gears import default_gear
 from trawl_ros.benchmark.growth import exponent
-from trawl_ros.benchmark.haul import WATCHED, error, haul_of, largest_within
+from trawl_ros.benchmark.haul import WATCHED, error, haul_of
 from trawl_ros.benchmark.timing import timed
 from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.model.gear_model import build_model
@@ -26,13 +26,6 @@ def coarse():
 def test_the_exponent_is_the_slope_of_a_power_law():
     nodes = [100, 300, 1000, 3000]
     assert exponent(nodes, [1e-6 * n**1.48 for n in nodes]) == pytest.approx(1.48)
-
-
-def test_the_largest_step_is_one_below_which_all_are_good():
-    steps = (0.1, 0.2, 0.5, 1.0)
-    assert largest_within(steps, (1e-4, 2e-3, 9e-3, 0.02), 0.01) == 2
-    assert largest_within(steps, (1e-4, 0.02, 1e-3, 1e-3), 0.01) == 0
-    assert largest_within(steps, (0.02, 1e-4, 1e-3, 1e-3), 0.01) is None
 
 
 def test_an_error_is_the_largest_at_any_time_of_any_observable():

@@ -1,6 +1,5 @@
 """A hauling manoeuvre in steps of one length after another, under the very same ship."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,16 +132,3 @@ def error(seen: np.ndarray, converged: np.ndarray) -> Error:
     by_range = difference / np.ptp(converged, axis=0)
     by_value = difference / np.abs(converged).mean(axis=0)
     return Error(float(by_range.max()), float(by_value.max()), WATCHED[int(by_range.argmax())])
-
-
-def largest_within(steps: Sequence[float], errors: Sequence[float], limit: float) -> int | None:
-    """Index of the largest step whose error, and that of all shorter ones, is below a limit.
-
-    ``steps`` rise; None when not even the first is good enough.
-    """
-    good = None
-    for index, (_, found) in enumerate(zip(steps, errors, strict=True)):
-        if not found < limit:
-            break
-        good = index
-    return good
