@@ -16,6 +16,9 @@ from trawl_ros.validation.check import Check, Outcome, Table
 
 PROCESS = multiprocessing.get_context('spawn')
 
+LONG = ('steady_states', 'sentences')
+"""Cases that take minutes, and are started first so that none is left over at the end."""
+
 
 @dataclass(frozen=True)
 class Picture:
@@ -58,7 +61,8 @@ def run_cases(
         section_of(name)
     (folder / 'figures').mkdir(parents=True, exist_ok=True)
     with ThreadPoolExecutor(workers) as threads:
-        pending = [threads.submit(_apart, name, folder, small) for name in names]
+        first = sorted(names, key=lambda name: name not in LONG)
+        pending = [threads.submit(_apart, name, folder, small) for name in first]
         try:
             for future in as_completed(pending):
                 yield future.result()
