@@ -22,6 +22,9 @@ from trawl_ros.solver.relax import (
     without_attitude,
 )
 
+SOFT_LIMIT, LIMIT = 200, 300
+"""Iterations after which a rough shape is given up, with softer ropes and with the real ones."""
+
 LONGER, HAULS = 1.5, 6
 """How much more warp, and in how many steps it is hauled, where a fine net does not settle."""
 
@@ -46,8 +49,8 @@ def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, 
             return state, spent, residual
         state, more, residual = _settled(model, carried_over(coarse, state, model), even)
         spent += more
-        if residual > TOLERANCE:
-            # A fine net settles more easily on a longer warp, which is then hauled.
+        if residual > TOLERANCE and coarser_model(coarse) is not None:
+            # A very fine net settles more easily on a longer warp, which is then hauled.
             state, more, residual = _hauled(model, coarse, heading, even)
             spent += more
     if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:
@@ -75,8 +78,12 @@ def _from_guess(model: GearModel, tow: Tow, heading: float) -> tuple[State, int,
 
 def _settled(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
     """Relax a rough shape, with softer ropes first."""
-    state, spent, _ = relax(softened(model), state, tow, tolerance=100.0, time_step=1.0, limit=200)
-    state, more, residual = relax(model, state, tow, tolerance=TOLERANCE, time_step=1.0)
+    state, spent, _ = relax(
+        softened(model), state, tow, tolerance=100.0, time_step=1.0, limit=SOFT_LIMIT
+    )
+    state, more, residual = relax(
+        model, state, tow, tolerance=TOLERANCE, time_step=1.0, limit=LIMIT
+    )
     return state, spent + more, residual
 
 
