@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from trawl_ros.model.compiled import compiled
+
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
@@ -39,8 +41,19 @@ class Pattern:
         """Sum the blocks of plain, hung and rigged bars, boards, nodes and kite, in this
         order, into data on the pattern.
         """
-        values = np.concatenate([block.ravel() for block in blocks])
-        return np.bincount(self.slot, weights=values, minlength=len(self.indices))
+        data = np.zeros(len(self.indices))
+        first = 0
+        for block in blocks:
+            values = block.ravel()
+            _add(values, self.slot[first : first + len(values)], data)
+            first += len(values)
+        return data
+
+
+@compiled
+def _add(values: np.ndarray, slots: np.ndarray, data: np.ndarray) -> None:
+    for k in range(len(values)):
+        data[slots[k]] += values[k]
 
 
 def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> Pattern:
