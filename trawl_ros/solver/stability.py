@@ -68,7 +68,7 @@ def stability(model: GearModel, state: State, tow: Tow) -> Stability:
         start = np.concatenate([np.ones(n), np.zeros(n)]).astype(complex)
         try:
             values = eigs(
-                operator, PER_SHIFT, which='LM', v0=start, tol=1e-3, return_eigenvectors=False
+                operator, PER_SHIFT, which='LM', v0=start, tol=1e-5, return_eigenvectors=False
             )
         except ArpackNoConvergence as partial:
             values = partial.eigenvalues
