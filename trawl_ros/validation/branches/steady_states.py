@@ -214,13 +214,15 @@ def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> Table:
 def _text(speeds: Lattice) -> str:
     doubtful = [a for a in speeds.answers.values() if a.verdict != 'usable' and a.root is not None]
     several = sum(answer.apart > SAME or not answer.agreed for answer in doubtful)
+    surfaced = any(answer.verdict == 'surfaced' for answer in speeds.answers.values())
+    wet = 'Fast on short warps the headrope comes out of the water. ' if surfaced else ''
     return (
         'Each place is searched from all its neighbours that have a state, and every third one '
         'cold too. Below about 1.8 m/s the symmetric state is unstable: a real eigenvalue of a '
         'mode in which one board rises as the other sinks turns positive. Slower still, at '
         '1.6 m/s and less, boards lie over, roots are several or none, and what a search finds '
-        f'depends on its start ({several} places of this map); all of these are refused. Fast on '
-        'short warps the headrope comes out of the water. Turned inward by ε the boards lose '
+        f'depends on its start ({several} places of this map); all of these are refused. '
+        f'{wet}Turned inward by ε the boards lose '
         'their lift until they fall: the good branch runs on into the collapsed states, without '
         'a fold, and is refused from where α is negative or an outward normal points '
         f'{np.degrees(np.arcsin(-COLLAPSED_NORMAL)):.0f}° down.'
