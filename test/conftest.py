@@ -1,10 +1,34 @@
-"""The default gear, whole and cut coarsely."""
+"""The default gear, whole and cut coarsely, and bags of steady tows made without towing."""
 
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
 import pytest
+import yaml
 
+from trawl_ros.bags.writer import BagWriter
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.instruments.samples import (
+    AttitudeSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.topics import absolute
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import Observables
+from trawl_ros.share import share_path
+from trawl_ros.solver.equilibrium import steady_state
+
+SECOND = 1_000_000_000
+LEGS = ((200.0, 2.3), (220.0, 2.3))
 
 
 @pytest.fixture(scope='session')
@@ -23,3 +47,72 @@ def model(gear: GearRecord) -> GearModel:
     return build_model(
         gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
     )
+
+
+@pytest.fixture(scope='session')
+def coarse_gear(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file of the default gear, its netting as coarse as it may be, which is quicker."""
+    data = yaml.safe_load(share_path('config', 'gear', 'kaifuha.yaml').read_text())
+    data['netting']['around'] = 12
+    path = tmp_path_factory.mktemp('gear') / 'coarse.yaml'
+    path.write_text(yaml.safe_dump(data))
+    return path
+
+
+@dataclass(frozen=True)
+class SteadyTow:
+    """Steady states of the coarse gear, and bags of what instruments say in them."""
+
+    states: tuple[tuple[float, float, Observables], ...]
+    pressure: Callable[[float], float]
+
+    def samples(self, *, start: int = 0, seed: int = 0, leg_s: int = 400) -> Iterable[Sample]:
+        """One leg after the other at one reading per second, with small errors."""
+        draw = np.random.default_rng(seed).standard_normal
+        for second in range(leg_s * len(self.states)):
+            stamp = start + second * SECOND
+            length, speed, seen = self.states[second // leg_s]
+            tensions = np.array([seen.port_tension, seen.starboard_tension]) + 300.0 * draw(2)
+            yield WinchSample(stamp, (length, length), (0.0, 0.0), tuple(tensions))
+            for place, depth in (
+                ('port', seen.port_door_depth),
+                ('starboard', seen.starboard_door_depth),
+                ('sonar', seen.net_depth),
+            ):
+                yield PressureSample(stamp, place, self.pressure(depth + 0.1 * draw()), 1000.0)
+            for side, pitch, roll in (
+                ('port', seen.port_pitch, seen.port_roll),
+                ('starboard', seen.starboard_pitch, seen.starboard_roll),
+            ):
+                yield AttitudeSample(
+                    stamp, side, pitch + 0.003 * draw(), roll + 0.003 * draw(), 0.003
+                )
+            spread = seen.door_spread + 0.3 * draw()
+            yield RangeSample(stamp, 'spread', spread, 0.3, 1.0, 500.0)
+            yield VelocitySample(
+                stamp, 'water', np.array([speed + 0.01 * draw(), 0.0, 0.0]), float('nan')
+            )
+
+    def bag(self, path: Path, **kwargs: int) -> Path:
+        """Write these samples as a bag."""
+        return self.write(path, self.samples(**kwargs))
+
+    @staticmethod
+    def write(path: Path, samples: Iterable[Sample]) -> Path:
+        with BagWriter(path) as bag:
+            for sample in samples:
+                topic, message = sample_message(sample)
+                bag.write(absolute(topic), message.__msgtype__, serialize(message), sample.stamp)
+        return path
+
+
+@pytest.fixture(scope='session')
+def steady_tow(coarse_gear: Path) -> SteadyTow:
+    model = build_model(load_gear(coarse_gear))
+    states = []
+    start = None
+    for length, speed in LEGS:
+        found = steady_state(model, length, speed, start=start)
+        start = found.equilibrium
+        states.append((length, speed, found.observables))
+    return SteadyTow(tuple(states), model.water.pressure)

@@ -7,7 +7,7 @@ there and what was expected.
 
 import re
 from pathlib import Path
-from typing import Any, ClassVar, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -123,8 +123,6 @@ def validated(
 class _Loader(yaml.SafeLoader):
     """SafeLoader with the scalars of YAML 1.2, no aliases, no key twice, bounded depth."""
 
-    # Own table: YAML 1.1 reads 1e5 as text, 12:30 as 750 and `no` as false.
-    yaml_implicit_resolvers: ClassVar[dict[str, list[tuple[str, re.Pattern[str]]]]] = {}
     _depth = 0
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
@@ -155,6 +153,8 @@ class _Loader(yaml.SafeLoader):
         raise yaml.constructor.ConstructorError(None, None, f'found {found}', where.start_mark)
 
 
+# Own table: YAML 1.1 reads 1e5 as text, 12:30 as 750 and `no` as false.
+_Loader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _first in (
     ('bool', r'^(?:true|True|TRUE|false|False|FALSE)$', 'tTfF'),
     ('null', r'^(?:~|null|Null|NULL|)$', ['~', 'n', 'N', '']),
@@ -169,9 +169,7 @@ for _tag, _pattern, _first in (
         f'tag:yaml.org,2002:{_tag}', re.compile(_pattern, re.ASCII), list(_first)
     )
 # SafeLoader would read 010 as eight.
-_Loader.add_constructor(
-    'tag:yaml.org,2002:int', lambda loader, node: int(loader.construct_scalar(node))
-)
+_Loader.add_constructor('tag:yaml.org,2002:int', lambda _, node: int(node.value))
 
 
 def _yaml_complaint(reason: yaml.YAMLError) -> str:

@@ -3,7 +3,7 @@
 import pytest
 
 from trawl_ros.bags.reader import Bag
-from trawl_ros.cli.samples import SampleStream
+from trawl_ros.bags.samples import SampleStream
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.from_gear import identification_for
 from trawl_ros.identification.report import report

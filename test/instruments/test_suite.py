@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 import pytest
@@ -53,8 +54,14 @@ def tow(seconds: int, start: int = 0) -> list[Truth]:
     return [replace(TRUTH, stamp=start + k * SECOND // 10) for k in range(10 * seconds + 1)]
 
 
-def observed(instruments: object, truths: list[Truth]) -> list[Sample]:
-    return [sample for truth in truths for sample in instruments.observe(truth)]  # type: ignore[attr-defined]
+class Observer(Protocol):
+    """A suite, or a group of instruments on its own."""
+
+    def observe(self, truth: Truth) -> list[Sample]: ...
+
+
+def observed(instruments: Observer, truths: list[Truth]) -> list[Sample]:
+    return [sample for truth in truths for sample in instruments.observe(truth)]
 
 
 def suite(draws: Draws = DRAWS, parameters: InstrumentParameters | None = None) -> InstrumentSuite:
@@ -164,7 +171,9 @@ def test_the_default_errors_are_those_of_real_sensors() -> None:
         [s.pressure for s in samples if isinstance(s, PressureSample) and s.place == 'port']
     )
     tension = np.array([s.tensions[0] for s in samples if isinstance(s, WinchSample)])
-    spread = np.array([s.distance for s in samples if kind(s) == 'spread'])  # type: ignore[union-attr]
+    spread = np.array(
+        [s.distance for s in samples if isinstance(s, RangeSample) and s.what == 'spread']
+    )
     assert port.std() / 1e4 == pytest.approx(0.2, rel=0.15)
     assert tension.std() / 160e3 == pytest.approx(0.01, rel=0.15)
     assert spread.std() == pytest.approx(0.7, rel=0.15)

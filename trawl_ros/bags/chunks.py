@@ -8,7 +8,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 
-import lz4.frame  # type: ignore[import-untyped]
+import lz4.frame
 import zstandard
 from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, Message, Schema

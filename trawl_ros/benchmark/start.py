@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -75,7 +75,8 @@ def measure(small: bool) -> Findings:
     imports = import_s('trawl_ros.nodes.bag_recorder' if small else 'trawl_ros.nodes.sim_node')
     total = sum(imports.values())
     heaviest = ', '.join(
-        f'{name} {seconds:.2f} s' for name, seconds in imports.most_common(HEAVIEST)
+        f'{name} {imports[name]:.2f} s'
+        for name in sorted(imports, key=imports.__getitem__, reverse=True)[:HEAVIEST]
     )
     note = (
         f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s '
@@ -135,7 +136,7 @@ def _start_s(processes: Processes, start: Start) -> float:
         If the node ends.
     """
     # Imported here, for it needs ROS 2, which reads the environment when it starts.
-    from trawl_ros.benchmark.ear import FirstMessage
+    from trawl_ros.nodes.first_message import FirstMessage
 
     with FirstMessage(DOMAIN, start.node, start.topic) as first:
         began = time.perf_counter()
@@ -147,16 +148,16 @@ def _start_s(processes: Processes, start: Start) -> float:
         return at - began
 
 
-def import_s(module: str) -> Counter[str]:
+def import_s(module: str) -> dict[str, float]:
     """Wall-clock time (s) that the import of a module takes in a new process, by package."""
     command = [sys.executable, '-X', 'importtime', '-c', f'import {module}']
     said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
-    found: Counter[str] = Counter()
+    found: defaultdict[str, float] = defaultdict(float)
     for line in said.splitlines():
         own, _, rest = line.removeprefix('import time:').partition('|')
         if own.strip().isdigit():
             package = rest.partition('|')[2].strip().partition('.')[0]
-            found[package] += int(own) / 1e6  # type: ignore[assignment]
+            found[package] += int(own) / 1e6
     return found
 
 

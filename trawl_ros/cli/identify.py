@@ -6,9 +6,9 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from trawl_ros.bags.samples import SampleStream
 from trawl_ros.cli.files import BAG, FOLDER, SCENARIO
 from trawl_ros.cli.progress import TimeProgress, error_console
-from trawl_ros.cli.samples import SampleStream
 from trawl_ros.errors import TrawlError
 from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from trawl_ros.instruments.samples import (
@@ -68,9 +68,10 @@ class Channel:
         return math.hypot(self.bias, self.bias_fraction * mean)
 
 
-def _pair(name: str, topic: str, *args: object, **kwargs: object) -> list[Channel]:
+def _pair(both: Channel) -> list[Channel]:
+    """One channel per side, of what is the same for both but name and topic."""
     return [
-        Channel(f'{side}_{name}', topic.format(side=side), *args, **kwargs)  # type: ignore[arg-type]
+        replace(both, name=f'{side}_{both.name}', topic=both.topic.format(side=side))
         for side in ('port', 'starboard')
     ]
 
@@ -82,18 +83,24 @@ INPUTS = ('port_length', 'starboard_length', 'speed')
 
 _TABLE = (
     *_pair(
-        'length', 'winch/joint_states', 'm', 1.0, 6000.0, 0.1, 0.5, 0.002, 1.0, required=True
+        Channel(
+            'length', 'winch/joint_states', 'm', 1.0, 6000.0, 0.1, 0.5, 0.002, 1.0, required=True
+        )
     ),
     Channel(
         'speed', 'vessel/velocity_water', 'm/s', -2.0, 12.0, 0.05, 0.01, 0.005, 1.0, required=True
     ),
     *_pair(
-        'tension', 'winch/joint_states', 'N', -5e3, 2e6, 500.0, 200.0, 0.01, 1.0,
-        required=True, lively=True, settles=True,
+        Channel(
+            'tension', 'winch/joint_states', 'N', -5e3, 2e6, 500.0, 200.0, 0.01, 1.0,
+            required=True, lively=True, settles=True,
+        )
     ),
     *_pair(
-        'door_depth', 'door/{side}/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.2,
-        required=True, lively=True, settles=True,
+        Channel(
+            'door_depth', 'door/{side}/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.2,
+            required=True, lively=True, settles=True,
+        )
     ),
     Channel(
         'door_spread', 'door/spread', 'm', 1.0, 1000.0, 1.0, 0.5, 0.005, 0.2,
@@ -104,12 +111,16 @@ _TABLE = (
         required=True, lively=True, settles=True,
     ),
     *_pair(
-        'pitch', 'door/{side}/attitude', 'rad', -1.6, 1.6, 1.0 * _DEGREE, 0.5 * _DEGREE, 0.0,
-        0.2, required=False, lively=True,
+        Channel(
+            'pitch', 'door/{side}/attitude', 'rad', -1.6, 1.6, 1.0 * _DEGREE, 0.5 * _DEGREE, 0.0,
+            0.2, required=False, lively=True,
+        )
     ),
     *_pair(
-        'roll', 'door/{side}/attitude', 'rad', -1.6, 1.6, 1.0 * _DEGREE, 0.5 * _DEGREE, 0.0,
-        0.2, required=False, lively=True,
+        Channel(
+            'roll', 'door/{side}/attitude', 'rad', -1.6, 1.6, 1.0 * _DEGREE, 0.5 * _DEGREE, 0.0,
+            0.2, required=False, lively=True,
+        )
     ),
     Channel(
         'vertical_opening', 'sonar/opening_height', 'm', 0.5, 300.0, 2.0, 1.0, 0.03, 0.02,

@@ -101,6 +101,8 @@ def _settled(value: np.ndarray, low: float, high: float) -> np.ndarray:
     """The angle itself inside [low, high], coming smoothly to rest outside."""
     over = np.real(value) - high
     under = low - np.real(value)
+    if (over <= 0).all() and (under <= 0).all():
+        return value
     above = np.where(
         over < ROUNDING, value - (value - high) ** 2 / (2 * ROUNDING), high + ROUNDING / 2
     )
@@ -112,6 +114,8 @@ def _settled(value: np.ndarray, low: float, high: float) -> np.ndarray:
 
 def _fading(attack: np.ndarray) -> np.ndarray:
     """1 inside the range of the law, falling smoothly to 0 at `LAW_END`."""
+    if ((np.real(attack) >= LAW_RANGE[0]) & (np.real(attack) <= LAW_RANGE[1])).all():
+        return np.ones_like(attack)
     up = (attack - LAW_RANGE[1]) / (LAW_END[1] - LAW_RANGE[1])
     down = (attack - LAW_RANGE[0]) / (LAW_END[0] - LAW_RANGE[0])
     share = np.where(np.real(up) > 0, up, np.where(np.real(down) > 0, down, 0.0))
@@ -121,6 +125,8 @@ def _fading(attack: np.ndarray) -> np.ndarray:
 
 def _folded(attack: np.ndarray) -> np.ndarray:
     """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
+    if (np.real(attack) >= 0).all():
+        return attack
     dip = attack * (1.0 + attack / ROUNDING)
     inner = np.where(np.real(attack) > -ROUNDING, dip, -attack - ROUNDING)
     return np.where(np.real(attack) < 0, inner, attack)
@@ -150,13 +156,6 @@ def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) ->
         part stays.
     """
     a1, c1, a2, c2, b3, c3, a4, c4, b5, c5, a6, c6 = values
-    low, high = LAW_RANGE
-    plain = (np.real(attack) > low) & (np.real(attack) < high) & (np.abs(slip) < SLIP_LIMIT)
-    if plain.all() and np.real(c1) > 0 and np.real(a1) >= 0:
-        # Eq. 14 as it stands; what follows comes to the same, more slowly.
-        lines = ((a1, c1, attack), (a2, c2, attack), (b3, c3, slip))
-        moments = ((a4, c4, attack), (b5, c5, slip), (a6, c6, attack))
-        return np.stack([slope * angle + offset for slope, offset, angle in lines + moments], -1)
     fade = _fading(attack)
     alpha = _settled(attack, *LAW_RANGE)
     beta = _settled(slip, -SLIP_LIMIT, SLIP_LIMIT)
@@ -173,7 +172,7 @@ def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) ->
     return np.stack(parts, -1)
 
 
-def _mirror(outward: np.ndarray) -> np.ndarray:
+def mirrored_axes(outward: np.ndarray) -> np.ndarray:
     """Signs (..., 3) that turn the outward frame's axes into the door frame's."""
     signs = np.ones((*outward.shape, 3))
     signs[..., 1] = outward
@@ -206,7 +205,7 @@ def flow_at(
     The board's velocity is the mean of its three fastening points' (eq. 4). Angles come from
     ``arctan2``, which equals eq. 1 and 2 within ±90° and does not fold beyond.
     """
-    mirror = _mirror(outward)
+    mirror = mirrored_axes(outward)
     middle = mirror * board.fastening_points.mean(0)
     arm = np.einsum('...ij,...j->...i', rotation, middle)
     water_velocity = water.current(position[..., 2])
@@ -240,7 +239,7 @@ def hydrodynamics(board: Board, values: np.ndarray, flow: BoardFlow) -> tuple:
 
 def world_inertia(board: Board, outward: np.ndarray, rotation: np.ndarray) -> np.ndarray:
     """Inertia about the centre of gravity in fixed axes, (..., 3, 3) kg m²."""
-    mirror = _mirror(outward)
+    mirror = mirrored_axes(outward)
     body = mirror[..., :, None] * board.inertia * mirror[..., None, :]
     return rotation @ body @ transpose(rotation)
 
@@ -260,7 +259,7 @@ def own_load(
     Hydrodynamics (eq. 12-14), weight and buoyancy (eq. 19) and the gyroscopic moment
     -ω × Iω, which eq. 15 drops and which a spinning board needs to keep its angular momentum.
     """
-    mirror = _mirror(outward)
+    mirror = mirrored_axes(outward)
     flow = flow_at(board, outward, position, rotation, velocity, rate, water)
     force, moment = hydrodynamics(board, values, flow)
     force = np.einsum('...ij,...j->...i', rotation, mirror * force)

@@ -195,8 +195,7 @@ class BarSlopes:
 def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlopes:
     """Pull, load and their exact derivatives."""
     force, along = tension(bars, motion)
-    load = drag(bars, motion, along, water)
-    load[:, 2] += weight(bars, motion, water)
+    hydro = drag(bars, motion, along, water)
     count = len(force)
     by_vector, by_stretching, load_by_vector, load_by_velocity = np.empty((4, count, 3, 3))
     _pull_slopes(
@@ -212,11 +211,11 @@ def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlope
         load_by_vector,
         load_by_velocity,
     )
-    hydro = load.copy()
-    hydro[:, 2] -= weight(bars, motion, water)
     by_height = -np.einsum('nij,nj->ni', load_by_velocity, water.current_slope(motion.height))
     by_height -= (water.density_gradient / density)[:, None] * hydro
     by_height[:, 2] -= water.gravity * water.density_gradient * bars.volume * motion.rest
+    load = hydro
+    load[:, 2] += weight(bars, motion, water)
     return BarSlopes(
         pull=force[:, None] * along,
         load=load,

@@ -13,7 +13,7 @@ a pitch further, so the net is its own mirror image and has a node at the headro
 The codend is one line: its meshes are too small for rows, and their drag is put on its nodes.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -58,8 +58,6 @@ class NetMesh:
     edge_rest: float
     wing_ends: list[list[int]]
     kite: KiteNodes
-    twine_area: float = 0.0
-    rows: int = field(default=0)
 
 
 def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
@@ -128,8 +126,6 @@ def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
         edge_rest=wing_row,
         wing_ends=_wing_ends(index, n, wing_rows),
         kite=_kite_nodes(rows, index, kite_chord),
-        twine_area=sum(bar.area * bar.rest for bar in bars),
-        rows=len(rows),
     )
 
 

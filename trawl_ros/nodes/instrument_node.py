@@ -1,5 +1,6 @@
 """What the four instrument nodes have in common: truth in, samples out, on truth's stamps."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,7 +34,7 @@ class Setup:
     draws: Draws
 
 
-class InstrumentNode(TrawlNode):
+class InstrumentNode(TrawlNode, ABC):
     """Looks at truth whenever all that it needs of an instant is there.
 
     Samples are due by the stamps of truth alone, so the data are the same whatever the pace,
@@ -68,13 +69,13 @@ class InstrumentNode(TrawlNode):
         for topic in self.TRUTH:
             self._look_at(topic)
 
+    @abstractmethod
     def set_up(self, setup: Setup) -> None:
         """Make the instruments."""
-        raise NotImplementedError
 
+    @abstractmethod
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns); ``messages`` are truth by topic."""
-        raise NotImplementedError
 
     def statuses(self) -> list[Status]:
         """How far the instruments are."""

@@ -4,14 +4,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.model.assembly import bar_tensions, points_of
-from trawl_ros.model.board import flow_at, hydrodynamics
+from trawl_ros.model.board import flow_at, hydrodynamics, mirrored_axes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.numerics import transpose
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.simulation.truth import (
-    SIDES,
     DoorTruth,
     GearPicture,
     NetTruth,
@@ -33,13 +32,14 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
         model.water,
     )
     force, moment = hydrodynamics(model.board, model.coefficients, flow)
-    mirror = np.stack([np.ones(2), OUTWARD, np.ones(2)], 1)
+    mirror = mirrored_axes(OUTWARD)
     turn = state.board_rotations
     back = transpose(turn)
     lean = np.arccos(np.clip(turn[:, 2, 2], -1.0, 1.0))
     quaternions = Rotation.from_matrix(turn).as_quat(canonical=True)
-    return tuple(
-        DoorTruth(
+
+    def door(k: int) -> DoorTruth:
+        return DoorTruth(
             position=state.board_positions[k],
             orientation=quaternions[k],
             velocity=back[k] @ state.board_velocities[k],
@@ -50,8 +50,8 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
             force=mirror[k] * force[k],
             moment=OUTWARD[k] * mirror[k] * moment[k],
         )
-        for k in range(len(SIDES))
-    )  # type: ignore[return-value]
+
+    return door(0), door(1)
 
 
 def _sonar_orientation(model: GearModel, state: State) -> np.ndarray:
@@ -71,14 +71,13 @@ def read_truth(
     """Everything instruments may look at."""
     seen = observe(model, state, tow)
     head, foot = model.layout.headrope, model.layout.footrope
-    tensions = (seen.port_tension, seen.starboard_tension)
     return Truth(
         stamp=stamp,
         doors=_doors(model, state),
-        winches=tuple(
-            WinchTruth(winch.length, winch.speed, float(tension))
-            for winch, tension in zip(winches, tensions, strict=True)
-        ),  # type: ignore[arg-type]
+        winches=(
+            WinchTruth(winches[0].length, winches[0].speed, float(seen.port_tension)),
+            WinchTruth(winches[1].length, winches[1].speed, float(seen.starboard_tension)),
+        ),
         net=NetTruth(
             mouth=np.concatenate([state.nodes[head], state.nodes[foot[::-1]]]),
             horizontal_opening=float(seen.horizontal_opening),

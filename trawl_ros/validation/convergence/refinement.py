@@ -37,7 +37,7 @@ WORDS: Mapping[str, str] = {
     'bridle': 'twice the bridle segments',
     'joins': 'no meshes joined toward the codend',
     'net': 'half as many meshes again around and along the net',
-    'all': 'warps and bridles twice, the net half as fine again',
+    'all': 'twice the warp and bridle segments and half as many meshes again',
 }
 
 SERIES = 12, 24, 36, 48
@@ -85,8 +85,8 @@ def run(small: bool) -> Outcome:
         tables=tuple(_tables(default, finer[-1], lengths)),
         text=(
             f'The default gear at {SPEED:g} m/s beside the same gear with warps, bridles and net '
-            'cut more finely, one at a time and together: warps and bridles twice, the net half '
-            f'as fine again, with {more} meshes around its mouth, where the real net has 68. '
+            'cut more finely, one at a time and together: warps and bridles twice, the net with '
+            f'half as many meshes again, {more} around its mouth, where the real net has 68. '
             'Differences are shares of the finer value; pitch and slip, which have no natural size '
             'since they may be zero, are set '
             f'against {np.degrees(REFERENCE):.0f}°.'

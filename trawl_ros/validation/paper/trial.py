@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from trawl_ros.cli.samples import SampleStream
+from trawl_ros.bags.samples import SampleStream
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.objective import paper_values, stack
 from trawl_ros.identification.window_records import SteadyWindow

@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 
+from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.cli.samples import SampleStream
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.identification.windows import SteadyWindowFinder
 from trawl_ros.instruments.samples import VelocitySample, WinchSample
