@@ -53,12 +53,18 @@ class Stored:
 
 @dataclass(frozen=True)
 class Definition:
-    """What a channel says of its messages: encodings, and the definition of the type."""
+    """What a channel says of its messages: encodings, and the definition of the type.
+
+    ``qos`` is what publishers offered, as `bags.qos` reads it, ``type_hash`` the type's RIHS01;
+    each '' where the bag does not say.
+    """
 
     type: str
     message_encoding: str
     schema_encoding: str
     text: bytes
+    qos: str = ''
+    type_hash: str = ''
 
 
 class McapFile:
@@ -290,6 +296,12 @@ class McapFile:
 
     def _definition(self, channel: Channel) -> Definition:
         schema = self._schemas.get(channel.schema_id)
+        said = (
+            channel.metadata.get('offered_qos_profiles', ''),
+            channel.metadata.get('topic_type_hash', ''),
+        )
         if schema is None:
-            return Definition('', channel.message_encoding, '', b'')
-        return Definition(schema.name, channel.message_encoding, schema.encoding, schema.data)
+            return Definition('', channel.message_encoding, '', b'', *said)
+        return Definition(
+            schema.name, channel.message_encoding, schema.encoding, schema.data, *said
+        )

@@ -4,12 +4,14 @@ Written as version 8, which all current distributions read; read in any version.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import yaml
 from pydantic import BaseModel, ConfigDict
 
+from trawl_ros.bags.qos import dump_profiles, parse_profiles, project_profile
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import type_hash
 from trawl_ros.schema import validated
@@ -20,8 +22,6 @@ MAX_BYTES = 16_000_000
 _VERSION = 8
 _NEVER = 2**63 - 1
 _ONE_LINE = 1 << 20
-_FOREVER = {'sec': 9223372036, 'nsec': 854775807}
-_KEEP_LAST, _RELIABLE, _VOLATILE, _TRANSIENT_LOCAL, _AUTOMATIC = 1, 1, 2, 1, 1
 
 # The versions in C make what `BagWriter.flush` does each second cheap; not all wheels have them.
 _Dumper: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
@@ -35,6 +35,9 @@ class _Lenient(BaseModel):
 class _TopicMetadata(_Lenient):
     name: str
     type: str
+    # A text up to version 8, a list from there on.
+    offered_qos_profiles: Any = ''
+    type_description_hash: str = ''
 
 
 class _TopicCount(_Lenient):
@@ -61,21 +64,15 @@ class BagMetadata(_Lenient):
             found[key] = found.get(key, 0) + entry.message_count
         return {key: count for key, count in found.items() if count}
 
-
-def qos_profile(latched: bool) -> str:
-    """Give the offered QoS as rosbag2 writes it up to version 8: a YAML list in a string."""
-    profile = {
-        'history': _KEEP_LAST,
-        'depth': 1 if latched else 100,
-        'reliability': _RELIABLE,
-        'durability': _TRANSIENT_LOCAL if latched else _VOLATILE,
-        'deadline': dict(_FOREVER),
-        'lifespan': dict(_FOREVER),
-        'liveliness': _AUTOMATIC,
-        'liveliness_lease_duration': dict(_FOREVER),
-        'avoid_ros_namespace_conventions': False,
-    }
-    return _dump([profile]).strip()
+    def offered(self) -> dict[str, str]:
+        """Give by topic what its publishers offered, as text; left out where it makes no sense."""
+        found = {}
+        for entry in self.topics_with_message_count:
+            topic = entry.topic_metadata
+            with suppress(BagError):
+                profiles = parse_profiles(topic.name, topic.offered_qos_profiles)
+                found[topic.name] = dump_profiles(profiles)
+        return found
 
 
 def dump_metadata(
@@ -111,7 +108,7 @@ def dump_metadata(
                     'name': name,
                     'type': type_name,
                     'serialization_format': 'cdr',
-                    'offered_qos_profiles': qos_profile(latched),
+                    'offered_qos_profiles': dump_profiles([project_profile(latched)]),
                     'type_description_hash': type_hash(type_name),
                 },
                 'message_count': number,

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rosbags.interfaces import Qos
+
 from trawl_ros.bags.decoding import Decoder, make_decoder
+from trawl_ros.bags.qos import parse_profiles
 from trawl_ros.bags.sources import Source, open_source
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import DECODING_ERRORS
@@ -92,6 +95,20 @@ class Bag:
             topic: definition.type for topic, definition in self._source.definitions.items()
         }
         self.custom_data = self._source.custom_data
+
+    def offered(self) -> dict[str, tuple[Qos, ...]]:
+        """Give by full topic name the QoS that its publishers offered; empty where unknown.
+
+        Profiles that cannot be understood are said in `problems` and count as unknown.
+        """
+        found: dict[str, tuple[Qos, ...]] = {}
+        for topic, definition in self._source.definitions.items():
+            try:
+                found[topic] = parse_profiles(topic, definition.qos)
+            except BagError as reason:
+                self._report(f'{self.path}: {reason}')
+                found[topic] = ()
+        return found
 
     def raw(self, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
         """Give messages undecoded, of all topics or of those named in full.

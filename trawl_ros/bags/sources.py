@@ -2,15 +2,17 @@
 
 import heapq
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 from mcap.records import Message
-from rosbags.interfaces import MessageDefinitionFormat
+from rosbags.interfaces import ConnectionExtRosbag2, MessageDefinitionFormat
 from rosbags.rosbag2 import Reader, ReaderError
 
 from trawl_ros.bags.mcap_file import Definition, McapFile
 from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata
+from trawl_ros.bags.qos import dump_profiles
 from trawl_ros.errors import BagError
 
 Report = Callable[[str], None]
@@ -91,6 +93,10 @@ class _McapFiles:
         for file in self._files:
             for topic, definition in file.definitions.items():
                 found.setdefault(topic, definition)
+        stated = self._metadata.offered() if self._metadata else {}
+        for topic, definition in found.items():
+            if not definition.qos and topic in stated:
+                found[topic] = replace(definition, qos=stated[topic])
         return found
 
     @property
@@ -160,6 +166,10 @@ class _Database:
                 'cdr',
                 encodings[connection.msgdef.format],
                 connection.msgdef.data.encode(),
+                dump_profiles(connection.ext.offered_qos_profiles)
+                if isinstance(connection.ext, ConnectionExtRosbag2)
+                else '',
+                connection.digest,
             )
             for connection in self._connections
         }

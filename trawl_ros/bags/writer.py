@@ -10,7 +10,8 @@ from types import TracebackType
 
 from mcap.writer import Writer
 
-from trawl_ros.bags.metadata import FILE_NAME, dump_metadata, qos_profile
+from trawl_ros.bags.metadata import FILE_NAME, dump_metadata
+from trawl_ros.bags.qos import dump_profiles, project_profile
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import STORE, definition, type_hash
 from trawl_ros.messages.topics import NAMESPACE, find_topic
@@ -178,7 +179,7 @@ class BagWriter:
             'cdr',
             self._schemas[type_name],
             {
-                'offered_qos_profiles': qos_profile(latched),
+                'offered_qos_profiles': dump_profiles([project_profile(latched)]),
                 'topic_type_hash': type_hash(type_name),
             },
         )
