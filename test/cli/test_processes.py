@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -78,6 +79,59 @@ def test_leaving_for_whatever_reason_ends_all(tmp_path, environment):
 
     with pytest.raises(RuntimeError):
         tow_and_fail()
+    assert running_with(str(tmp_path)) == []
+
+
+def blocked_signals(pid):
+    """The mask of signals that a process has blocked."""
+    status = Path(f'/proc/{pid}/status').read_text()
+    (mask,) = (line.split()[1] for line in status.splitlines() if line.startswith('SigBlk'))
+    return int(mask, 16)
+
+
+class Interrupted(subprocess.Popen):
+    """A process during whose start, once it runs, somebody presses Ctrl-C."""
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)
+        assert blocked_signals(self.pid) == 0
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_an_interruption_while_a_process_starts_leaves_it_to_be_ended(
+    tmp_path, environment, monkeypatch
+):
+    monkeypatch.setattr(subprocess, 'Popen', Interrupted)
+    handler = signal.getsignal(signal.SIGINT)
+
+    def start():
+        with Processes(tmp_path / 'log', environment) as processes:
+            processes.start('winch_node')
+            pytest.fail('the interruption got lost')
+
+    with pytest.raises(KeyboardInterrupt):
+        start()
+    assert running_with(str(tmp_path)) == []
+    assert signal.getsignal(signal.SIGINT) is handler
+
+
+def test_a_second_interruption_shortens_the_wait_and_leaves_nobody(tmp_path, environment):
+    deaf = "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); print('up', " \
+        'flush=True); time.sleep(60)'  # fmt: skip
+    processes = Processes(tmp_path / 'log', environment)
+    process = subprocess.Popen(
+        [sys.executable, '-c', deaf], stdout=subprocess.PIPE, env={**os.environ, **environment}
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    process.stdout.close()
+    processes._running['deaf'] = process
+    own = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    began = time.monotonic()
+    own.start()
+    with pytest.raises(KeyboardInterrupt):
+        processes.__exit__(None, None, None)
+    assert time.monotonic() - began < 5.0
     assert running_with(str(tmp_path)) == []
 
 

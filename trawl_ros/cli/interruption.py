@@ -1,7 +1,10 @@
 """Ctrl-C as a wish that is granted at the next good moment."""
 
 import signal
+import threading
+from collections.abc import Callable
 from types import FrameType, TracebackType
+from typing import Any
 
 INTERRUPTED = 130
 """Exit code of what was interrupted, by custom of shells."""
@@ -33,5 +36,54 @@ class Interruption:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+
+class Uninterrupted:
+    """While entered, SIGINT and SIGTERM wait; afterwards they come to whoever hears them else.
+
+    Python breaks in between any two instructions, also between the start of a process and the
+    note that it was started. Handlers do this, not the mask of signals, since a child would
+    inherit the mask and never hear of its end. Only the main thread is ever interrupted, so in
+    another one this does nothing.
+
+    Parameters
+    ----------
+    noted
+        Called when a signal has come; it must not raise.
+    """
+
+    def __init__(self, noted: Callable[[], None] = lambda: None) -> None:
+        self._noted = noted
+        self._waiting: list[int] = []
+        self._before: dict[int, Any] = {}
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self._waiting.append(number)
+        self._noted()
+
+    def __enter__(self) -> 'Uninterrupted':
+        if threading.current_thread() is threading.main_thread():
+            try:
+                for number in (signal.SIGINT, signal.SIGTERM):
+                    self._before[number] = signal.getsignal(number)
+                    signal.signal(number, self._note)
+            except BaseException:
+                self._restore()
+                raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._restore()
+        if self._waiting:
+            signal.raise_signal(self._waiting[0])
+
+    def _restore(self) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 
+from trawl_ros.cli.interruption import Uninterrupted
 from trawl_ros.errors import TrawlError
 
 LAST_LINES = 15
@@ -17,6 +18,8 @@ LAST_LINES = 15
 
 END_S = 10.0
 """Time (s) that a process has to end after it was asked to."""
+
+POLL_S = 0.02
 
 Value = str | int | float | bool | list[str]
 
@@ -55,7 +58,7 @@ class Processes:
             'sys.exit(main())'
         )
         command = [sys.executable, '-c', code, '--ros-args', *options]
-        with self._log(node).open('wb') as log:
+        with self._log(node).open('wb') as log, Uninterrupted():
             # A session of their own: Ctrl-C is for the demo, which ends them in good order.
             self._running[node] = subprocess.Popen(
                 command,
@@ -125,14 +128,19 @@ class Processes:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for process in self._running.values():
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-        deadline = time.monotonic() + END_S
-        for process in self._running.values():
-            try:
-                process.wait(max(0.1, deadline - time.monotonic()))
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-        self._running.clear()
+        # Whoever is impatient shortens what is left to them, but leaves none of them behind.
+        with Uninterrupted(self._hasten):
+            self._deadline = time.monotonic() + END_S
+            for process in self._running.values():
+                if process.poll() is None:
+                    process.send_signal(signal.SIGINT)
+            for process in self._running.values():
+                while process.poll() is None and time.monotonic() < self._deadline:
+                    time.sleep(POLL_S)
+                if process.poll() is None:
+                    process.kill()
+                    process.wait()
+            self._running.clear()
+
+    def _hasten(self) -> None:
+        self._deadline = time.monotonic()
