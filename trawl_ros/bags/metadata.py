@@ -53,8 +53,10 @@ class BagMetadata(_Lenient):
     relative_file_paths: tuple[str, ...]
     message_count: int
     topics_with_message_count: tuple[_TopicCount, ...] = ()
+    compression_format: str = ''
     compression_mode: str = ''
     custom_data: dict[str, str] | None = None
+    ros_distro: str = ''
 
     def counts(self) -> dict[tuple[str, str], int]:
         """Give the number of messages by (topic, type), of those that have any."""
