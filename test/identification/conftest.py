@@ -163,7 +163,8 @@ def trial_windows(
             for _ in range(repeats):
                 values = model.predict(TRUTH, length, length, speed).values
                 exact = {'port_length': length, 'starboard_length': length, 'speed': speed}
-                exact |= dict(zip(OBSERVABLES, values, strict=True))
+                seen = zip(OBSERVABLES, values, strict=True)
+                exact |= {name: value for name, value in seen if name in CHANNELS}
                 std = {name: CHANNELS[name].bias_std(mean) for name, mean in exact.items()}
                 index = len(found)
                 found.append(

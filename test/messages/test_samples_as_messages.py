@@ -15,6 +15,10 @@ from trawl_ros.instruments.samples import (
     HeadingSample,
     PressureSample,
     RangeSample,
+    SchoolsSample,
+    SonarImageSample,
+    SonarPointsSample,
+    SonarScanSample,
     VelocitySample,
     WinchSample,
 )
@@ -40,6 +44,15 @@ SAMPLES = [
     VelocitySample(STAMP, 'ground', np.array([1.4, 1.5, 0.0]), 0.01),
     HeadingSample(STAMP, 2.9, 0.01),
     FixSample(STAMP, 57.75, -152.5, 3.0),
+    RangeSample(STAMP, 'bottom', 61.5, 0.25, 1.0, 200.0),
+    RangeSample(STAMP, 'depth', 240.5, 0.5, 1.0, 1000.0),
+    RangeSample(STAMP, 'school', math.inf, 0.5, 1.0, 1000.0),
+    SonarImageSample(STAMP, np.arange(12, dtype=np.uint8).reshape(3, 4)),
+    SonarScanSample(
+        STAMP, np.array([4.5, math.inf]), np.array([200.0, 0.0]), -1.5, 0.75, 1.0, 100.0, 10.0
+    ),
+    SchoolsSample(STAMP, np.array([[1200.0, -30.0, -150.0]])),
+    SonarPointsSample(STAMP, np.array([[1.0, 2.0, -3.0, 120.0], [4.0, 5.0, -6.0, 7.0]])),
 ]
 
 
@@ -170,7 +183,7 @@ def pressure_of_negative_variance():
 
 
 def fix_beyond_the_pole():
-    message = sample_message(SAMPLES[-1])[1]
+    message = sample_message(next(s for s in SAMPLES if isinstance(s, FixSample)))[1]
     message.latitude = 123.0
     return message
 

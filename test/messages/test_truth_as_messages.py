@@ -8,17 +8,26 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.errors import MessageError
 from trawl_ros.messages.cdr import deserialize, serialize
-from trawl_ros.messages.from_messages import door_truth, net_truth, vessel_truth, winch_truth
+from trawl_ros.messages.from_messages import (
+    door_truth,
+    net_truth,
+    schools_truth,
+    seabed_truth,
+    vessel_truth,
+    winch_truth,
+)
 from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.messages.to_messages import clock_message, truth_messages
 from trawl_ros.messages.topics import TOPICS, TRUTH
+from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
 from trawl_ros.simulation.truth import (
     DoorTruth,
     GearPicture,
     NetTruth,
     Polyline,
+    SchoolTruth,
+    SeabedTruth,
     Truth,
     VesselTruth,
     WinchTruth,
@@ -54,6 +63,7 @@ TRUTH_RECORD = Truth(
         headrope_depth=140.0,
         sonar_position=np.array([-620.0, 0.5, -140.0]),
         sonar_orientation=np.array(to_quaternion(0.0, np.pi / 2, 0.0)),
+        section=np.array([[0.5, 12.0, 0.125], [40.0, -12.0, 0.25], [44.0, 0.0, 0.0625]]),
     ),
     vessel=VesselTruth(
         position=np.array([10.0, 20.0, 2.0]),
@@ -62,6 +72,8 @@ TRUTH_RECORD = Truth(
         velocity_ground=np.array([-1.6, 1.2, 0.0]),
         velocity_water=np.array([2.1, 0.05, 0.0]),
     ),
+    schools=(SchoolTruth(np.array([50.0, 0.0, -140.0]), np.array([80.0, 40.0, 20.0]), 0.25),),
+    seabed=SeabedTruth(250.0, 240.0),
 )
 
 
@@ -102,6 +114,17 @@ def test_a_door_without_its_wrench_does_not_pretend_to_know_it(received):
     np.testing.assert_allclose(found.position, DOORS[0].position)
 
 
+def test_schools_and_seabed_come_back(received):
+    assert seabed_truth(received['truth/seabed']) == TRUTH_RECORD.seabed
+    (found,) = schools_truth(received['truth/schools'])
+    assert_close(found, TRUTH_RECORD.schools[0])
+
+
+def test_the_opening_in_the_sonars_plane_is_read_off_its_section(received):
+    seen = received['truth/sonar/opening'].vector
+    assert (seen.x, seen.y) == (44.0, 24.0)
+
+
 def test_odometry_names_the_body_it_speaks_of(received):
     assert received['truth/door/starboard/odom'].child_frame_id == 'door_starboard'
     assert received['truth/vessel/odom'].child_frame_id == 'vessel'
@@ -123,7 +146,10 @@ def test_winches_come_back_whatever_their_order(received):
 
 def test_the_net_comes_back(received):
     found = net_truth(
-        received['truth/net/opening'], received['truth/sonar/pose'], received['truth/net/mouth']
+        received['truth/net/opening'],
+        received['truth/sonar/pose'],
+        received['truth/net/mouth'],
+        received['truth/sonar/section'],
     )
     assert_close(found, TRUTH_RECORD.net)
 

@@ -8,7 +8,8 @@ from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import diagnostic_array
 from trawl_ros.messages.estimates import estimate_message
 from trawl_ros.messages.markers import gear_markers
-from trawl_ros.messages.to_messages import clock_message, sample_message
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.partial_truth import partial_truth
 from trawl_ros.nodes.stamping import stamp_in
 from trawl_ros.simulation.truth import GearPicture, Polyline

@@ -16,9 +16,11 @@ from trawl_ros.files import packaged
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.to_messages import TopicMessage, sample_message, truth_messages
+from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.topics import absolute
+from trawl_ros.messages.truth_to_messages import truth_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario
 

@@ -126,10 +126,6 @@ _TABLE = (
         'vertical_opening', 'sonar/opening_height', 'm', 0.5, 300.0, 2.0, 1.0, 0.03, 0.02,
         required=False,
     ),
-    Channel(
-        'horizontal_opening', 'sonar/opening_width', 'm', 0.5, 500.0, 4.0, 2.0, 0.03, 0.02,
-        required=False,
-    ),
     # Heading and rate of turn only tell turning from straight towing.
     Channel(
         'heading', 'vessel/heading', 'rad', -10.0, 10.0, 0.02, 0.0, 0.0, 1.0, required=False
@@ -164,6 +160,11 @@ class Reading:
     high: float = math.inf
 
 
+_DISTANCES = {'spread': 'door_spread', 'opening_height': 'vertical_opening'}
+"""Of the distances these belong to observables. The sonar's width is that in its own plane, far
+behind the wing tips between which the model's horizontal opening is measured."""
+
+
 def readings(sample: Sample, pressure_to_depth: Callable[[float], float]) -> Iterator[Reading]:
     """Split one sample into channel readings; samples of no use here give none.
 
@@ -194,14 +195,9 @@ def readings(sample: Sample, pressure_to_depth: Callable[[float], float]) -> Ite
             yield Reading(f'{sample.side}_pitch', stamp, sample.pitch, sample.std)
             yield Reading(f'{sample.side}_roll', stamp, sample.roll, sample.std)
         case RangeSample():
-            name = {
-                'spread': 'door_spread',
-                'opening_height': 'vertical_opening',
-                'opening_width': 'horizontal_opening',
-            }[sample.what]
-            yield Reading(
-                name, stamp, sample.distance, sample.std, sample.min_range, sample.max_range
-            )
+            if sample.what in _DISTANCES:
+                name, limits = _DISTANCES[sample.what], (sample.min_range, sample.max_range)
+                yield Reading(name, stamp, sample.distance, sample.std, *limits)
         case VelocitySample(over='water'):
             yield Reading('speed', stamp, float(sample.velocity[0]), 0.0)
             yield Reading('yaw_rate', stamp, sample.yaw_rate, 0.0)

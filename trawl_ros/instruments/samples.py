@@ -41,7 +41,11 @@ class AttitudeSample:
 
 @dataclass(frozen=True)
 class RangeSample:
-    """A distance in m; ``what`` is 'spread', 'opening_height' or 'opening_width'."""
+    """A distance in m.
+
+    ``what`` is 'spread', 'opening_height', 'opening_width', 'bottom' (from the headrope down
+    to the seabed), 'depth' (from the keel down to it) or 'school' (from the keel down to fish).
+    """
 
     stamp: int
     what: str
@@ -80,6 +84,53 @@ class FixSample:
     std: float
 
 
+@dataclass(frozen=True)
+class SonarImageSample:
+    """One sweep of the trawl sonar as its screen shows it, stamped at the first ping.
+
+    ``image`` (beams, cells) uint8: row i is a beam, column j the echo from (j + ½) / cells of
+    the range. At which angles and how far, the scan of the same stamp says.
+    """
+
+    stamp: int
+    image: np.ndarray
+
+
+@dataclass(frozen=True)
+class SonarScanSample:
+    """First echo per beam of a sweep: ``ranges`` (beams,) m, infinite without one, and
+    ``intensities`` (beams,), 0 to 255.
+
+    Beam i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame ``sonar``, 0 down,
+    to port positive); ``sweep_s`` is how long the sweep took.
+    """
+
+    stamp: int
+    ranges: np.ndarray
+    intensities: np.ndarray
+    angle_min: float
+    angle_increment: float
+    min_range: float
+    max_range: float
+    sweep_s: float
+
+
+@dataclass(frozen=True)
+class SonarPointsSample:
+    """The echoes of a sweep: ``points`` (n, 4), position in ``map`` (m) and intensity, 0 to 255."""
+
+    stamp: int
+    points: np.ndarray
+
+
+@dataclass(frozen=True)
+class SchoolsSample:
+    """Where the fish sonar sees schools: ``positions`` (n, 3) in frame ``vessel``, m."""
+
+    stamp: int
+    positions: np.ndarray
+
+
 Sample = (
     WinchSample
     | PressureSample
@@ -88,4 +139,8 @@ Sample = (
     | VelocitySample
     | HeadingSample
     | FixSample
+    | SonarImageSample
+    | SonarScanSample
+    | SonarPointsSample
+    | SchoolsSample
 )

@@ -19,14 +19,27 @@ from trawl_ros.instruments.samples import (
     PressureSample,
     RangeSample,
     Sample,
+    SchoolsSample,
+    SonarImageSample,
+    SonarPointsSample,
+    SonarScanSample,
     VelocitySample,
     WinchSample,
 )
+from trawl_ros.messages.pieces import ABSENT
+from trawl_ros.messages.point_clouds import read_point_cloud
 from trawl_ros.messages.rotations import about_z, to_angles
 from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.messages.to_messages import ABSENT
-from trawl_ros.messages.topics import WINCH_NAMES
-from trawl_ros.simulation.truth import DoorTruth, NetTruth, VesselTruth, WinchTruth
+from trawl_ros.messages.topics import RANGES, WINCH_NAMES
+from trawl_ros.messages.truth_to_messages import SCHOOL_FIELDS
+from trawl_ros.simulation.truth import (
+    DoorTruth,
+    NetTruth,
+    SchoolTruth,
+    SeabedTruth,
+    VesselTruth,
+    WinchTruth,
+)
 
 
 def to_sample(topic: str, message: Any) -> Sample:
@@ -75,11 +88,16 @@ def winch_truth(topic: str, joint_state: Any) -> tuple[WinchTruth, WinchTruth]:
     return WinchTruth(*port), WinchTruth(*starboard)
 
 
-def net_truth(opening: Any, sonar_pose: Any, mouth: Any | None = None) -> NetTruth:
-    """Put the net together from its opening, the sonar's pose and, where given, the mouth.
+def net_truth(
+    opening: Any, sonar_pose: Any, mouth: Any | None = None, section: Any | None = None
+) -> NetTruth:
+    """Put the net together from its opening, the sonar's pose and, where given, mouth and section.
 
-    Without the mouth its points have shape (0, 3).
+    Without them their points have shape (0, 3).
     """
+    through = np.zeros((0, 3))
+    if section is not None:
+        through = read_point_cloud('truth/sonar/section', section, ('x', 'y', 'diameter'))
     corners = [] if mouth is None else mouth.polygon.points
     horizontal, vertical, depth = _vector(opening.vector)
     return NetTruth(
@@ -89,7 +107,20 @@ def net_truth(opening: Any, sonar_pose: Any, mouth: Any | None = None) -> NetTru
         headrope_depth=float(depth),
         sonar_position=_vector(sonar_pose.pose.position),
         sonar_orientation=_orientation('truth/sonar/pose', sonar_pose.pose.orientation),
+        section=through,
     )
+
+
+def schools_truth(cloud: Any) -> tuple[SchoolTruth, ...]:
+    """Read the schools of fish from ``truth/schools``."""
+    rows = read_point_cloud('truth/schools', cloud, SCHOOL_FIELDS)
+    return tuple(SchoolTruth(row[:3], row[3:6], float(row[6])) for row in rows)
+
+
+def seabed_truth(depths: Any) -> SeabedTruth:
+    """Read the depth of the seabed from ``truth/seabed``."""
+    under_ship, under_headrope, _ = _vector(depths.vector)
+    return SeabedTruth(float(under_ship), float(under_headrope))
 
 
 def vessel_truth(odometry: Any, velocity_water: Any) -> VesselTruth:
@@ -173,12 +204,47 @@ def _range(topic: str, message: Any) -> RangeSample:
     std = _deviation(topic, getattr(message, 'variance', 0.0))
     return RangeSample(
         stamp=stamp_of(message),
-        what=topic.split('/')[1],
+        what=_DISTANCES[topic],
         distance=float(message.range),
         std=std,
         min_range=float(message.min_range),
         max_range=float(message.max_range),
     )
+
+
+def _sonar_image(topic: str, message: Any) -> SonarImageSample:
+    beams, cells, step = int(message.height), int(message.width), int(message.step)
+    data = np.asarray(message.data, dtype=np.uint8)
+    if message.encoding != 'mono8' or step < cells or len(data) != beams * step:
+        raise MessageError(
+            f'{topic}: {len(data)} bytes of {message.encoding}, {beams} rows of {step} bytes; '
+            'expected mono8 and as many bytes as rows have'
+        )
+    image = data.reshape(beams, step)[:, :cells]
+    return SonarImageSample(stamp_of(message), image)
+
+
+def _sonar_scan(topic: str, message: Any) -> SonarScanSample:
+    return SonarScanSample(
+        stamp=stamp_of(message),
+        ranges=np.asarray(message.ranges, dtype=float),
+        intensities=np.asarray(message.intensities, dtype=float),
+        angle_min=float(message.angle_min),
+        angle_increment=float(message.angle_increment),
+        min_range=float(message.range_min),
+        max_range=float(message.range_max),
+        sweep_s=float(message.scan_time),
+    )
+
+
+def _sonar_points(topic: str, message: Any) -> SonarPointsSample:
+    points = read_point_cloud(topic, message, ('x', 'y', 'z', 'intensity'))
+    return SonarPointsSample(stamp_of(message), points)
+
+
+def _seen_schools(topic: str, message: Any) -> SchoolsSample:
+    positions = [_vector(pose.position) for pose in message.poses]
+    return SchoolsSample(stamp_of(message), np.array(positions).reshape(-1, 3))
 
 
 def _velocity(topic: str, message: Any) -> VelocitySample:
@@ -221,6 +287,8 @@ def _angles(topic: str, message: Any) -> tuple[float, float, float]:
         raise MessageError(f'{topic}: {error}') from error
 
 
+_DISTANCES = {topic: what for what, topic in RANGES.items()}
+
 _READERS: dict[str, Callable[[str, Any], Sample]] = {
     'winch/joint_states': _winch_sample,
     'door/port/pressure': _pressure,
@@ -231,10 +299,17 @@ _READERS: dict[str, Callable[[str, Any], Sample]] = {
     'sonar/pressure': _pressure,
     'sonar/opening_height': _range,
     'sonar/opening_width': _range,
+    'sonar/bottom': _range,
+    'sonar/image': _sonar_image,
+    'sonar/scan': _sonar_scan,
+    'sonar/points': _sonar_points,
     'vessel/velocity_water': _velocity,
     'vessel/velocity_ground': _velocity,
     'vessel/heading': _heading,
     'vessel/fix': _fix,
+    'vessel/echo_sounder/depth': _range,
+    'vessel/echo_sounder/school': _range,
+    'vessel/fish_sonar': _seen_schools,
 }
 
 SAMPLE_TOPICS = tuple(_READERS)

@@ -1,18 +1,18 @@
-"""The gear as markers, for RViz and Foxglove: ropes coloured by tension, doors as plates.
+"""Gear and ship as markers, for RViz and Foxglove: ropes coloured by tension, doors as plates.
 
 Namespace and id of a marker stay the same from picture to picture, so that viewers replace
 the old one instead of piling them up.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import header
-from trawl_ros.messages.to_messages import TopicMessage
-from trawl_ros.messages.topics import DOOR_FRAMES, MAP
+from trawl_ros.messages.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
 from trawl_ros.simulation.truth import SIDES, DoorTruth, GearPicture, Polyline
 
 FULL_SCALE = 100e3
@@ -24,12 +24,24 @@ LINE_WIDTH = 0.3
 THICKNESS = 0.1
 """Thickness of a door as drawn, as a part of its length."""
 
+VESSEL_LENGTH = 100.0
+"""m; assumed, for scale only: nothing else in the project knows how long the ship is."""
+
+_HULL = np.array(
+    [[0.0, 1.0], [0.65, 1.0], [0.85, 0.6], [1.0, 0.0], [0.85, -0.6], [0.65, -1.0], [0.0, -1.0]]
+)
+"""Waterline as (lengths before the blocks, half beams to port), once around from port aft."""
+
+_BEAM_PER_BLOCKS = 20.0 / 12.0
+"""Beam over the distance between the blocks, as of the default gear's ship."""
+
 _RAMP = np.array([[0.15, 0.35, 0.85], [0.10, 0.75, 0.55], [0.95, 0.80, 0.15], [0.85, 0.10, 0.10]])
 _STEEL = ros.std_msgs__msg__ColorRGBA(0.45, 0.45, 0.50, 1.0)
 
 
 def gear_markers(picture: GearPicture) -> TopicMessage:
-    """Draw the gear in ``map``: a line per rope, all netting in one marker, a box per door.
+    """Draw the gear in ``map``: a line per rope, all netting in one marker, a box per door, and
+    the ship's waterline ahead of the towing blocks.
 
     Lines that share a name become one marker, since a viewer takes two thousand points in its
     stride but not a thousand markers. ``picture.door_size`` is (length along the door's x,
@@ -44,6 +56,7 @@ def gear_markers(picture: GearPicture) -> TopicMessage:
     ]
     for side, door in zip(SIDES, picture.doors, strict=True):
         markers.append(_door(picture.stamp, side, door, picture.door_size))
+    markers += _hull(picture.stamp, named)
     return 'truth/gear', ros.visualization_msgs__msg__MarkerArray(markers)
 
 
@@ -111,6 +124,30 @@ def _door(stamp: int, side: str, door: DoorTruth, size: tuple[float, float]) -> 
         position=door.position,
         orientation=door.orientation,
     )
+
+
+def _hull(stamp: int, named: Mapping[str, Sequence[Polyline]]) -> list[Any]:
+    """The waterline; nothing where there are not both warps, whose ends say where the ship is."""
+    if not all(name in named for name in WINCH_NAMES):
+        return []
+    port, starboard = (named[name][0].points[0] for name in WINCH_NAMES)
+    across = 0.5 * (port - starboard)
+    ahead = np.array([across[1], -across[0], 0.0]) / np.hypot(*across[:2])
+    outline = (
+        0.5 * (port + starboard)
+        + VESSEL_LENGTH * _HULL[:, :1] * ahead
+        + _BEAM_PER_BLOCKS * _HULL[:, 1:] * across
+    )
+    return [
+        _marker(
+            stamp,
+            VESSEL,
+            ros.visualization_msgs__msg__Marker.LINE_STRIP,
+            scale=(LINE_WIDTH, 0.0, 0.0),
+            colour=_STEEL,
+            points=_points(np.vstack([outline, outline[:1]])),
+        )
+    ]
 
 
 def _marker(

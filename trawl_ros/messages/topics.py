@@ -128,6 +128,34 @@ TRUTH = (
         'Pose of frame sonar (x down, y port, z forward) in map.',
     ),
     Topic(
+        'truth/sonar/section',
+        'sensor_msgs/msg/PointCloud2',
+        SONAR,
+        10.0,
+        "Where ropes and twine pass through the sonar's plane: x, y, z and diameter, m.",
+    ),
+    Topic(
+        'truth/sonar/opening',
+        'geometry_msgs/msg/Vector3Stamped',
+        SONAR,
+        10.0,
+        "x = height, y = width of the mouth in the sonar's plane, m.",
+    ),
+    Topic(
+        'truth/schools',
+        'sensor_msgs/msg/PointCloud2',
+        MAP,
+        10.0,
+        'Schools of fish: x, y, z, length, width, height (m), density (per m³).',
+    ),
+    Topic(
+        'truth/seabed',
+        'geometry_msgs/msg/Vector3Stamped',
+        MAP,
+        10.0,
+        'Depth of the seabed: x = under the ship, y = under the headrope, m.',
+    ),
+    Topic(
         'truth/gear',
         'visualization_msgs/msg/MarkerArray',
         '',
@@ -196,6 +224,13 @@ INSTRUMENTS = (
         'The echoes of a sweep in map, for display.',
     ),
     Topic(
+        'sonar/bottom',
+        'sensor_msgs/msg/Range',
+        SONAR,
+        1.0,
+        "From the headrope's centre down to the seabed, m.",
+    ),
+    Topic(
         'vessel/velocity_water',
         'geometry_msgs/msg/TwistStamped',
         VESSEL,
@@ -222,6 +257,27 @@ INSTRUMENTS = (
         VESSEL,
         1.0,
         'Position, WGS 84.',
+    ),
+    Topic(
+        'vessel/echo_sounder/depth',
+        'sensor_msgs/msg/Range',
+        VESSEL,
+        1.0,
+        'From the keel down to the seabed, m.',
+    ),
+    Topic(
+        'vessel/echo_sounder/school',
+        'sensor_msgs/msg/Range',
+        VESSEL,
+        1.0,
+        'From the keel down to the uppermost fish under her, m; infinite without any.',
+    ),
+    Topic(
+        'vessel/fish_sonar',
+        'geometry_msgs/msg/PoseArray',
+        VESSEL,
+        0.1,
+        'Where the fish sonar sees schools.',
     ),
 )
 
@@ -289,7 +345,24 @@ COMMANDS = (
         None,
         'linear.x = wanted speed through water (m/s), angular.z = rate of turn to port (rad/s).',
     ),
+    Topic(
+        'command/fault',
+        'diagnostic_msgs/msg/KeyValue',
+        '',
+        None,
+        "key = instrument topic, or topic/quantity; value = fault, or 'none'.",
+    ),
 )
+
+RANGES = {
+    'spread': 'door/spread',
+    'opening_height': 'sonar/opening_height',
+    'opening_width': 'sonar/opening_width',
+    'bottom': 'sonar/bottom',
+    'depth': 'vessel/echo_sounder/depth',
+    'school': 'vessel/echo_sounder/school',
+}
+"""Topic of each distance, by what `RangeSample.what` says it is."""
 
 CLOCK = Topic(
     '/clock', 'rosgraph_msgs/msg/Clock', '', None, 'Simulated time, when publish_clock is set.'

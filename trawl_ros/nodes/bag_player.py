@@ -8,8 +8,8 @@ from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.errors import BagError, MessageError, TrawlError
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.to_messages import clock_message
 from trawl_ros.messages.topics import CLOCK
+from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.pacer import Pacer
 from trawl_ros.nodes.parameters import Flag, Names, Number, Text

@@ -21,8 +21,8 @@ from trawl_ros.messages.commands import (
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.to_messages import clock_message, truth_messages
 from trawl_ros.messages.topics import CLOCK, TRUTH
+from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.pacer import Pacer

@@ -5,7 +5,8 @@ all stamps in integer nanoseconds. Door frames are x forward, y port, z up on bo
 Quaternions are ``(x, y, z, w)``.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -48,7 +49,8 @@ class NetTruth:
     ``mouth`` holds N points of the headrope from port to starboard, then N of the footrope
     back, shape (2 N, 3); openings and ``headrope_depth`` are in m, depth positive down.
     ``sonar_position`` and ``sonar_orientation`` are the pose of frame ``sonar`` (x down,
-    y port, z forward) in ``map``.
+    y port, z forward) in ``map``. ``section``, shape (k, 3), is where ropes and twine pass
+    through the sonar's plane: x and y in its frame and the diameter, m.
     """
 
     mouth: np.ndarray
@@ -57,6 +59,17 @@ class NetTruth:
     headrope_depth: float
     sonar_position: np.ndarray
     sonar_orientation: np.ndarray
+    section: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @property
+    def section_width(self) -> float:
+        """Width of the mouth in the sonar's plane, m; NaN where nothing passes through it."""
+        return float(np.ptp(self.section[:, 1])) if len(self.section) else float('nan')
+
+    @property
+    def section_height(self) -> float:
+        """How far the lowest rope in the sonar's plane lies below the sonar, m; NaN if none."""
+        return float(self.section[:, 0].max()) if len(self.section) else float('nan')
 
 
 @dataclass(frozen=True)
@@ -75,6 +88,27 @@ class VesselTruth:
 
 
 @dataclass(frozen=True)
+class SchoolTruth:
+    """A school of fish: an ellipsoid with axes along those of ``map``.
+
+    ``position`` (3,) of its middle and ``size`` (3,), its extent along each axis, in m;
+    ``density`` in fish per m³.
+    """
+
+    position: np.ndarray
+    size: np.ndarray
+    density: float
+
+
+@dataclass(frozen=True)
+class SeabedTruth:
+    """Depth of the seabed below the mean surface (m, infinite where there is none)."""
+
+    under_ship: float = math.inf
+    under_headrope: float = math.inf
+
+
+@dataclass(frozen=True)
 class Truth:
     """One instant of the tow. ``doors`` and ``winches`` are in the order of `SIDES`."""
 
@@ -83,6 +117,8 @@ class Truth:
     winches: tuple[WinchTruth, WinchTruth]
     net: NetTruth
     vessel: VesselTruth
+    schools: tuple[SchoolTruth, ...] = ()
+    seabed: SeabedTruth = SeabedTruth()
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,85 @@
+"""What messages of truth and of samples are put together from.
+
+Covariances carry the *stated* noise. `UNKNOWN_VARIANCE` marks a part of an orientation or
+position that the sensor does not measure, `ABSENT` a whole quantity it does not have.
+"""
+
+from typing import Any
+
+import numpy as np
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from trawl_ros.messages.rotations import to_quaternion
+from trawl_ros.messages.stamps import header
+from trawl_ros.messages.topics import TOPICS, WINCH_NAMES
+
+TopicMessage = tuple[str, Any]
+
+UNKNOWN_VARIANCE = 1e6
+"""rad² or m²: so large that every consumer reads it as 'not measured'."""
+
+ABSENT = -1.0
+"""First entry of an Imu covariance whose quantity the sensor does not have."""
+
+
+def topic_header(stamp: int, topic: str) -> ros.std_msgs__msg__Header:
+    """Give the header of a topic at a stamp (ns)."""
+    return header(stamp, TOPICS[topic].frame)
+
+
+def vector(values: Any) -> ros.geometry_msgs__msg__Vector3:
+    """Give a Vector3 of three numbers."""
+    x, y, z = values
+    return ros.geometry_msgs__msg__Vector3(float(x), float(y), float(z))
+
+
+def pose(position: Any, orientation: Any) -> ros.geometry_msgs__msg__Pose:
+    """Give a Pose of position (3,) and quaternion (x, y, z, w)."""
+    x, y, z = map(float, position)
+    return ros.geometry_msgs__msg__Pose(
+        ros.geometry_msgs__msg__Point(x, y, z),
+        ros.geometry_msgs__msg__Quaternion(*map(float, orientation)),
+    )
+
+
+def with_covariance(pose: Any) -> ros.geometry_msgs__msg__PoseWithCovariance:
+    """Give a pose that says nothing of its covariance."""
+    return ros.geometry_msgs__msg__PoseWithCovariance(pose, np.zeros(36))
+
+
+def twist(linear: Any, angular: Any) -> ros.geometry_msgs__msg__Twist:
+    """Give a Twist."""
+    return ros.geometry_msgs__msg__Twist(vector(linear), vector(angular))
+
+
+def twist_with_covariance(linear: Any, angular: Any) -> ros.geometry_msgs__msg__TwistWithCovariance:
+    """Give a twist that says nothing of its covariance."""
+    return ros.geometry_msgs__msg__TwistWithCovariance(twist(linear, angular), np.zeros(36))
+
+
+def joint_state(
+    stamp: int, topic: str, positions: Any, velocities: Any, efforts: Any
+) -> ros.sensor_msgs__msg__JointState:
+    """Give the state of both winches, port first."""
+    columns = (np.array(column, dtype=float) for column in (positions, velocities, efforts))
+    return ros.sensor_msgs__msg__JointState(topic_header(stamp, topic), list(WINCH_NAMES), *columns)
+
+
+def imu(
+    stamp: int,
+    topic: str,
+    angles: tuple[float, float, float],
+    variances: tuple[float, float, float],
+) -> ros.sensor_msgs__msg__Imu:
+    """Give an Imu that has an orientation only: roll, pitch, yaw (rad) and their variances."""
+    absent = np.zeros(9)
+    absent[0] = ABSENT
+    return ros.sensor_msgs__msg__Imu(
+        header=topic_header(stamp, topic),
+        orientation=ros.geometry_msgs__msg__Quaternion(*to_quaternion(*angles)),
+        orientation_covariance=np.diag(variances).ravel(),
+        angular_velocity=vector((0.0, 0.0, 0.0)),
+        angular_velocity_covariance=absent,
+        linear_acceleration=vector((0.0, 0.0, 0.0)),
+        linear_acceleration_covariance=absent.copy(),
+    )
