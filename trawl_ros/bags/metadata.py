@@ -3,23 +3,25 @@
 Written as version 8, which all current distributions read; read in any version.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import yaml
 from pydantic import BaseModel, ConfigDict
 
-from trawl_ros.bags.qos import dump_profiles, parse_profiles, project_profile
+from trawl_ros.bags.mcap_file import Definition
+from trawl_ros.bags.qos import dump_profiles, parse_profiles
 from trawl_ros.errors import BagError
-from trawl_ros.messages.cdr import type_hash
 from trawl_ros.schema import validated
 
 FILE_NAME = 'metadata.yaml'
 MAX_BYTES = 16_000_000
 
 _VERSION = 8
+_DISTRIBUTION = 'jazzy'
 _NEVER = 2**63 - 1
 _ONE_LINE = 1 << 20
 
@@ -77,61 +79,84 @@ class BagMetadata(_Lenient):
         return found
 
 
+@dataclass(frozen=True)
+class FileEntry:
+    """A file of a bag: name, messages, first and last log time (ns; None without messages)."""
+
+    name: str
+    count: int
+    span: tuple[int, int] | None
+
+    def as_metadata(self) -> dict[str, Any]:
+        """Give the entry of ``files``."""
+        return {'path': self.name, **_extent([self])}
+
+
+@dataclass(frozen=True)
+class TopicEntry:
+    """A topic of a bag: full name, what the bag says of it, messages."""
+
+    name: str
+    said: Definition
+    count: int
+
+    def as_metadata(self) -> dict[str, Any]:
+        """Give the entry of ``topics_with_message_count``."""
+        return {
+            'topic_metadata': {
+                'name': self.name,
+                'type': self.said.type,
+                'serialization_format': self.said.message_encoding,
+                'offered_qos_profiles': self.said.qos,
+                'type_description_hash': self.said.type_hash,
+            },
+            'message_count': self.count,
+        }
+
+
 def dump_metadata(
-    file_name: str,
-    topics: Mapping[str, tuple[str, bool, int]],
-    span: tuple[int, int] | None,
-    custom_data: Mapping[str, str],
+    files: Sequence[FileEntry], topics: Sequence[TopicEntry], custom_data: Mapping[str, str]
 ) -> str:
-    """Write the metadata of a bag with one MCAP file.
+    """Write the metadata of a bag of MCAP files.
 
     Parameters
     ----------
-    file_name
-        Name of that file, relative to the folder.
+    files
+        In the order in which they were written.
     topics
-        By full name: type, latched or not, number of messages.
-    span
-        First and last log time (ns); None while there is no message.
+        Those with messages.
     custom_data
         What else is to be known of the bag.
     """
-    start, end = span or (_NEVER, _NEVER)
-    count = sum(number for _, _, number in topics.values())
+    extent = _extent(files)
     information = {
         'version': _VERSION,
         'storage_identifier': 'mcap',
-        'duration': {'nanoseconds': end - start},
-        'starting_time': {'nanoseconds_since_epoch': start},
-        'message_count': count,
-        'topics_with_message_count': [
-            {
-                'topic_metadata': {
-                    'name': name,
-                    'type': type_name,
-                    'serialization_format': 'cdr',
-                    'offered_qos_profiles': dump_profiles([project_profile(latched)]),
-                    'type_description_hash': type_hash(type_name),
-                },
-                'message_count': number,
-            }
-            for name, (type_name, latched, number) in topics.items()
-        ],
+        'duration': extent['duration'],
+        'starting_time': extent['starting_time'],
+        'message_count': extent['message_count'],
+        'topics_with_message_count': [topic.as_metadata() for topic in topics],
+        # Of rosbag2's own compression of files or messages; chunks of MCAP have theirs.
         'compression_format': '',
         'compression_mode': '',
-        'relative_file_paths': [file_name],
-        'files': [
-            {
-                'path': file_name,
-                'starting_time': {'nanoseconds_since_epoch': start},
-                'duration': {'nanoseconds': end - start},
-                'message_count': count,
-            }
-        ],
+        'relative_file_paths': [file.name for file in files],
+        'files': [file.as_metadata() for file in files],
         'custom_data': dict(custom_data) or None,
-        'ros_distro': 'jazzy',
+        'ros_distro': _DISTRIBUTION,
     }
     return _dump({'rosbag2_bagfile_information': information})
+
+
+def _extent(files: Sequence[FileEntry]) -> dict[str, Any]:
+    """When files begin, how long they last, and how many messages are in them."""
+    spans = [file.span for file in files if file.span]
+    start = min((first for first, _ in spans), default=_NEVER)
+    end = max((last for _, last in spans), default=_NEVER)
+    return {
+        'starting_time': {'nanoseconds_since_epoch': start},
+        'duration': {'nanoseconds': end - start},
+        'message_count': sum(file.count for file in files),
+    }
 
 
 def load_metadata(path: Path) -> BagMetadata:

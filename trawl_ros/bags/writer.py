@@ -1,32 +1,19 @@
-"""Bags as ``ros2 bag record -s mcap`` leaves them: a folder, ``metadata.yaml``, one MCAP file.
+"""Bags as ``ros2 bag record -s mcap`` leaves them: a folder, ``metadata.yaml``, MCAP files.
 
 The same messages give the same bytes: nothing of the clock, the machine or the path goes in.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from mcap.writer import Writer
-
-from trawl_ros.bags.metadata import FILE_NAME, dump_metadata
+from trawl_ros.bags.mcap_file import Definition
+from trawl_ros.bags.mcap_output import COMPRESSIONS, McapOutput
+from trawl_ros.bags.metadata import FILE_NAME, FileEntry, TopicEntry, dump_metadata
 from trawl_ros.bags.qos import dump_profiles, project_profile
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import STORE, definition, type_hash
 from trawl_ros.messages.topics import NAMESPACE, find_topic
-
-CHUNK_BYTES = 1 << 20
-LIBRARY = 'trawl_ros'
-"""Stands in the file's header in place of a version, which would change the bytes."""
-
-
-@dataclass
-class _Channel:
-    number: int
-    type: str
-    latched: bool
-    count: int = 0
 
 
 class BagWriter:
@@ -40,6 +27,13 @@ class BagWriter:
         Where the project's topics live, to tell which of them are latched.
     custom_data
         Text by key, kept in ``metadata.yaml``.
+    compression
+        Of the chunks: ``'zstd'``, ``'lz4'`` or ``'none'``.
+    max_file_bytes
+        A file that has reached this size is followed by a next one; 0 sets no limit. It ends
+        with the chunk that reaches it, as in rosbag2.
+    max_file_ns
+        A message this much (ns) after the first of its file begins a next one; 0: no limit.
 
     Raises
     ------
@@ -53,14 +47,24 @@ class BagWriter:
         *,
         namespace: str = NAMESPACE,
         custom_data: Mapping[str, str] | None = None,
+        compression: str = 'zstd',
+        max_file_bytes: int = 0,
+        max_file_ns: int = 0,
     ) -> None:
         self.path = Path(path)
+        if compression not in COMPRESSIONS:
+            raise BagError(
+                f'{self.path}: compression {compression!r}; expected one of '
+                f'{", ".join(COMPRESSIONS)}'
+            )
         self._namespace = namespace
         self._custom_data = dict(custom_data or {})
-        self._channels: dict[str, _Channel] = {}
-        self._schemas: dict[str, int] = {}
-        self._span: tuple[int, int] | None = None
-        self._file_name = f'{self.path.resolve().name}_0.mcap'
+        self._compression = compression
+        self._limits = (max_file_bytes, max_file_ns)
+        self._topics: dict[str, Definition] = {}
+        self._counts: dict[str, int] = {}
+        self._finished: list[FileEntry] = []
+        self._closed = False
         try:
             self.path.mkdir(parents=True)
         except FileExistsError:
@@ -69,15 +73,39 @@ class BagWriter:
             ) from None
         except OSError as reason:
             raise BagError(f'{self.path}: cannot be made ({reason.strerror})') from reason
-        self._file = (self.path / self._file_name).open('xb')
-        self._mcap = Writer(self._file, chunk_size=CHUNK_BYTES)
-        self._mcap.start(profile='ros2', library=LIBRARY)
-        self.flush()
+        self._file = self._next_file()
 
     @property
     def counts(self) -> dict[str, int]:
         """Number of messages written so far by topic."""
-        return {topic: channel.count for topic, channel in self._channels.items()}
+        return {topic: count for topic, count in self._counts.items() if count}
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Names of the files so far; the last is being written."""
+        return (*(file.name for file in self._finished), self._file.path.name)
+
+    def declared(self, topic: str) -> bool:
+        """Whether it is settled what the bag says of a topic."""
+        return topic in self._topics
+
+    def declare(self, topic: str, said: Definition) -> None:
+        """Settle what the bag says of a topic, before its first message.
+
+        Raises
+        ------
+        BagError
+            If something else was said of it before.
+        """
+        known = self._topics.setdefault(topic, said)
+        if known != said:
+            was, found = (
+                (known.type, said.type)
+                if known.type != said.type
+                else ('one definition', 'another')
+            )
+            raise BagError(f'{self.path}: {topic} has {was} so far; found {found}')
+        self._counts.setdefault(topic, 0)
 
     def write(
         self,
@@ -108,24 +136,26 @@ class BagWriter:
         """
         if not 0 <= log_time < 2**63:
             raise BagError(f'{self.path}: {topic} at {log_time} ns; expected 0 to 2^63 ns')
-        channel = self._channels.get(topic) or self._register(topic, type_name)
-        if channel.type != type_name:
-            raise BagError(
-                f'{self.path}: {topic} has type {channel.type} so far; found {type_name}'
-            )
+        said = self._topics.get(topic) or self._described(topic, type_name)
+        if said.type != type_name:
+            raise BagError(f'{self.path}: {topic} has type {said.type} so far; found {type_name}')
+        if self._is_full(log_time):
+            self.split()
+        sent = log_time if publish_time is None else publish_time
         try:
-            self._mcap.add_message(
-                channel.number,
-                log_time=log_time,
-                data=data,
-                publish_time=log_time if publish_time is None else publish_time,
-                sequence=channel.count,
-            )
+            self._file.write(topic, said, data, log_time, sent)
         except OSError as reason:
             raise self._refused(reason) from reason
-        channel.count += 1
-        first, last = self._span or (log_time, log_time)
-        self._span = min(first, log_time), max(last, log_time)
+        self._counts[topic] += 1
+
+    def split(self) -> None:
+        """Finish the file in progress and go on in a next one."""
+        try:
+            self._file.finish()
+        except OSError as reason:
+            raise self._refused(reason) from reason
+        self._finished.append(self._entry())
+        self._file = self._next_file()
 
     def flush(self) -> None:
         """Put all that was written so far within reach of readers.
@@ -135,21 +165,21 @@ class BagWriter:
         per second is often enough.
         """
         try:
-            self._mcap.flush()
-            self._write_metadata()
+            self._file.flush()
+            self._write_metadata([*self._finished, self._entry()])
         except OSError as reason:
             raise self._refused(reason) from reason
 
     def close(self) -> None:
         """Finish the bag with its indexes, summary and metadata; a second call does nothing."""
-        if self._file.closed:
+        if self._closed:
             return
         try:
-            self._mcap.finish()
-            self._file.close()
-            self._write_metadata()
+            self._file.finish()
+            self._write_metadata([*self._finished, self._entry()])
         except OSError as reason:
             raise self._refused(reason) from reason
+        self._closed = True
 
     def __enter__(self) -> 'BagWriter':
         return self
@@ -163,35 +193,41 @@ class BagWriter:
         # What was recorded before an error is worth as much as without one.
         self.close()
 
-    def _register(self, topic: str, type_name: str) -> _Channel:
-        if type_name not in STORE.types:
-            raise BagError(
-                f'{self.path}: {topic} has type {type_name}, whose definition is unknown'
-            )
+    def _is_full(self, log_time: int) -> bool:
+        file, (most_bytes, longest) = self._file, self._limits
+        if file.span is None:
+            return False
+        too_large = most_bytes > 0 and file.size >= most_bytes
+        return too_large or (longest > 0 and log_time - file.span[0] > longest)
+
+    def _described(self, topic: str, type_name: str) -> Definition:
         known = find_topic(topic, self._namespace)
         latched = known is not None and known.latched
-        if type_name not in self._schemas:
-            self._schemas[type_name] = self._mcap.register_schema(
-                type_name, 'ros2msg', definition(type_name).encode()
-            )
-        number = self._mcap.register_channel(
-            topic,
-            'cdr',
-            self._schemas[type_name],
-            {
-                'offered_qos_profiles': dump_profiles([project_profile(latched)]),
-                'topic_type_hash': type_hash(type_name),
-            },
-        )
-        self._channels[topic] = _Channel(number, type_name, latched)
-        return self._channels[topic]
+        try:
+            said = describe(type_name, dump_profiles([project_profile(latched)]))
+        except BagError as reason:
+            raise BagError(f'{self.path}: {topic} has {reason}') from None
+        self.declare(topic, said)
+        return said
 
-    def _write_metadata(self) -> None:
-        topics = {
-            topic: (channel.type, channel.latched, channel.count)
-            for topic, channel in self._channels.items()
-        }
-        text = dump_metadata(self._file_name, topics, self._span, self._custom_data)
+    def _next_file(self) -> McapOutput:
+        name = f'{self.path.resolve().name}_{len(self._finished)}.mcap'
+        try:
+            file = McapOutput(self.path / name, self._compression)
+            self._write_metadata([*self._finished, FileEntry(name, 0, None)])
+        except OSError as reason:
+            raise self._refused(reason) from reason
+        return file
+
+    def _entry(self) -> FileEntry:
+        return FileEntry(self._file.path.name, self._file.count, self._file.span)
+
+    def _write_metadata(self, files: Sequence[FileEntry]) -> None:
+        text = dump_metadata(
+            files,
+            [TopicEntry(topic, self._topics[topic], n) for topic, n in self.counts.items()],
+            self._custom_data,
+        )
         # Replaced in one step: whoever looks, or is left with it, has a whole file.
         draft = self.path / f'.{FILE_NAME}.new'
         draft.write_text(text, encoding='utf-8')
@@ -199,3 +235,23 @@ class BagWriter:
 
     def _refused(self, reason: OSError) -> BagError:
         return BagError(f'{self.path}: cannot be written ({reason.strerror})')
+
+
+def describe(type_name: str, qos: str) -> Definition:
+    """Say of a topic what a bag has to: the definition of its type, its hash, and offered QoS.
+
+    Raises
+    ------
+    BagError
+        If the type's definition is unknown.
+    """
+    if type_name not in STORE.types:
+        raise BagError(f'type {type_name}, whose definition is unknown')
+    return Definition(
+        type=type_name,
+        message_encoding='cdr',
+        schema_encoding='ros2msg',
+        text=definition(type_name).encode(),
+        qos=qos,
+        type_hash=type_hash(type_name),
+    )

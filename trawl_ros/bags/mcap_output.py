@@ -1,0 +1,86 @@
+"""One MCAP file as it is written: chunks with checksums, channels, and an index at its end."""
+
+from pathlib import Path
+from types import MappingProxyType
+
+from mcap.writer import CompressionType, Writer
+
+from trawl_ros.bags.mcap_file import Definition
+
+CHUNK_BYTES = 1 << 20
+COMPRESSIONS = MappingProxyType(
+    {'zstd': CompressionType.ZSTD, 'lz4': CompressionType.LZ4, 'none': CompressionType.NONE}
+)
+LIBRARY = 'trawl_ros'
+"""Stands in the file's header in place of a version, which would change the bytes."""
+
+
+class McapOutput:
+    """A new MCAP file; a reader finds its header there at once.
+
+    Parameters
+    ----------
+    path
+        Where nothing may be yet.
+    compression
+        One of `COMPRESSIONS`.
+
+    Attributes
+    ----------
+    count : int
+        Messages so far.
+    span : tuple of int, or None
+        First and last log time (ns) so far.
+    """
+
+    def __init__(self, path: Path, compression: str) -> None:
+        self.path = path
+        self.count = 0
+        self.span: tuple[int, int] | None = None
+        self._channels: dict[str, tuple[int, int]] = {}
+        self._schemas: dict[tuple[str, str, bytes], int] = {}
+        self._stream = path.open('xb')
+        self._mcap = Writer(
+            self._stream, chunk_size=CHUNK_BYTES, compression=COMPRESSIONS[compression]
+        )
+        self._mcap.start(profile='ros2', library=LIBRARY)
+        self.flush()
+
+    @property
+    def size(self) -> int:
+        """Bytes in the file, without the chunk in progress."""
+        return self._stream.tell()
+
+    def write(
+        self, topic: str, definition: Definition, data: bytes, log_time: int, publish_time: int
+    ) -> None:
+        """Add a message; the first of a topic brings its channel along."""
+        channel, sequence = self._channels.get(topic) or (self._register(topic, definition), 0)
+        self._mcap.add_message(channel, log_time, data, publish_time, sequence)
+        self._channels[topic] = (channel, sequence + 1)
+        self.count += 1
+        first, last = self.span or (log_time, log_time)
+        self.span = min(first, log_time), max(last, log_time)
+
+    def flush(self) -> None:
+        """End the chunk in progress and hand everything to the operating system."""
+        self._mcap.flush()
+
+    def finish(self) -> None:
+        """Write the index and close; a second call does nothing."""
+        if self._stream.closed:
+            return
+        self._mcap.finish()
+        self._stream.close()
+
+    def _register(self, topic: str, definition: Definition) -> int:
+        key = (definition.type, definition.schema_encoding, definition.text)
+        if key not in self._schemas:
+            self._schemas[key] = self._mcap.register_schema(*key)
+        said = {
+            'offered_qos_profiles': definition.qos,
+            'topic_type_hash': definition.type_hash,
+        }
+        return self._mcap.register_channel(
+            topic, definition.message_encoding, self._schemas[key], said
+        )
