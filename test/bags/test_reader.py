@@ -15,7 +15,7 @@ from rosbags.rosbag2 import Writer as RosbagsWriter
 from trawl_ros.bags.chunks import MAX_CHUNK_BYTES
 from trawl_ros.bags.reader import Bag, read_messages, summarise
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
+from trawl_ros.errors import BagError, MessageError
 from trawl_ros.instruments.samples import PressureSample
 from trawl_ros.messages.cdr import STORE, definition, serialize
 from trawl_ros.messages.from_messages import to_sample
@@ -364,6 +364,15 @@ def test_messages_that_are_not_of_their_type_are_left_out_and_counted(tmp_path):
     received, problems = read(write_mcap(tmp_path / 'x.mcap', pressure_channel(entries)))
     assert [message.log_time for message in received] == [0, 2]
     assert f'1 messages on {PRESSURE} are not a sensor_msgs/msg/FluidPressure' in problems[0]
+
+
+def test_single_messages_can_be_decoded_and_say_when_they_are_none(tmp_path):
+    entries = [(0, pressure_bytes(pressure=2e5)), (1, b'\x00\x01\x00\x00 short')]
+    bag = Bag(write_mcap(tmp_path / 'x.mcap', pressure_channel(entries)))
+    good, bad = bag.raw()
+    assert bag.decode(good).fluid_pressure == 2e5
+    with pytest.raises(MessageError, match=f'{PRESSURE}: 10 bytes are not a sensor_msgs'):
+        bag.decode(bad)
 
 
 def test_stamps_out_of_order_are_passed_on(tmp_path):

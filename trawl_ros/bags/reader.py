@@ -14,7 +14,7 @@ from rosbags.interfaces import Qos
 from trawl_ros.bags.decoding import Decoder, make_decoder
 from trawl_ros.bags.qos import parse_profiles
 from trawl_ros.bags.sources import Source, open_source
-from trawl_ros.errors import BagError
+from trawl_ros.errors import BagError, MessageError
 from trawl_ros.messages.cdr import DECODING_ERRORS
 from trawl_ros.messages.topics import NAMESPACE, find_topic
 
@@ -95,6 +95,7 @@ class Bag:
             topic: definition.type for topic, definition in self._source.definitions.items()
         }
         self.custom_data = self._source.custom_data
+        self._decoders_made: dict[str, Decoder] = {}
 
     def offered(self) -> dict[str, tuple[Qos, ...]]:
         """Give by full topic name the QoS that its publishers offered; empty where unknown.
@@ -153,6 +154,27 @@ class Bag:
                 f'{self.path}: {count} messages on {topic} are not a {self.topics[topic]} '
                 'and were left out'
             )
+
+    def decode(self, raw: RawMessage) -> Any:
+        """Decode a message that `raw` gave: who looks at few of many leaves the others.
+
+        Raises
+        ------
+        BagError
+            If the bag's definition of the type is not understood.
+        MessageError
+            If the bytes are not a message of the type.
+        """
+        if raw.topic not in self._decoders_made:
+            self._decoders_made[raw.topic] = make_decoder(
+                raw.topic, self._source.definitions[raw.topic]
+            )
+        try:
+            return self._decoders_made[raw.topic](raw.data)
+        except DECODING_ERRORS as reason:
+            raise MessageError(
+                f'{raw.topic}: {len(raw.data)} bytes are not a {raw.type} ({reason})'
+            ) from reason
 
     def summary(self) -> BagSummary:
         """Read through the whole bag and count what is there."""
