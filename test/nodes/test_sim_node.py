@@ -184,7 +184,7 @@ def test_a_change_at_run_time_has_effect(graph, simulation, crew):
         ('lead_s', 100.0, 'out of range'),
         ('lead_s', 100, 'expected a number from 1 to 8 (s)'),
         ('lead_s', 'long', 'expected a number from 1 to 8 (s)'),
-        ('warp_length_m', 400.0, 'read-only'),
+        ('warp_length_m', 400.0, 'read at the start; restart the node to change it'),
     ],
 )
 def test_a_change_that_cannot_be_is_refused_with_the_reason(

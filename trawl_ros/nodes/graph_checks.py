@@ -1,8 +1,10 @@
-"""What a node can tell from the graph: two clocks, two sources, other types than expected."""
+"""What a node can tell from the graph: two clocks or sources, other types or QoS than expected."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from rclpy.node import Node
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.topics import CLOCK, COMMANDS, find_topic
@@ -34,18 +36,55 @@ def clock_status(node: Node) -> Status:
     return Status('clock', OK, 'simulated time' if publishers else 'system time', values)
 
 
-def connection_problems(node: Node, subscribed: Mapping[str, str]) -> list[str]:
-    """Give a sentence for each subscribed topic (type by full name) that is not as expected."""
+@dataclass(frozen=True)
+class Listening:
+    """What a subscriber expects of a topic: its type, and the quality of service."""
+
+    type: str
+    profile: QoSProfile
+
+
+def connection_problems(
+    node: Node, subscribed: Mapping[str, Listening], offered: Mapping[str, QoSProfile]
+) -> list[str]:
+    """Give a sentence for each connection that is not as expected.
+
+    Parameters
+    ----------
+    node
+        Whose connections they are.
+    subscribed
+        What it listens to, by full topic name.
+    offered
+        With which quality of service it publishes, by full topic name.
+    """
     problems = []
     shared = {node.resolve_topic_name(name) for name in SHARED}
     for topic, expected in subscribed.items():
         infos = node.get_publishers_info_by_topic(topic)
         for info in infos:
-            if info.topic_type != expected:
+            if info.topic_type != expected.type:
                 problems.append(
-                    f'{topic} has type {info.topic_type} from {info.node_name}; expected {expected}'
+                    f'{topic} has type {info.topic_type} from {info.node_name}; expected '
+                    f'{expected.type}'
                 )
+            elif reason := _mismatch(info.qos_profile, expected.profile):
+                problems.append(f'{topic}: nothing arrives from {info.node_name}: {reason}')
         if len(infos) > 1 and topic not in shared and find_topic(topic, node.get_namespace()):
             names = ', '.join(sorted(info.node_name for info in infos))
             problems.append(f'{len(infos)} publishers on {topic} ({names}); expected one')
+    for topic, profile in offered.items():
+        for info in node.get_subscriptions_info_by_topic(topic):
+            if reason := _mismatch(profile, info.qos_profile):
+                problems.append(f'{topic}: nothing arrives at {info.node_name}: {reason}')
     return problems
+
+
+def _mismatch(offered: QoSProfile, asked: QoSProfile) -> str:
+    """Why nothing flows between publisher and subscriber; empty where it does."""
+    compatibility, reason = qos_check_compatible(offered, asked)
+    if compatibility != QoSCompatibility.ERROR:
+        return ''
+    return '; '.join(
+        part.removeprefix('ERROR:').strip() for part in reason.split(';') if 'ERROR' in part
+    ).lower()

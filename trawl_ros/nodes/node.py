@@ -1,23 +1,27 @@
 """What all nodes of the project have in common: bytes in and out, diagnostics, a clean end."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
+from std_srvs.srv import Trigger
 
 from trawl_ros.errors import MessageError, TrawlError
 from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.topics import NAMESPACE, find_topic
-from trawl_ros.nodes.graph_checks import clock_status, connection_problems
+from trawl_ros.nodes.graph_checks import Listening, clock_status, connection_problems
+from trawl_ros.nodes.headway import Headway
 from trawl_ros.nodes.message_classes import message_class
 from trawl_ros.nodes.parameters import Parameters, Spec
 from trawl_ros.nodes.qos import offered, overriding
@@ -43,6 +47,8 @@ class TrawlNode(Node):
         The node's declared parameters.
     traffic : Traffic
         What went in and out.
+    headway : Headway
+        How far the stamps of its data have come.
     exit_code : int or None
         Set by `end`; whoever spins the node then stops.
 
@@ -63,6 +69,7 @@ class TrawlNode(Node):
         kwargs.setdefault('namespace', NAMESPACE)
         super().__init__(name, **kwargs)
         self.traffic = Traffic()
+        self.headway = Headway()
         self.exit_code: int | None = None
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._senders: dict[str, Publisher] = {}
@@ -96,13 +103,15 @@ class TrawlNode(Node):
         """Give the time of the node's clock in ns."""
         return self.get_clock().now().nanoseconds
 
-    def advertise(self, topic: str, type_name: str | None = None) -> Publisher:
-        """Create the publisher of a topic; the table knows the type of the project's own."""
+    def advertise(
+        self, topic: str, type_name: str | None = None, profile: QoSProfile | None = None
+    ) -> Publisher:
+        """Create the publisher of a topic; the table knows type and QoS of the project's own."""
         if topic not in self._senders:
             self._senders[topic] = self.create_publisher(
                 message_class(self._type_of(topic, type_name)),
                 topic,
-                offered(find_topic(topic, self.get_namespace())),
+                profile or offered(find_topic(topic, self.get_namespace())),
                 qos_overriding_options=overriding(),
             )
             self.traffic.expect('published', self.full_name(topic))
@@ -163,9 +172,29 @@ class TrawlNode(Node):
             profile,
             qos_overriding_options=overriding(),
             raw=True,
+            event_callbacks=SubscriptionEventCallbacks(
+                message_lost=lambda event: self.traffic.lost(full, event.total_count)
+            ),
         )
         self._listeners[full] = (subscription, type_name)
         self.traffic.expect('received', full)
+
+    def offer(self, service: str, act: Callable[[], str]) -> None:
+        """Offer a Trigger service; a `TrawlError` of what it does is its refusal, with reason."""
+
+        def answer(request: Any, response: Any) -> Any:
+            try:
+                response.success, response.message = True, act()
+            except TrawlError as reason:
+                response.success, response.message = False, str(reason)
+            return response
+
+        self.create_service(Trigger, service, answer)
+
+    def stop_listening(self, topic: str) -> None:
+        """Give up a subscription; what was counted stays."""
+        subscription, _ = self._listeners.pop(self.full_name(topic))
+        self.destroy_subscription(subscription)
 
     def refuse(self, topic: str, reason: str) -> None:
         """Take note of a message that is not used, and say why when the reason is new."""
@@ -241,7 +270,9 @@ class TrawlNode(Node):
         return row.type
 
     def _diagnose(self) -> None:
-        statuses = [self._traffic_status(), clock_status(self), *self.statuses()]
+        clock = clock_status(self)
+        clock = replace(clock, values={**clock.values, **self.headway.report()})
+        statuses = [self._traffic_status(), clock, *self.statuses()]
         for status in statuses:
             self.say(status.name, status.level, status.message)
         prefix = self.get_fully_qualified_name()
@@ -254,17 +285,19 @@ class TrawlNode(Node):
         self._senders[DIAGNOSTICS].publish(serialize(diagnostic_array(self.now(), named)))
 
     def _traffic_status(self) -> Status:
-        problems: Sequence[str] = connection_problems(
-            self, {topic: kind for topic, (_, kind) in self._listeners.items()}
+        problems = connection_problems(
+            self,
+            {
+                topic: Listening(type_name, subscription.qos_profile)
+                for topic, (subscription, type_name) in self._listeners.items()
+            },
+            {sender.topic_name: sender.qos_profile for sender in self._senders.values()},
         )
-        refused = self.traffic.total('refused')
-        if refused:
+        if refused := self.traffic.total('refused'):
             last = next(reversed(self._refused.values()))
-            problems = [*problems, f'{refused} messages left out, the last because {last}']
-        values = {
-            'published': str(self.traffic.total('published')),
-            'received': str(self.traffic.total('received')),
-            **self.traffic.report(),
-        }
+            problems.append(f'{refused} messages left out, the last because {last}')
+        if dropped := self.traffic.dropped:
+            problems.append(f'{dropped} messages were lost on the way here')
+        values = self.traffic.report()
         message = '; '.join(problems) or 'messages are flowing as they should'
         return Status('messages', WARN if problems else OK, message, values)

@@ -17,6 +17,8 @@ from rclpy.parameter import Parameter
 
 from trawl_ros.errors import TrawlError
 
+FIXED = 'read at the start; restart the node to change it'
+
 
 class ParameterError(TrawlError):
     """A parameter of a node that is of the wrong kind or out of its range."""
@@ -197,6 +199,9 @@ class Parameters:
                 value = spec.checked(parameter.value)
             except ParameterError as reason:
                 return SetParametersResult(successful=False, reason=str(reason))
+            if not spec.live and value != self._values.get(spec.name):
+                fixed = f'{spec.name}: {FIXED}'
+                return SetParametersResult(successful=False, reason=fixed)
             if objection := self._objection(spec.name, value):
                 return SetParametersResult(successful=False, reason=objection)
         return SetParametersResult(successful=True)
@@ -210,5 +215,8 @@ class Parameters:
 
 
 def _descriptor(sentence: str, live: bool) -> ParameterDescriptor:
-    # Typed dynamically so that 2 is as good as 2.0; `checked` is stricter than ROS anyway.
-    return ParameterDescriptor(description=sentence, dynamic_typing=True, read_only=not live)
+    # Typed dynamically so that 2 is as good as 2.0; `checked` is stricter than ROS anyway. Not
+    # read_only: ROS would refuse a change before it can be said what to do instead.
+    return ParameterDescriptor(
+        description=sentence, dynamic_typing=True, additional_constraints='' if live else FIXED
+    )

@@ -7,17 +7,10 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
-from std_srvs.srv import Trigger
-
 from trawl_ros.errors import MessageError, TrawlError
 from trawl_ros.files import packaged
 from trawl_ros.gear.load import load_gear
-from trawl_ros.messages.commands import (
-    VESSEL_COMMAND,
-    WINCH_COMMAND,
-    read_vessel_command,
-    read_winch_command,
-)
+from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import SECOND
@@ -29,7 +22,8 @@ from trawl_ros.nodes.pacer import Pacer
 from trawl_ros.nodes.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.qos import STREAM
 from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import Consumers
+from trawl_ros.nodes.sync import SILENT_S, Consumers
+from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import CommandedTow, Tow
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
@@ -38,10 +32,6 @@ from trawl_ros.simulation.simulation import Command
 from trawl_ros.simulation.truth import Truth
 
 GEAR_MARKERS = 'truth/gear'
-LENGTHS = (1.0, 3000.0)
-SPEEDS = (0.5, 4.0)
-FASTEST_TURN = math.radians(3.0)
-
 BURST_S = 0.02
 """Wall time for which other callbacks may have to wait."""
 
@@ -55,7 +45,8 @@ class SimNode(TrawlNode):
     """Tows a gear from an equilibrium on, by a scenario or by commands.
 
     Truth and instruments are stamped with simulated time from 0 on when ``/clock`` is
-    published, else with the time of the node's clock.
+    published, else with the time of the node's clock. ``pause``, ``resume``, ``step`` (to the
+    next truth, while paused) and ``reset`` are services.
     """
 
     SPECS: ClassVar = (
@@ -83,20 +74,23 @@ class SimNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('sim_node', **kwargs)
         self._scenario = self._load_scenario()
-        self._clock_published = self.parameters['publish_clock'] or not self._in_real_time()
+        self._clock_published = (
+            self.parameters['publish_clock'] or self.parameters['time_scale'] != 1.0
+        )
         if self._clock_published:
             self.advertise(CLOCK.name)
         for topic in TRUTH:
             self.advertise(topic.name)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['time_scale'])
-        self._reported = (monotonic(), 0.0)
         self._tow, self._period = self._prepare()
         self._problem: str | None = None
+        self._paused = False
         self._begin()
         self.listen(WINCH_COMMAND, self._command_winches, STREAM)
         self.listen(VESSEL_COMMAND, self._command_vessel, STREAM)
-        self.create_service(Trigger, 'reset', self._reset)
+        for service in (self._reset, self._pause, self._resume, self._step):
+            self.offer(service.__name__.strip('_'), service)
         self._ticker = self.every(self._tick_s(), self._tick)
 
     def objection(self, name: str, value: Any) -> str | None:
@@ -116,14 +110,10 @@ class SimNode(TrawlNode):
 
     def statuses(self) -> list[Status]:
         """How the tow goes."""
-        now = monotonic()
-        factor = (self._tow.time_s - self._reported[1]) / max(now - self._reported[0], 1e-9)
-        self._reported = (now, self._tow.time_s)
         command = self._tow.simulation.command
         missing = self._consumers.missing()
         values = {
             'simulated time': f'{self._tow.time_s:.1f}',
-            'times real time': f'{factor:.2f}',
             'seconds lost': f'{self._pacer.lost_s:.1f}',
             'wanted port warp': f'{command.port_length:g}',
             'wanted starboard warp': f'{command.starboard_length:g}',
@@ -140,14 +130,15 @@ class SimNode(TrawlNode):
             return ERROR, self._problem
         if self._ended is not None:
             return OK, 'the scenario is at its end'
+        if missing and self._started:
+            return WARN, f'goes on without {", ".join(missing)}, silent for {SILENT_S:g} s'
         if missing:
             return WARN, f'waits for {", ".join(missing)}, which should report on sync/progress'
+        if self._paused:
+            return OK, 'paused'
         if self._pacer.lost_s > 0.0:
             return WARN, 'slower than the time scale asks for; expected a smaller one'
         return OK, 'towing' if self._started else 'waits until discovery has come to rest'
-
-    def _in_real_time(self) -> bool:
-        return bool(self.parameters['time_scale'] == 1.0)
 
     def _tick_s(self) -> float:
         scale = self.parameters['time_scale']
@@ -163,18 +154,12 @@ class SimNode(TrawlNode):
         if self._scenario is not None:
             return Trial(self._scenario), round(SECOND / self._scenario.record.truth_rate_hz)
         rate = self.parameters['truth_rate_hz']
-        every = MAX_TRUTH_HZ / rate
-        if abs(every - round(every)) > 1e-9 * every:
-            raise TrawlError(
-                f'parameter truth_rate_hz: found {rate:g}, expected {MAX_TRUTH_HZ:g} divided by a '
-                'whole number (Hz)'
-            )
         length, speed = self.parameters['warp_length_m'], self.parameters['speed_m_s']
         tow = CommandedTow(
             build_model(load_gear(self.parameters['gear'])),
             Command(length, length, speed),
             heading=math.radians(self.parameters['heading_deg']),
-            steps_per_truth=round(every),
+            truth_rate_hz=rate,
         )
         return tow, round(SECOND / rate)
 
@@ -185,14 +170,13 @@ class SimNode(TrawlNode):
         self._next_gear_s = 0.0
         self._started = False
         self._ended: float | None = None
-        self._reported = (monotonic(), self._tow.time_s)
         self._pacer.restart()
 
     def _tick(self) -> None:
         if self._ended is not None:
             self._end_if_done()
             return
-        if self._problem or not self._start():
+        if self._problem or not self._start() or self._paused:
             return
         end = monotonic() + BURST_S
         while self._ended is None and not self._problem and self._may_go_on():
@@ -207,17 +191,20 @@ class SimNode(TrawlNode):
             self._offset = 0 if self._clock_published else self.now()
             self._latest = self._offset
             self._consumers.begin(self._offset)
-            self._reported = (monotonic(), self._tow.time_s)
         return self._started
 
     def _may_go_on(self) -> bool:
-        slowest = self._consumers.slowest()
-        lead = round(self.parameters['lead_s'] * SECOND)
         # Asked in this order: time that consumers take is not lost by the simulation.
-        if slowest is not None and self._latest + self._period > slowest + lead:
+        if not self._followed():
             self._pacer.restart()
             return False
         return self._pacer.due(self._next_s)
+
+    def _followed(self) -> bool:
+        """Whether consumers are near enough for one truth more."""
+        slowest = self._consumers.slowest()
+        lead = round(self.parameters['lead_s'] * SECOND)
+        return slowest is None or self._latest + self._period <= slowest + lead
 
     def _go_on(self) -> None:
         try:
@@ -258,50 +245,61 @@ class SimNode(TrawlNode):
             return
         slowest = self._consumers.slowest()
         done = slowest is None or slowest >= self._latest
-        if done and self.all_acknowledged(1.0):
+        if done and (missing := self._consumers.missing()):
+            self.end(1, f'the scenario has come to its end without {", ".join(missing)}')
+        elif done and self.all_acknowledged(1.0):
             self.end(0, f'the scenario has come to its end at {self._tow.time_s:.1f} s')
         elif monotonic() - (self._ended or 0.0) > PATIENCE_S and not done:
             self.end(1, 'consumers did not follow to the end of the scenario')
 
     def _command_winches(self, message: Any) -> None:
-        wanted = read_winch_command(message)
-        low, high = LENGTHS
-        for length in wanted:
-            if length is not None and not low <= length <= high:
-                raise MessageError(
-                    f'{WINCH_COMMAND}: a warp length of {length:g} m; expected {low:g} to {high:g}'
-                )
+        wanted = wanted_lengths(message)
         self._commanded(WINCH_COMMAND).command_winches(*wanted)
 
     def _command_vessel(self, message: Any) -> None:
-        speed, turn = read_vessel_command(message)
-        low, high = SPEEDS
-        if not low <= speed <= high:
-            raise MessageError(
-                f'{VESSEL_COMMAND}: a speed of {speed:g} m/s; expected {low:g} to {high:g}'
-            )
-        if abs(turn) > FASTEST_TURN + 1e-12:
-            raise MessageError(
-                f'{VESSEL_COMMAND}: a rate of turn of {turn:g} rad/s; expected at most '
-                f'{FASTEST_TURN:.4f} to either side'
-            )
-        self._commanded(VESSEL_COMMAND).command_vessel(speed, turn)
+        wanted = wanted_motion(message)
+        self._commanded(VESSEL_COMMAND).command_vessel(*wanted)
 
     def _commanded(self, topic: str) -> CommandedTow:
         if isinstance(self._tow, CommandedTow):
             return self._tow
         raise MessageError(f'{topic}: the scenario is in command; expected no command beside it')
 
-    def _reset(self, request: Any, response: Any) -> Any:
-        try:
-            self._tow.reset()
-        except TrawlError as reason:
-            response.success, response.message = False, str(reason)
-            return response
+    def _reset(self) -> str:
+        self._tow.reset()
         self._problem = None
         self._begin()
-        response.success, response.message = True, 'the tow is at its start again'
-        return response
+        return 'the tow is at its start again'
+
+    def _pause(self) -> str:
+        self._paused = True
+        return f'the tow is paused at {self._tow.time_s:.1f} s'
+
+    def _resume(self) -> str:
+        self._paused = False
+        self._take_up_time()
+        return f'the tow goes on from {self._tow.time_s:.1f} s'
+
+    def _step(self) -> str:
+        if not self._paused:
+            raise TrawlError('the tow is not paused; expected a call of pause before')
+        if not self._started:
+            raise TrawlError(f'the tow has not begun: {self._state(self._consumers.missing())[1]}')
+        if self._ended is not None or self._problem:
+            raise TrawlError(f'no further step: {self._state([])[1]}')
+        if not self._followed():
+            raise TrawlError('consumers are still busy with the steps before; call again')
+        self._take_up_time()
+        self._go_on()
+        if self._problem:
+            raise TrawlError(self._problem)
+        return f'the tow is paused at {self._tow.time_s:.1f} s'
+
+    def _take_up_time(self) -> None:
+        """After a pause, stamps that are not simulated time are the present again."""
+        self._pacer.restart()
+        if self._offset is not None and not self._clock_published:
+            self._offset = self.now() - round(self._next_s * SECOND)
 
 
 def main(args: Sequence[str] | None = None) -> int:

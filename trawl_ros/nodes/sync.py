@@ -24,6 +24,9 @@ HEARTBEAT_S = 0.5
 SETTLED_S = 1.0
 """Discovery is taken to be over when nobody was added for this long."""
 
+NOTHING = 0
+"""What a consumer reports before it has dealt with anything."""
+
 SILENT_S = 10.0
 """A consumer not heard for this long has gone."""
 
@@ -42,8 +45,8 @@ class Progress:
     def __init__(self, node: TrawlNode, ready: Callable[[], bool] = lambda: True) -> None:
         self._node = node
         self._ready = ready
-        self._done = 0
-        self._reported = 0
+        self._done = NOTHING
+        self._reported = NOTHING
         node.advertise(SYNC, HEADER)
         node.every(HEARTBEAT_S, self._beat)
 
@@ -55,6 +58,7 @@ class Progress:
     def done(self, stamp: int) -> None:
         """All up to this stamp (ns) is dealt with; an earlier one than before starts anew."""
         self._done = stamp
+        self._node.headway.reached(stamp)
         if not 0 <= stamp - self._reported < INTERVAL_NS:
             self._report()
 
@@ -70,6 +74,11 @@ class Progress:
 
 class Consumers:
     """A source's side: who has to keep up, and how far they are.
+
+    Those it needs count from the beginning on. Others count once they have dealt with anything
+    of it: what was published before they were there will never reach them, so to wait for
+    them would be to wait for ever. The same holds for one that was started anew; and one that
+    is not heard for `SILENT_S` does not count, needed or not, until it is heard again.
 
     Parameters
     ----------
@@ -105,20 +114,18 @@ class Consumers:
 
     def begin(self, stamp: int) -> None:
         """Data time begins (anew) at a stamp (ns): what was reported so far is worth nothing."""
-        self._stamps.clear()
+        self._stamps = dict.fromkeys(self._names, stamp)
         self._span = (stamp, stamp)
 
     def sent(self, stamp: int) -> None:
         """Take note of the newest stamp that was published."""
         self._span = (self._span[0], stamp)
+        self._node.headway.reached(stamp)
 
     def slowest(self) -> int | None:
-        """Give the stamp (ns) that all have reached; None without any consumer.
-
-        Those that are needed count even when silent; the others only while they are heard.
-        """
-        names = {*self._names, *(name for name in self._heard if self._present(name))}
-        return min((self._stamps.get(name, self._span[0]) for name in names), default=None)
+        """Give the stamp (ns) that all have reached; None where nobody counts."""
+        counting = (stamp for name, stamp in self._stamps.items() if self._present(name))
+        return min(counting, default=None)
 
     def _present(self, name: str) -> bool:
         return time.monotonic() - self._heard.get(name, -math.inf) < SILENT_S
@@ -128,6 +135,9 @@ class Consumers:
         if name == self._node.get_name():
             return
         self._heard[name] = time.monotonic()
+        first, latest = self._span
         # Progress outside of what was published since the beginning is from before it.
-        if self._span[0] <= stamp <= self._span[1]:
+        if first < stamp <= latest:
             self._stamps[name] = stamp
+        elif stamp == NOTHING and self._stamps.get(name, first) > first:
+            del self._stamps[name]

@@ -38,20 +38,28 @@ class CommandedTow:
         The steady tow it starts from.
     heading
         First heading, ENU yaw, rad.
-    steps_per_truth
-        Time steps of 0.1 s from one truth to the next.
+    truth_rate_hz
+        How often truth is asked for: `MAX_TRUTH_HZ` divided by a whole number.
 
     Raises
     ------
+    ScenarioError
+        If the rate is another.
     NoSteadyState
         If the start is none.
     """
 
     def __init__(
-        self, model: GearModel, start: Command, *, heading: float, steps_per_truth: int = 1
+        self, model: GearModel, start: Command, *, heading: float, truth_rate_hz: float
     ) -> None:
+        every = MAX_TRUTH_HZ / truth_rate_hz
+        if abs(every - round(every)) > 1e-9 * every:
+            raise ScenarioError(
+                f'parameter truth_rate_hz: found {truth_rate_hz:g}, expected {MAX_TRUTH_HZ:g} '
+                'divided by a whole number (Hz)'
+            )
         self.simulation = Simulation(model, start, heading=heading, period=1.0 / MAX_TRUTH_HZ)
-        self._steps = steps_per_truth
+        self._steps = round(every)
         self._started = False
 
     @property

@@ -20,6 +20,7 @@ class Traffic:
 
     def __init__(self) -> None:
         self._counts: dict[tuple[str, str], _Count] = {}
+        self._lost: dict[str, int] = {}
 
     def expect(self, direction: str, topic: str) -> None:
         """Report a topic even before its first message."""
@@ -31,6 +32,10 @@ class Traffic:
         entry.total += 1
         entry.latest = time.monotonic()
 
+    def lost(self, topic: str, total: int) -> None:
+        """Take note of how many messages of a topic were lost on the way, all together."""
+        self._lost[topic] = total
+
     def counts(self, direction: str) -> dict[str, int]:
         """Give the number of messages by full topic name."""
         return {
@@ -41,10 +46,22 @@ class Traffic:
         """Give the number of messages of all topics."""
         return sum(entry.total for (way, _), entry in self._counts.items() if way == direction)
 
+    @property
+    def dropped(self) -> int:
+        """How many messages were lost on the way to this node."""
+        return sum(self._lost.values())
+
     def report(self) -> dict[str, str]:
         """Give key and value for diagnostics: counts, rates since the last report, ages."""
         now = time.monotonic()
-        values: dict[str, str] = {}
+        values = {
+            'published': str(self.total('published')),
+            'received': str(self.total('received')),
+            'refused': str(self.total('refused')),
+            'dropped': str(self.dropped),
+        }
+        for topic, total in self._lost.items():
+            values[f'dropped {topic}'] = str(total)
         for (direction, topic), entry in list(self._counts.items()):
             values[f'{direction} {topic}'] = str(entry.total)
             span = now - entry.reported_at

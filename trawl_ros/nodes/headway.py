@@ -1,0 +1,40 @@
+"""How far the stamps of a node's data have come, and how fast they go against wall time."""
+
+import time
+from collections.abc import Callable
+
+from trawl_ros.messages.stamps import SECOND
+
+
+class Headway:
+    """Follows the stamps that a node gives out, or has dealt with.
+
+    Parameters
+    ----------
+    clock
+        Gives wall time in s.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._latest: int | None = None
+        self._gone = 0
+        self._reported_at = clock()
+
+    def reached(self, stamp: int) -> None:
+        """Take note of a stamp (ns). An earlier one than before begins anew and counts nothing."""
+        if self._latest is not None:
+            self._gone += max(0, stamp - self._latest)
+        self._latest = stamp
+
+    def report(self) -> dict[str, str]:
+        """Give key and value for diagnostics, with the factor since the last report.
+
+        Nothing where no stamp was ever reached: such a node is not driven by stamps.
+        """
+        if self._latest is None:
+            return {}
+        now = self._clock()
+        factor = self._gone / SECOND / max(now - self._reported_at, 1e-9)
+        self._gone, self._reported_at = 0, now
+        return {'data time': f'{self._latest / SECOND:.1f}', 'real-time factor': f'{factor:.2f}'}
