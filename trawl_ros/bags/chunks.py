@@ -7,6 +7,7 @@ import io
 import struct
 import zlib
 from collections.abc import Iterator
+from typing import BinaryIO
 
 import lz4.frame
 import zstandard
@@ -77,6 +78,48 @@ def open_chunk(record: bytes) -> list[Record]:
         raise Damaged(str(reason) or 'its records are cut short') from reason
 
 
+def inflate(data: bytes) -> bytes:
+    """Unpack one message that rosbag2 compressed by itself (zstd).
+
+    Raises
+    ------
+    Damaged
+        If it is not zstd, or becomes larger than what is read.
+    """
+    try:
+        plain = _read_up_to(_unpacker(data), MAX_CHUNK_BYTES + 1)
+    except zstandard.ZstdError as reason:
+        raise Damaged(str(reason)) from reason
+    if len(plain) > MAX_CHUNK_BYTES:
+        raise Damaged(f'it becomes more than the {MAX_CHUNK_BYTES} bytes that are read')
+    return plain
+
+
+def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
+    """Unpack a file that rosbag2 compressed as a whole (zstd).
+
+    Raises
+    ------
+    Damaged
+        If it is not zstd, or becomes larger than ``limit`` bytes.
+    """
+    try:
+        reader = _unpacker(packed)
+        while part := reader.read(_STEP):
+            limit -= len(part)
+            if limit < 0:
+                raise Damaged('it becomes larger than the free space on the disk for it')
+            plain.write(part)
+    except zstandard.ZstdError as reason:
+        raise Damaged(str(reason)) from reason
+
+
+def _unpacker(data: bytes | BinaryIO) -> zstandard.ZstdDecompressionReader:
+    return zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES).stream_reader(
+        data, read_across_frames=True
+    )
+
+
 def _decompress(chunk: Chunk) -> bytes:
     size = chunk.uncompressed_size
     if size > MAX_CHUNK_BYTES:
@@ -86,10 +129,7 @@ def _decompress(chunk: Chunk) -> bytes:
             plain = chunk.data
         case 'zstd':
             # Step by step, since a frame may claim another size than the chunk does.
-            reader = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES).stream_reader(
-                chunk.data
-            )
-            plain = _read_up_to(reader, size + 1)
+            plain = _read_up_to(_unpacker(chunk.data), size + 1)
         case 'lz4':
             plain = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size + 1)
         case other:

@@ -1,4 +1,8 @@
-"""Decoders by the definitions that a bag carries: they, not ours, say how its bytes lie."""
+"""Decoders by the definitions that a bag carries: they, not ours, say how its bytes lie.
+
+A database of Foxy to Humble carries none. There the distribution is found by trying: a type that
+changed has another size, and a decoder takes nothing that is too short or too long.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -20,6 +24,9 @@ Decoder = Callable[[bytes], Any]
 
 _IDL_SEPARATOR = '=' * 80 + '\n'
 
+_WITHOUT_DEFINITIONS = (Stores.ROS2_HUMBLE, Stores.ROS2_GALACTIC, Stores.ROS2_FOXY)
+"""Distributions whose databases carry no definitions, newest first."""
+
 
 def make_decoder(topic: str, definition: Definition) -> Decoder:
     """Make what turns the bytes of a topic into messages.
@@ -29,16 +36,25 @@ def make_decoder(topic: str, definition: Definition) -> Decoder:
     BagError
         If the bag says neither in a way that can be understood, nor is the type known.
     """
+    store = find_store(topic, definition)
+    name = definition.type
+    if definition.text:
+        return lambda data: store.deserialize_cdr(data, name)
+    return _Trying(name, store)
+
+
+def find_store(topic: str, definition: Definition) -> Typestore:
+    """Give the types of a topic as its bag defines them, or as ROS 2 does where it does not.
+
+    Raises
+    ------
+    BagError
+        As `make_decoder`.
+    """
     if definition.message_encoding != 'cdr':
         raise BagError(
             f'{topic}: messages are encoded as {definition.message_encoding!r}; expected cdr'
         )
-    store = _store(topic, definition)
-    name = definition.type
-    return lambda data: store.deserialize_cdr(data, name)
-
-
-def _store(topic: str, definition: Definition) -> Typestore:
     name = definition.type
     if not definition.text and name in STORE.types:
         return STORE
@@ -54,6 +70,32 @@ def _store(topic: str, definition: Definition) -> Typestore:
             f'({type(reason).__name__}); expected ros2msg or ros2idl text'
         ) from reason
     return store
+
+
+class _Trying:
+    """Decodes by the first distribution whose definition fits, and stays with that."""
+
+    def __init__(self, name: str, store: Typestore) -> None:
+        self._name = name
+        self._stores = [store]
+        known = {store.hash_rihs01(name)}
+        for older in map(get_typestore, _WITHOUT_DEFINITIONS):
+            if name in older.types and older.hash_rihs01(name) not in known:
+                known.add(older.hash_rihs01(name))
+                self._stores.append(older)
+
+    def __call__(self, data: bytes) -> Any:
+        for store in tuple(self._stores):
+            try:
+                message = store.deserialize_cdr(data, self._name)
+            except DECODING_ERRORS:
+                if store is self._stores[-1]:
+                    raise
+            else:
+                self._stores.remove(store)
+                self._stores.insert(0, store)
+                return message
+        raise AssertionError('there is at least one store')
 
 
 def _parse(definition: Definition) -> Any:

@@ -25,10 +25,9 @@ from trawl_ros.bags.chunks import (
     open_chunk,
     parse_records,
 )
+from trawl_ros.bags.walk import RECORD_START, walk
 from trawl_ros.errors import BagError
 
-_FIRST_PRIVATE = 0x80
-_RECORD_START = struct.Struct('<BQ')
 _CHUNK_TIMES = struct.Struct('<QQ')
 _MESSAGE_TIME = struct.Struct('<HIQ')
 
@@ -77,11 +76,18 @@ class McapFile:
     report
         Takes a sentence for each thing that is wrong but can be lived with.
 
+    Attributes
+    ----------
+    indexed : bool
+        Whether messages are found by the index at its end, and not by going through the file.
+
     Raises
     ------
     BagError
         If there is no file, it is empty, or not MCAP.
     """
+
+    storage = 'mcap'
 
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         self.path = path
@@ -89,13 +95,22 @@ class McapFile:
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
         self._statistics: Statistics | None = None
+        self._damaged: set[int] = set()
         self.complete = False
         """Whether the file ends as a finished one does."""
+        self.chunk_compressions: set[str] = set()
+        """How chunks are compressed, as far as the index says it ('' for not at all)."""
         with self._open() as stream:
             self._size = stream.seek(0, 2)
             self._check_start(stream)
             indexed = self._by_index(stream)
+            self.indexed = indexed is not None
             self._pieces = sorted(self._by_scan(stream) if indexed is None else indexed)
+
+    @property
+    def damaged_chunks(self) -> int:
+        """How many chunks failed so far; complete once all messages were read."""
+        return len(self._damaged)
 
     @property
     def definitions(self) -> dict[str, Definition]:
@@ -207,6 +222,7 @@ class McapFile:
             elif isinstance(record, Statistics):
                 self._statistics = record
             elif isinstance(record, ChunkIndex):
+                self.chunk_compressions.add(record.compression)
                 pieces.append(
                     Piece(record.message_start_time, record.chunk_start_offset, record.chunk_length)
                 )
@@ -219,11 +235,11 @@ class McapFile:
         """Go through the file record by record, and open chunks for the channels in them."""
         pieces = []
         for opcode, offset, length in self._walk(stream):
-            stream.seek(offset + _RECORD_START.size)
-            if opcode == Opcode.CHUNK and length >= _RECORD_START.size + _CHUNK_TIMES.size:
+            stream.seek(offset + RECORD_START.size)
+            if opcode == Opcode.CHUNK and length >= RECORD_START.size + _CHUNK_TIMES.size:
                 start, _ = _CHUNK_TIMES.unpack(stream.read(_CHUNK_TIMES.size))
                 piece = Piece(start, offset, length)
-            elif opcode == Opcode.MESSAGE and length >= _RECORD_START.size + _MESSAGE_TIME.size:
+            elif opcode == Opcode.MESSAGE and length >= RECORD_START.size + _MESSAGE_TIME.size:
                 _, _, start = _MESSAGE_TIME.unpack(stream.read(_MESSAGE_TIME.size))
                 pieces.append(Piece(start, offset, length))
                 continue
@@ -241,25 +257,11 @@ class McapFile:
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Give opcode, offset and length of each record before the end of data."""
-        offset = len(MCAP0_MAGIC)
-        while offset + _RECORD_START.size <= self._size:
-            stream.seek(offset)
-            opcode, inner = _RECORD_START.unpack(stream.read(_RECORD_START.size))
-            length = _RECORD_START.size + inner
-            if opcode == Opcode.DATA_END:
-                if not self.complete:
-                    self._report(f'{self.path}: the index at the end is cut short; not needed')
-                return
-            known = 0 < opcode < Opcode.DATA_END or opcode >= _FIRST_PRIVATE
-            if not known or offset + length > self._size:
-                break
-            yield opcode, offset, length
-            offset += length
-        rest = self._size - offset
-        self._report(
-            f'{self.path}: cut short or damaged at byte {offset}; what stands before is used'
-            + (f', {rest} bytes behind are not' if rest > 0 else '')
-        )
+        for found in walk(stream, self._size, lambda said: self._report(f'{self.path}: {said}')):
+            if found[0] != Opcode.DATA_END:
+                yield found
+            elif not self.complete:
+                self._report(f'{self.path}: the index at the end is cut short; not needed')
 
     def _load(self, stream: BinaryIO, piece: Piece) -> list[Record] | None:
         """Read a piece; None, with a report, if it is damaged."""
@@ -270,14 +272,15 @@ class McapFile:
             data = stream.read(piece.length)
             if len(data) != piece.length:
                 raise Damaged('it goes beyond the end of the file')
-            opcode, inner = _RECORD_START.unpack(data[: _RECORD_START.size])
-            if inner + _RECORD_START.size != piece.length:
+            opcode, inner = RECORD_START.unpack(data[: RECORD_START.size])
+            if inner + RECORD_START.size != piece.length:
                 raise Damaged('its length is not what the index says')
             if opcode == Opcode.CHUNK:
                 records = open_chunk(data)
             else:
                 records = [r for r in (next(parse_records(data)),) if isinstance(r, Record)]
         except DAMAGE as reason:
+            self._damaged.add(piece.offset)
             self._report(
                 f'{self.path}: the chunk at byte {piece.offset} is damaged ({reason}) '
                 'and was stepped over'

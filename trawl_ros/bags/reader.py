@@ -12,10 +12,12 @@ from typing import Any
 from rosbags.interfaces import Qos
 
 from trawl_ros.bags.decoding import Decoder, make_decoder
+from trawl_ros.bags.mcap_file import Definition
 from trawl_ros.bags.qos import parse_profiles
-from trawl_ros.bags.sources import Source, open_source
+from trawl_ros.bags.sources import BagFacts, open_source
 from trawl_ros.errors import BagError, MessageError
 from trawl_ros.messages.cdr import DECODING_ERRORS
+from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 
@@ -42,11 +44,20 @@ class Received:
 
 @dataclass(frozen=True)
 class TopicSummary:
-    """How many messages of which type a topic has."""
+    """How many messages of which type a topic has, of how many bytes, from when to when (ns)."""
 
     topic: str
     type: str
     count: int
+    bytes: int
+    start: int
+    end: int
+
+    @property
+    def rate(self) -> float | None:
+        """Mean rate in Hz; None where one cannot be told."""
+        span = self.end - self.start
+        return (self.count - 1) * SECOND / span if span > 0 else None
 
 
 @dataclass(frozen=True)
@@ -58,6 +69,7 @@ class BagSummary:
     count: int
     start: int | None
     end: int | None
+    facts: BagFacts
     problems: tuple[str, ...]
 
 
@@ -70,6 +82,8 @@ class Bag:
         A bag's folder, or one MCAP file.
     namespace
         Where the project's topics live in this bag.
+    lenient
+        Whether a bag is looked into whose metadata and content disagree, to say how.
 
     Attributes
     ----------
@@ -83,19 +97,38 @@ class Bag:
     Raises
     ------
     BagError
-        If there is no bag, or its metadata and its content disagree.
+        If there is no bag, or, unless ``lenient``, its metadata and its content disagree.
     """
 
-    def __init__(self, path: str | Path, *, namespace: str = NAMESPACE) -> None:
+    def __init__(
+        self, path: str | Path, *, namespace: str = NAMESPACE, lenient: bool = False
+    ) -> None:
         self.path = Path(path)
         self.problems: list[str] = []
         self._namespace = namespace
-        self._source: Source = open_source(self.path, self._report)
-        self.topics = {
-            topic: definition.type for topic, definition in self._source.definitions.items()
-        }
+        self._source = open_source(self.path, self._report, lenient=lenient)
+        self.topics = {topic: definition.type for topic, definition in self.definitions().items()}
         self.custom_data = self._source.custom_data
         self._decoders_made: dict[str, Decoder] = {}
+
+    @property
+    def facts(self) -> BagFacts:
+        """What the bag is: storage, version, compression, sizes."""
+        return self._source.facts
+
+    @property
+    def damaged_chunks(self) -> int:
+        """Chunks that failed their checksum or make no sense; complete once all was read."""
+        return sum(file.damaged_chunks for file in self._source.files)
+
+    @property
+    def files_without_index(self) -> list[Path]:
+        """Files in which messages are found only by going through them."""
+        return [file.path for file in self._source.files if not file.indexed]
+
+    def definitions(self) -> dict[str, Definition]:
+        """Give by full topic name what the bag says of its messages."""
+        return self._source.definitions
 
     def offered(self) -> dict[str, tuple[Qos, ...]]:
         """Give by full topic name the QoS that its publishers offered; empty where unknown.
@@ -103,7 +136,7 @@ class Bag:
         Profiles that cannot be understood are said in `problems` and count as unknown.
         """
         found: dict[str, tuple[Qos, ...]] = {}
-        for topic, definition in self._source.definitions.items():
+        for topic, definition in self.definitions().items():
             try:
                 found[topic] = parse_profiles(topic, definition.qos)
             except BagError as reason:
@@ -122,13 +155,16 @@ class Bag:
         """
         self._check_types(topics)
         read = 0
-        for topic, type_name, message in self._source.messages():
+        for message in self.as_stored():
             read += 1
-            if topics is None or topic in topics:
-                yield RawMessage(
-                    topic, type_name, message.log_time, message.publish_time, message.data
-                )
+            if topics is None or message.topic in topics:
+                yield message
         self._check_count(read)
+
+    def as_stored(self) -> Iterator[RawMessage]:
+        """Give all messages undecoded and unchecked, whatever their types; there may be none."""
+        for topic, type_name, message in self._source.messages():
+            yield RawMessage(topic, type_name, message.log_time, message.publish_time, message.data)
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Received]:
         """Give decoded messages, of all topics or of those named in full.
@@ -178,27 +214,32 @@ class Bag:
 
     def summary(self) -> BagSummary:
         """Read through the whole bag and count what is there."""
-        counts: Counter[tuple[str, str]] = Counter()
-        start = end = None
-        for topic, type_name, message in self._source.messages():
-            counts[topic, type_name] += 1
-            time = message.log_time
-            start = time if start is None else min(start, time)
-            end = time if end is None else max(end, time)
-        if not counts:
+        found: dict[tuple[str, str], TopicSummary] = {}
+        for message in self.as_stored():
+            key, time, size = (message.topic, message.type), message.log_time, len(message.data)
+            past = found.get(key) or TopicSummary(*key, 0, 0, time, time)
+            found[key] = TopicSummary(
+                *key,
+                past.count + 1,
+                past.bytes + size,
+                min(past.start, time),
+                max(past.end, time),
+            )
+        if not found:
             self._report(f'{self.path}: holds no message')
         return BagSummary(
             path=self.path,
-            topics=tuple(TopicSummary(*key, counts[key]) for key in sorted(counts)),
-            count=counts.total(),
-            start=start,
-            end=end,
+            topics=tuple(found[key] for key in sorted(found)),
+            count=sum(topic.count for topic in found.values()),
+            start=min((topic.start for topic in found.values()), default=None),
+            end=max((topic.end for topic in found.values()), default=None),
+            facts=self.facts,
             problems=tuple(self.problems),
         )
 
     def _decoders(self, topics: Collection[str] | None) -> dict[str, Decoder]:
         decoders = {}
-        for topic, definition in self._source.definitions.items():
+        for topic, definition in self.definitions().items():
             if topics is not None and topic not in topics:
                 continue
             try:
@@ -260,6 +301,6 @@ def read_messages(
         problems.extend(bag.problems)
 
 
-def summarise(path: str | Path) -> BagSummary:
+def summarise(path: str | Path, *, lenient: bool = False) -> BagSummary:
     """Count what is in a bag; see `Bag.summary`."""
-    return Bag(path).summary()
+    return Bag(path, lenient=lenient).summary()

@@ -1,96 +1,143 @@
-"""Where a bag's messages come from: one or several MCAP files, or a database of older bags."""
+"""Where a bag's messages come from: its files, whatever their storage, and its metadata."""
 
 import heapq
+import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Protocol
 
 from mcap.records import Message
-from rosbags.interfaces import ConnectionExtRosbag2, MessageDefinitionFormat
-from rosbags.rosbag2 import Reader, ReaderError
 
-from trawl_ros.bags.mcap_file import Definition, McapFile
+from trawl_ros.bags.chunks import Damaged, inflate, inflate_file
+from trawl_ros.bags.database import Database
+from trawl_ros.bags.mcap_file import Definition, McapFile, Stored
 from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata
-from trawl_ros.bags.qos import dump_profiles
 from trawl_ros.errors import BagError
 
 Report = Callable[[str], None]
 Found = tuple[str, str, Message]
 """Topic, type and message."""
 
+SUFFIXES = ('.mcap', '.db3')
+SPARE_BYTES = 1 << 30
+"""What is left free on the disk when a compressed file is unpacked."""
 
-class Source(Protocol):
-    """What `Bag` reads from, whatever the storage."""
+
+class StorageFile(Protocol):
+    """One file of a bag, whatever the storage."""
+
+    path: Path
+    chunk_compressions: set[str]
+    storage: str
+
+    @property
+    def indexed(self) -> bool:
+        """Whether messages can be found without going through the file."""
+
+    @property
+    def damaged_chunks(self) -> int:
+        """How many chunks failed so far."""
 
     @property
     def definitions(self) -> dict[str, Definition]:
         """What is known of each topic's messages."""
 
-    @property
-    def stated_count(self) -> int | None:
-        """Number of messages the bag claims to have; None if it does not say."""
-
-    @property
-    def custom_data(self) -> dict[str, str]:
-        """Text by key from the metadata."""
-
     def types(self) -> set[tuple[str, str]]:
         """Give all (topic, type) there are."""
 
-    def messages(self) -> Iterator[Found]:
+    def counts(self) -> dict[tuple[str, str], int] | None:
+        """Give the number of messages by (topic, type); None if the file does not say."""
+
+    def messages(self) -> Iterator[Stored]:
         """Give all messages in the order of their log times."""
 
 
-def open_source(path: Path, report: Report) -> Source:
-    """Find out what kind of bag lies at a path, and open it.
+@dataclass(frozen=True)
+class BagFacts:
+    """What a bag is, beside its messages.
 
-    Raises
-    ------
-    BagError
-        If there is none, a file of it is missing, or metadata and content disagree.
+    ``version`` (of the metadata) is None and ``distro`` '' where the bag does not say;
+    ``compression`` is '' for none; ``sizes`` gives bytes by file name.
     """
-    if not path.exists():
-        raise BagError(f'{path}: no such bag')
-    if path.is_file():
-        if path.suffix == '.db3':
-            return _Database(path, None)
-        return _McapFiles([McapFile(path, report)], None)
-    if not (path / FILE_NAME).is_file():
-        files = sorted(path.glob('*.mcap'))
-        if not files:
-            raise BagError(f'{path}: neither {FILE_NAME} nor an .mcap file; expected a bag')
-        report(f'{path}: no {FILE_NAME}; every .mcap file in the folder is read')
-        return _McapFiles([McapFile(file, report) for file in files], None)
-    metadata = load_metadata(path / FILE_NAME)
-    if metadata.storage_identifier == 'sqlite3' or metadata.compression_mode not in ('', 'none'):
-        return _Database(path, metadata)
-    if metadata.storage_identifier != 'mcap':
-        raise BagError(
-            f'{path / FILE_NAME}: storage {metadata.storage_identifier!r}; expected mcap'
-        )
-    # Bags before version 4 name their files with the folder, later ones without.
-    files = [path / Path(name).name for name in metadata.relative_file_paths]
-    for file in files:
-        if not file.is_file():
-            raise BagError(f'{path}: {FILE_NAME} names {file.name}, which is not there')
-    if not files:
-        raise BagError(f'{path / FILE_NAME}: names no file; expected at least one')
-    source = _McapFiles([McapFile(file, report) for file in files], metadata)
-    source.compare(path)
-    return source
+
+    storage: str
+    version: int | None
+    distro: str
+    compression: str
+    sizes: dict[str, int]
 
 
-class _McapFiles:
-    def __init__(self, files: list[McapFile], metadata: BagMetadata | None) -> None:
-        self._files = files
-        self._metadata = metadata
+class Unpacked:
+    """Files that rosbag2 compressed as a whole, unpacked into a folder that goes with this."""
+
+    def __init__(self, packed: list[Path]) -> None:
+        self.packed = packed
+        self._folder = TemporaryDirectory()
+        self.plain = [self._unpack(path, Path(self._folder.name)) for path in packed]
+
+    @staticmethod
+    def _unpack(path: Path, folder: Path) -> Path:
+        plain = folder / path.stem
+        try:
+            with path.open('rb') as source, plain.open('xb') as target:
+                inflate_file(source, target, shutil.disk_usage(folder).free - SPARE_BYTES)
+        except Damaged as reason:
+            raise BagError(f'{path}: cannot be unpacked ({reason})') from reason
+        except OSError as reason:
+            raise BagError(f'{path}: cannot be unpacked ({reason.strerror})') from reason
+        return plain
+
+
+class Source:
+    """The files of a bag as one stream, beside what ``metadata.yaml`` says of them.
+
+    Attributes
+    ----------
+    custom_data : dict
+        Text by key from the metadata.
+    """
+
+    def __init__(
+        self,
+        files: list[StorageFile],
+        metadata: BagMetadata | None,
+        report: Report,
+        unpacked: Unpacked | None = None,
+    ) -> None:
+        self.files = files
         self.custom_data = dict((metadata and metadata.custom_data) or {})
+        self._metadata = metadata
+        self._report = report
+        self._packed = _mode(metadata) == 'message'
+        # Goes, with the files in it, when the source does.
+        self._unpacked = unpacked
+
+    @property
+    def facts(self) -> BagFacts:
+        """What the bag is."""
+        metadata = self._metadata
+        chunks = set[str]().union(*(file.chunk_compressions for file in self.files))
+        mode = _mode(metadata)
+        packed = f'{metadata.compression_format} per {mode}' if metadata and mode else ''
+        return BagFacts(
+            storage=' and '.join(sorted({file.storage for file in self.files})),
+            version=metadata.version if metadata else None,
+            distro=metadata.ros_distro if metadata else '',
+            compression=packed or ', '.join(f'{name} per chunk' for name in sorted(chunks - {''})),
+            sizes={path.name: path.stat().st_size for path in self._paths},
+        )
+
+    @property
+    def _paths(self) -> list[Path]:
+        return self._unpacked.packed if self._unpacked else [file.path for file in self.files]
 
     @property
     def definitions(self) -> dict[str, Definition]:
+        """What is known of each topic's messages."""
         found: dict[str, Definition] = {}
-        for file in self._files:
+        for file in self.files:
             for topic, definition in file.definitions.items():
                 found.setdefault(topic, definition)
         stated = self._metadata.offered() if self._metadata else {}
@@ -101,37 +148,48 @@ class _McapFiles:
 
     @property
     def stated_count(self) -> int | None:
+        """Number of messages the bag claims to have; None if it does not say."""
         counts = self._counts()
         if counts is not None:
             return sum(counts.values())
         return self._metadata.message_count if self._metadata else None
 
     def types(self) -> set[tuple[str, str]]:
-        return set().union(*(file.types() for file in self._files))
+        """Give all (topic, type) there are."""
+        return set[tuple[str, str]]().union(*(file.types() for file in self.files))
 
     def messages(self) -> Iterator[Found]:
-        streams = (file.messages() for file in self._files)
+        """Give all messages in the order of their log times."""
+        streams = (file.messages() for file in self.files)
+        lost = 0
         for stored in heapq.merge(*streams, key=lambda stored: stored.message.log_time):
-            yield stored.topic, stored.type, stored.message
+            message = stored.message
+            if self._packed:
+                try:
+                    message = replace(message, data=inflate(message.data))
+                except Damaged:
+                    lost += 1
+                    continue
+            yield stored.topic, stored.type, message
+        if lost:
+            self._report(f'{self.files[0].path}: {lost} compressed messages are damaged')
 
-    def compare(self, path: Path) -> None:
-        """Refuse a bag whose metadata and content disagree; a file cut short says nothing."""
+    def disagreements(self) -> list[str]:
+        """Say where the metadata and the content disagree; a file cut short says nothing."""
         counts = self._counts()
         if counts is None or self._metadata is None:
-            return
+            return []
         stated = self._metadata.counts()
-        for key in sorted(stated.keys() | counts.keys()):
-            if stated.get(key, 0) != counts.get(key, 0):
-                topic, type_name = key
-                raise BagError(
-                    f'{path}: {FILE_NAME} states {stated.get(key, 0)} messages of {type_name} on '
-                    f'{topic}, the data has {counts.get(key, 0)}; '
-                    'expected the same (the .mcap file can be opened alone)'
-                )
+        return [
+            f'{FILE_NAME} states {stated.get(key, 0)} messages of {key[1]} on {key[0]}, '
+            f'the data has {counts.get(key, 0)}'
+            for key in sorted(stated.keys() | counts.keys())
+            if stated.get(key, 0) != counts.get(key, 0)
+        ]
 
     def _counts(self) -> dict[tuple[str, str], int] | None:
         total: dict[tuple[str, str], int] = {}
-        for file in self._files:
+        for file in self.files:
             counts = file.counts()
             if counts is None:
                 return None
@@ -140,48 +198,97 @@ class _McapFiles:
         return total
 
 
-class _Database:
-    """Bags in SQLite, and compressed ones, by way of ``rosbags``."""
+def open_source(path: Path, report: Report, *, lenient: bool = False) -> Source:
+    """Find out what kind of bag lies at a path, and open it.
 
-    def __init__(self, path: Path, metadata: BagMetadata | None) -> None:
-        self._path = path
-        self.custom_data = dict((metadata and metadata.custom_data) or {})
-        try:
-            with Reader(path) as reader:
-                self._connections = list(reader.connections)
-                self.stated_count: int | None = reader.message_count
-        except (ReaderError, OSError) as reason:
-            raise BagError(f'{path}: cannot be read ({reason})') from reason
+    Parameters
+    ----------
+    path
+        A bag's folder, or one file of it.
+    report
+        Takes a sentence for each thing that is wrong but can be lived with.
+    lenient
+        Whether to live with more: metadata that are missing in part, unreadable or disagree
+        with the content, and files that are not there.
 
-    @property
-    def definitions(self) -> dict[str, Definition]:
-        encodings = {
-            MessageDefinitionFormat.MSG: 'ros2msg',
-            MessageDefinitionFormat.IDL: 'ros2idl',
-            MessageDefinitionFormat.NONE: '',
-        }
-        return {
-            connection.topic: Definition(
-                connection.msgtype,
-                'cdr',
-                encodings[connection.msgdef.format],
-                connection.msgdef.data.encode(),
-                dump_profiles(connection.ext.offered_qos_profiles)
-                if isinstance(connection.ext, ConnectionExtRosbag2)
-                else '',
-                connection.digest,
+    Raises
+    ------
+    BagError
+        If there is none, or, unless ``lenient``, a file of it is missing or metadata and
+        content disagree.
+    """
+    if not path.exists():
+        raise BagError(f'{path}: no such bag')
+    if path.is_file():
+        return Source([_open_file(path, report)], None, report)
+    metadata = _metadata(path, report, lenient)
+    if metadata is None:
+        files = sorted(file for suffix in SUFFIXES for file in path.glob(f'*{suffix}'))
+        if not files:
+            raise BagError(f'{path}: neither {FILE_NAME} nor an .mcap file; expected a bag')
+        return Source([_open_file(file, report) for file in files], None, report)
+    return _by_metadata(path, metadata, report, lenient)
+
+
+def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: bool) -> Source:
+    _check_kind(path, metadata)
+    # Bags before version 4 name their files with the folder, later ones without.
+    files = [path / Path(name).name for name in metadata.relative_file_paths]
+    if not files:
+        raise BagError(f'{path / FILE_NAME}: names no file; expected at least one')
+    for file in [file for file in files if not file.is_file()]:
+        sentence = f'{path}: {FILE_NAME} names {file.name}, which is not there'
+        if not lenient or files == [file]:
+            raise BagError(sentence)
+        report(sentence)
+        files.remove(file)
+    unpacked = Unpacked(files) if _mode(metadata) == 'file' else None
+    if unpacked:
+        files = unpacked.plain
+    source = Source([_open_file(file, report) for file in files], metadata, report, unpacked)
+    for disagreement in source.disagreements():
+        if not lenient:
+            raise BagError(
+                f'{path}: {disagreement}; expected the same (the data file can be opened alone)'
             )
-            for connection in self._connections
-        }
+        report(f'{path}: {disagreement}')
+    return source
 
-    def types(self) -> set[tuple[str, str]]:
-        return {(connection.topic, connection.msgtype) for connection in self._connections}
 
-    def messages(self) -> Iterator[Found]:
-        try:
-            with Reader(self._path) as reader:
-                for connection, stamp, data in reader.messages():
-                    message = Message(connection.id, stamp, bytes(data), stamp, 0)
-                    yield connection.topic, connection.msgtype, message
-        except (ReaderError, OSError) as reason:
-            raise BagError(f'{self._path}: cannot be read ({reason})') from reason
+def _metadata(path: Path, report: Report, lenient: bool) -> BagMetadata | None:
+    if not (path / FILE_NAME).is_file():
+        if any(file.suffix in SUFFIXES for file in path.iterdir()):
+            report(f'{path}: no {FILE_NAME}; every data file in the folder is read')
+        return None
+    try:
+        return load_metadata(path / FILE_NAME)
+    except BagError as reason:
+        if not lenient:
+            raise
+        report(f'{reason}; every data file in the folder is read')
+        return None
+
+
+def _check_kind(path: Path, metadata: BagMetadata) -> None:
+    where = path / FILE_NAME
+    if metadata.storage_identifier not in ('mcap', 'sqlite3'):
+        raise BagError(
+            f'{where}: storage {metadata.storage_identifier!r}; expected mcap or sqlite3'
+        )
+    mode = _mode(metadata)
+    if mode not in ('', 'file', 'message'):
+        raise BagError(f'{where}: compression_mode {mode!r}; expected file, message or none')
+    if mode and metadata.compression_format != 'zstd':
+        raise BagError(
+            f'{where}: compression_format {metadata.compression_format!r}; expected zstd'
+        )
+
+
+def _mode(metadata: BagMetadata | None) -> str:
+    """How rosbag2 itself compressed the bag; '' if it did not."""
+    mode = metadata.compression_mode.lower() if metadata else ''
+    return '' if mode == 'none' else mode
+
+
+def _open_file(path: Path, report: Report) -> StorageFile:
+    return Database(path, report) if path.suffix == '.db3' else McapFile(path, report)
