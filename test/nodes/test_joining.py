@@ -39,3 +39,12 @@ def test_a_topic_that_never_comes_does_not_fill_the_memory(joiner):
     for stamp in range(3 * LONGEST_WAIT):
         joiner.add('left', stamp, None)
     assert joiner.incomplete == 2 * LONGEST_WAIT
+
+
+def test_who_begins_to_listen_while_time_is_set_back_joins_the_new_run(joiner):
+    # The end of the run before was heard on one side only.
+    joiner.add('left', 50, 'old')
+    assert joiner.add('left', 1, 'l1') is None
+    assert joiner.add('right', 1, 'r1') == {'left': 'l1', 'right': 'r1'}
+    assert joiner.add('right', 2, 'r2') is None
+    assert joiner.add('left', 2, 'l2') == {'left': 'l2', 'right': 'r2'}

@@ -1,0 +1,116 @@
+"""A source waits for its consumers, but never for one that can no longer come to where it is."""
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.messages.stamps import SECOND, header  # noqa: E402
+from trawl_ros.nodes import sync  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.sync import HEADER, SYNC, Consumers  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 100
+WALL_CLOCK = 1_700_000_000 * SECOND
+"""Stamps of a source that does not publish a clock."""
+
+
+class Source(TrawlNode):
+    """Has come to 60 s after its beginning, and needs `needed`."""
+
+    def __init__(self, **kwargs):
+        super().__init__('source', **kwargs)
+        self.consumers = Consumers(self, ['needed'])
+
+
+class Reporter(TrawlNode):
+    """Reports for any consumer, so that one node plays all."""
+
+    def __init__(self, **kwargs):
+        super().__init__('reporter', **kwargs)
+        self.advertise(SYNC, HEADER)
+
+    def report(self, name, stamp):
+        self.send(SYNC, header(stamp, name))
+
+
+@pytest.fixture(scope='module')
+def graph(open_graph):
+    with open_graph(DOMAIN) as graph:
+        yield graph
+
+
+@pytest.fixture(scope='module')
+def nodes(graph):
+    source, reporter = graph.add(Source), graph.add(Reporter)
+    graph.until(lambda: reporter._senders[SYNC].get_subscription_count() == 1)
+    return source, reporter
+
+
+@pytest.fixture(params=[0, WALL_CLOCK], ids=['simulated time', 'time of the wall'])
+def begin(request):
+    return request.param
+
+
+@pytest.fixture
+def source(nodes, begin):
+    source, _ = nodes
+    source.consumers._heard.clear()
+    source.consumers.begin(begin)
+    source.consumers.sent(begin + 60 * SECOND)
+    return source
+
+
+@pytest.fixture
+def report(graph, nodes, source):
+    """Report for a consumer and wait until the source has heard it."""
+    _, reporter = nodes
+
+    def say(name, stamp):
+        before = source.traffic.total('received')
+        reporter.report(name, stamp)
+        graph.until(lambda: source.traffic.total('received') > before, 5.0)
+
+    return say
+
+
+def test_the_needed_count_from_the_beginning(source, report, begin):
+    report('needed', 0)
+    assert source.consumers.slowest() == begin
+    report('needed', begin + 58 * SECOND)
+    assert source.consumers.slowest() == begin + 58 * SECOND
+
+
+def test_who_joins_late_is_waited_for_once_something_has_reached_it(source, report, begin):
+    report('needed', begin + 59 * SECOND)
+    report('late', 0)
+    assert source.consumers.slowest() == begin + 59 * SECOND
+    report('late', begin + 57 * SECOND)
+    assert source.consumers.slowest() == begin + 57 * SECOND
+
+
+def test_who_was_started_anew_is_not_waited_for_where_it_left_off(source, report, begin):
+    report('needed', begin + 50 * SECOND)
+    report('needed', 0)
+    assert source.consumers.slowest() is None
+    assert not source.consumers.missing()
+    report('needed', begin + 60 * SECOND)
+    assert source.consumers.slowest() == begin + 60 * SECOND
+
+
+def test_who_is_silent_for_long_is_missing_and_not_waited_for(graph, source, report, begin,
+                                                              monkeypatch):  # fmt: skip
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.slowest() == begin + 50 * SECOND
+    monkeypatch.setattr(sync, 'SILENT_S', 0.2)
+    graph.until(lambda: source.consumers.missing() == ['needed'], 2.0)
+    assert source.consumers.slowest() is None
+    monkeypatch.undo()
+    report('needed', begin + 51 * SECOND)
+    assert source.consumers.slowest() == begin + 51 * SECOND
+
+
+def test_progress_from_before_the_beginning_is_worth_nothing(source, report, begin):
+    report('needed', begin + 61 * SECOND)
+    assert source.consumers.slowest() == begin
