@@ -79,7 +79,13 @@ def parse_profiles(topic: str, offered: Any) -> tuple[Qos, ...]:
     try:
         if isinstance(offered, str) and len(offered) > MAX_TEXT:
             raise ValueError(f'{len(offered)} characters')
-        return tuple(parse_qos(offered))
+        profiles = tuple(parse_qos(offered))
+        for profile in profiles:
+            times = (profile.deadline, profile.lifespan, profile.liveliness_lease_duration)
+            for number in (profile.depth, *(part for time in times for part in time)):
+                if not isinstance(number, int) or number < 0:
+                    raise ValueError(f'{number!r} where a number from 0 on belongs')
+        return profiles
     except (ReaderError, KeyError, TypeError, ValueError, AttributeError, RecursionError) as reason:
         raise BagError(
             f'{topic}: offered_qos_profiles cannot be understood ({type(reason).__name__}: '

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -111,7 +112,8 @@ class TrawlNode(Node):
             self._senders[topic] = self.create_publisher(
                 message_class(self._type_of(topic, type_name)),
                 topic,
-                profile or offered(find_topic(topic, self.get_namespace())),
+                # ROS writes overrides into the profile itself, which others are made of too.
+                copy(profile or offered(find_topic(topic, self.get_namespace()))),
                 qos_overriding_options=overriding(),
             )
             self.traffic.expect('published', self.full_name(topic))
@@ -155,9 +157,15 @@ class TrawlNode(Node):
         self.listen_raw(topic, kind, take, profile)
 
     def listen_raw(
-        self, topic: str, type_name: str, handler: Callable[[bytes], None], profile: QoSProfile
+        self,
+        topic: str,
+        type_name: str,
+        handler: Callable[[bytes], None],
+        profile: QoSProfile,
+        *,
+        overridable: bool = True,
     ) -> None:
-        """Subscribe to the bytes of a topic."""
+        """Subscribe to the bytes of a topic; ``overridable`` lets users override the profile."""
         full = self.full_name(topic)
 
         def take(data: bytes) -> None:
@@ -169,8 +177,8 @@ class TrawlNode(Node):
             message_class(type_name),
             topic,
             take,
-            profile,
-            qos_overriding_options=overriding(),
+            copy(profile),
+            qos_overriding_options=overriding() if overridable else None,
             raw=True,
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=lambda event: self.traffic.lost(full, event.total_count)
