@@ -19,7 +19,7 @@ from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.parameters import FIXED, Flag, Number, Text  # noqa: E402
+from trawl_ros.nodes.parameters import FIXED, Number, Text  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 
@@ -34,10 +34,12 @@ def executables():
     for found in iter_modules(trawl_ros.nodes.__path__):
         module = import_module(f'trawl_ros.nodes.{found.name}')
         if hasattr(module, 'main'):
-            for kind in vars(module).values():
-                if inspect.isclass(kind) and kind.__module__ == module.__name__:
-                    if issubclass(kind, TrawlNode) and not inspect.isabstract(kind):
-                        yield kind
+            own = [kind for _, kind in inspect.getmembers(module, inspect.isclass)]
+            yield from (
+                kind
+                for kind in own
+                if kind.__module__ == module.__name__ and issubclass(kind, TrawlNode)
+            )
 
 
 @pytest.fixture(scope='module')
