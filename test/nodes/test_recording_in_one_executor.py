@@ -16,8 +16,8 @@ from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample  # noqa: E402
 from trawl_ros.messages.stamps import SECOND  # noqa: E402
-from trawl_ros.messages.to_messages import truth_messages  # noqa: E402
 from trawl_ros.messages.topics import absolute  # noqa: E402
+from trawl_ros.messages.truth_to_messages import truth_messages  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402

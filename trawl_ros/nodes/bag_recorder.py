@@ -4,36 +4,44 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from trawl_ros.bags.writer import BagWriter
+from trawl_ros.bags.mcap_output import COMPRESSIONS
+from trawl_ros.bags.qos import dump_profiles
+from trawl_ros.bags.writer import BagWriter, describe
 from trawl_ros.errors import TrawlError
-from trawl_ros.messages.cdr import STORE
+from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import (
     CLOCK,
     COMMANDS,
     ESTIMATES,
     INSTRUMENTS,
     TRUTH,
-    Topic,
     absolute,
 )
 from trawl_ros.nodes.graph_checks import SYNC
 from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.parameters import Names, Text
-from trawl_ros.nodes.qos import CONSUMER, consumed
+from trawl_ros.nodes.parameters import Names, Number, Text
+from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.recorded_qos import matching, profiles_of
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.stamping import stamp_in
 from trawl_ros.nodes.sync import Progress
+from trawl_ros.nodes.topic_choice import ALL, TopicChoice
 
-ALL = 'all'
 CONTRACT = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
 NEVER = (CLOCK.name, '/rosout', '/parameter_events')
-SECOND_S = 1.0
+
+FLUSH_S = 0.8
+"""With what may come between, a bag is behind by less than a second."""
+
+NO_HASH = 'INVALID'
 
 
 class BagRecorder(TrawlNode):
-    """Records the project's topics, those that are named, or all.
+    """Records the project's topics, those that are chosen, or all.
 
     A message is logged at the stamp of its header, so that a bag replays as things happened
     and not as they arrived; without a header at the time of the node's clock. ``/clock`` is
@@ -43,32 +51,60 @@ class BagRecorder(TrawlNode):
     SPECS: ClassVar = (
         Text('output', '', 'Folder of the bag; nothing may be there yet.', needed=True),
         Names('topics', "Topics to record, or 'all'; by default those of the project."),
+        Text('regex', '', 'Topics are recorded too whose full name has a match of this regular '
+             'expression.'),
+        Text('exclude_regex', '', 'Topics are left out whose full name has a match of this '
+             'regular expression.'),
         Text('log_time', 'header', 'Whether messages are logged at the stamp of their header or '
              'at the time of the node\'s clock.', choices=('header', 'clock')),
+        Text('compression', 'zstd', 'Of the chunks of messages.', choices=tuple(COMPRESSIONS)),
+        Number('max_bag_size', 0, 'bytes', 0, 2**53, 'Size at which a file of the bag is followed '
+               'by a next one; 0 is never.', whole=True),
+        Number('max_bag_duration', 0.0, 's', 0.0, 1e7, 'Log time after which a file of the bag is '
+               'followed by a next one; 0 is never, and the index of a day in one file takes '
+               'some hundred megabytes of memory.'),
     )  # fmt: skip
     DRAINS: ClassVar = True
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('bag_recorder', **kwargs)
         self._by_header = self.parameters['log_time'] == 'header'
-        wanted = self.parameters['topics']
-        self._everything = wanted == (ALL,)
         self._latest: dict[str, int] = {}
         self._jumps = 0
         self._unknown: set[str] = set()
+        self._redefined: set[str] = set()
         self._dirty = False
         namespace = self.get_namespace()
-        self._bag = BagWriter(self.parameters['output'], namespace=namespace)
+        project = {absolute(topic.name, namespace): topic for topic in CONTRACT}
+        named = self.parameters['topics']
+        self._choice = TopicChoice(
+            project,
+            {ALL} if named == (ALL,) else {self.full_name(name) for name in named},
+            {name: self.parameters[name] for name in ('regex', 'exclude_regex')},
+            {*NEVER, self.full_name(SYNC)},
+        )
+        self._bag = BagWriter(
+            self.parameters['output'],
+            namespace=namespace,
+            compression=self.parameters['compression'],
+            max_file_bytes=self.parameters['max_bag_size'],
+            max_file_ns=round(self.parameters['max_bag_duration'] * SECOND),
+        )
         self._progress = Progress(self)
         # What paces the progress: truth comes at every instant, markers now and then.
         self._pacing = {
             absolute(topic.name, namespace): topic.name for topic in TRUTH if topic.rate != 1.0
         }
         self._timed = {absolute(topic.name, namespace) for topic in (*TRUTH, *INSTRUMENTS)}
-        self._wanted = {self.full_name(name) for name in wanted} if not self._everything else set()
-        for name, topic in self._contract().items():
-            self._record(name, topic.type, consumed(topic))
-        self.every(SECOND_S, self._every_second)
+        self._profiles: dict[str, QoSProfile] = {}
+        self._types: dict[str, str] = {}
+        for name, topic in project.items():
+            if name in self._choice:
+                # Of latched topics, too, all that comes is wanted, and not the last alone.
+                self._record(
+                    name, topic.type, matching((), CONSUMER) if topic.latched else CONSUMER
+                )
+        self.every(FLUSH_S, self._look_after)
 
     def statuses(self) -> list[Status]:
         """What is in the bag."""
@@ -76,6 +112,7 @@ class BagRecorder(TrawlNode):
         values = {
             'bag': str(self._bag.path),
             'messages': str(sum(counts.values())),
+            'files': str(len(self._bag.files)),
             'recorded until': f'{self._progress.stamp / 1e9:.1f}',
             **{f'recorded {topic}': str(count) for topic, count in counts.items()},
         }
@@ -87,6 +124,11 @@ class BagRecorder(TrawlNode):
             )
         if self._unknown:
             problems.append(f'of unknown type and not recorded: {", ".join(sorted(self._unknown))}')
+        if self._redefined:
+            problems.append(
+                'published with another definition of the type than the bag carries: '
+                f'{", ".join(sorted(self._redefined))}'
+            )
         message = '; '.join(problems) or 'recording'
         return [Status('bag', WARN if problems else OK, message, values)]
 
@@ -96,14 +138,15 @@ class BagRecorder(TrawlNode):
         total = sum(self._bag.counts.values())
         self.get_logger().info(f'{self._bag.path}: {total} messages')
 
-    def _contract(self) -> dict[str, Topic]:
-        """The project's topics that are wanted, by full name."""
-        named = {absolute(topic.name, self.get_namespace()): topic for topic in CONTRACT}
-        chosen = self._everything or not self._wanted
-        return {name: topic for name, topic in named.items() if chosen or name in self._wanted}
-
     def _record(self, topic: str, type_name: str, profile: QoSProfile) -> None:
-        self.listen_raw(topic, type_name, self._taker(topic, type_name), profile)
+        again = topic in self._types
+        if again:
+            self.stop_listening(topic)
+        taker = self._taker(topic, type_name)
+        # What is declared of a first subscription would be forced upon the second.
+        self.listen_raw(topic, type_name, taker, profile, overridable=not again)
+        self._profiles[topic] = profile
+        self._types[topic] = type_name
 
     def _taker(self, topic: str, type_name: str) -> Callable[[bytes], None]:
         timed = topic in self._timed
@@ -111,12 +154,22 @@ class BagRecorder(TrawlNode):
         def take(data: bytes) -> None:
             stamp = stamp_in(type_name, data)
             logged = self.now() if stamp is None or not self._by_header else stamp
+            if not self._bag.declared(topic):
+                self._declare(topic, type_name)
             self._bag.write(topic, type_name, data, logged)
             self._dirty = True
             if timed and stamp is not None:
                 self._follow(topic, stamp)
 
         return take
+
+    def _declare(self, topic: str, type_name: str) -> None:
+        """Settle what the bag says of a topic, by who publishes it when the first message comes."""
+        publishers = self.get_publishers_info_by_topic(topic)
+        self._bag.declare(topic, describe(type_name, dump_profiles(profiles_of(publishers))))
+        hashes = {str(publisher.topic_type_hash) for publisher in publishers}
+        if hashes - {type_hash(type_name), NO_HASH}:
+            self._redefined.add(topic)
 
     def _follow(self, topic: str, stamp: int) -> None:
         if stamp < self._latest.get(topic, stamp):
@@ -130,41 +183,43 @@ class BagRecorder(TrawlNode):
         elif not any(name in self._latest for name in self._pacing):
             self._progress.done(stamp)
 
-    def _every_second(self) -> None:
+    def _look_after(self) -> None:
         if self._dirty:
             self._bag.flush()
             self._dirty = False
-        if self._everything or self._wanted - set(self._listeners):
-            self._look_for_others()
+        self._look_for_others()
+        for topic in list(self._types):
+            self._match(topic, self.get_publishers_info_by_topic(topic))
 
     def _look_for_others(self) -> None:
-        never = {*NEVER, self.full_name(SYNC)}
         for topic, types in self.get_topic_names_and_types():
-            wanted = self._everything or topic in self._wanted
-            if not wanted or topic in self._listeners or topic in never:
+            if topic in self._types or topic not in self._choice:
                 continue
-            if len(types) != 1 or types[0] not in STORE.types:
-                self._unknown.add(topic)
+            publishers = self.get_publishers_info_by_topic(topic)
+            if not publishers:
                 continue
             try:
-                self._record(topic, types[0], self._offered(topic))
+                if len(types) != 1 or types[0] not in STORE.types:
+                    raise TrawlError(f'{topic}: types {", ".join(types)}')
+                self._record(topic, types[0], matching(publishers, CONSUMER))
             except TrawlError:
                 self._unknown.add(topic)
             else:
                 self._unknown.discard(topic)
 
-    def _offered(self, topic: str) -> QoSProfile:
-        """A profile that matches all who publish a topic that is not the project's."""
-        infos = self.get_publishers_info_by_topic(topic)
-        profiles = [info.qos_profile for info in infos]
-        found = QoSProfile(depth=CONSUMER.depth)
-        found.reliability = ReliabilityPolicy.RELIABLE
-        found.durability = DurabilityPolicy.TRANSIENT_LOCAL
-        if any(profile.reliability != found.reliability for profile in profiles):
-            found.reliability = ReliabilityPolicy.BEST_EFFORT
-        if any(profile.durability != found.durability for profile in profiles):
-            found.durability = DurabilityPolicy.VOLATILE
-        return found
+    def _match(self, topic: str, publishers: Sequence[TopicEndpointInfo]) -> None:
+        """Ask for no more than is offered, where a publisher would not be heard otherwise."""
+        asked, heard = self._profiles[topic], matching(publishers, CONSUMER)
+        reliable = asked.reliability == ReliabilityPolicy.RELIABLE
+        latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        if (reliable and heard.reliability != asked.reliability) or (
+            latched and heard.durability != asked.durability
+        ):
+            self.get_logger().info(
+                f'{topic}: records what its publishers offer, which is {heard.reliability.name} '
+                f'and {heard.durability.name}'.lower()
+            )
+            self._record(topic, self._types[topic], heard)
 
 
 def main(args: Sequence[str] | None = None) -> int:

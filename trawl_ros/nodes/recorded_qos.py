@@ -84,7 +84,9 @@ def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | 
         History and depth are as recorded where late subscribers can tell; otherwise they are at
         least those of ``default``, so that a fast player loses nothing.
     """
-    alike = {one._replace(history=QosHistory.UNKNOWN, depth=0, lifespan=FOREVER) for one in recorded}
+    alike = {
+        one._replace(history=QosHistory.UNKNOWN, depth=0, lifespan=FOREVER) for one in recorded
+    }
     if not recorded:
         return default
     if len(alike) > 1:
