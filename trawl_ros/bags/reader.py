@@ -83,7 +83,8 @@ class Bag:
     namespace
         Where the project's topics live in this bag.
     lenient
-        Whether a bag is looked into whose metadata and content disagree, to say how.
+        Whether to live with metadata and content that disagree, and with topics of the project
+        whose type or definition is wrong, and say so in `problems`.
 
     Attributes
     ----------
@@ -106,6 +107,7 @@ class Bag:
         self.path = Path(path)
         self.problems: list[str] = []
         self._namespace = namespace
+        self._lenient = lenient
         self._source = open_source(self.path, self._report, lenient=lenient)
         self.topics = {topic: definition.type for topic, definition in self.definitions().items()}
         self.custom_data = self._source.custom_data
@@ -154,12 +156,14 @@ class Bag:
             readable message in the whole bag.
         """
         self._check_types(topics)
-        read = 0
+        empty = True
         for message in self.as_stored():
-            read += 1
+            empty = False
             if topics is None or message.topic in topics:
                 yield message
-        self._check_count(read)
+        if empty:
+            known = f' ({"; ".join(self.problems)})' if self.problems else ''
+            raise BagError(f'{self.path}: holds no message that can be read{known}')
 
     def as_stored(self) -> Iterator[RawMessage]:
         """Give all messages undecoded and unchecked, whatever their types; there may be none."""
@@ -246,7 +250,7 @@ class Bag:
                 decoders[topic] = make_decoder(topic, definition)
             except BagError as reason:
                 sentence = f'{self.path}: {reason}'
-                if find_topic(topic, self._namespace):
+                if find_topic(topic, self._namespace) and not self._lenient:
                     raise BagError(sentence) from reason
                 self._report(f'{sentence}; its messages are left out')
         return decoders
@@ -256,17 +260,12 @@ class Bag:
             known = find_topic(topic, self._namespace)
             wanted = topics is None or topic in topics
             if known and wanted and found != known.type:
-                raise BagError(
+                sentence = (
                     f'{self.path}: {topic} has type {found or "unknown"}; expected {known.type}'
                 )
-
-    def _check_count(self, read: int) -> None:
-        if read == 0:
-            known = f' ({"; ".join(self.problems)})' if self.problems else ''
-            raise BagError(f'{self.path}: holds no message that can be read{known}')
-        stated = self._source.stated_count
-        if stated is not None and stated != read:
-            self._report(f'{self.path}: {read} of {stated} messages could be read')
+                if not self._lenient:
+                    raise BagError(sentence)
+                self._report(sentence)
 
     def _report(self, problem: str) -> None:
         if problem not in self.problems:

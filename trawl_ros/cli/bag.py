@@ -1,33 +1,125 @@
 """``trawl bag``."""
 
-from datetime import datetime, timezone
 from pathlib import Path
 
 import click
 
-from trawl_ros.bags.reader import summarise
-from trawl_ros.cli.files import BAG
+from trawl_ros.bags.check import GROUPS, check_bag
+from trawl_ros.bags.export import ARRAY_LIMIT, DICTIONARY, export_bag
+from trawl_ros.bags.reader import Bag
+from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
+from trawl_ros.cli.files import BAG, FOLDER
+from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.tables import output_console
 from trawl_ros.errors import BagError
+from trawl_ros.messages.topics import NAMESPACE
 
-NANOSECONDS = 1_000_000_000
+FINDINGS = 3
+"""Exit code of ``trawl bag check`` where something was found; 1 is an error, 2 a wrong call."""
+
+NAMESPACE_OPTION = click.option(
+    '--namespace', default=NAMESPACE, show_default=True, help="Where the project's topics live."
+)
+JSON_OPTION = click.option('--json', 'as_json', is_flag=True, help='Print JSON for scripts.')
 
 
 @click.group('bag')
 def command() -> None:
-    """Look into bags."""
+    """Look into bags, check them, and turn them into tables."""
 
 
 @command.command('info')
 @click.argument('bag', type=BAG)
-def info(bag: Path) -> None:
-    """Count what can be read in a bag, and say what cannot."""
-    summary = summarise(bag)
-    if summary.start is None or summary.end is None:
+@JSON_OPTION
+def info(bag: Path, as_json: bool) -> None:
+    """Count what can be read in a bag, and say what cannot.
+
+    BAG is a bag's folder or one file of it, MCAP or SQLite, of any ROS 2 distribution; it may be
+    damaged.
+    """
+    opened = Bag(bag, lenient=True)
+    summary = opened.summary()
+    if not summary.count:
         raise BagError('; '.join(summary.problems))
-    begin = datetime.fromtimestamp(summary.start / NANOSECONDS, timezone.utc)
-    minutes = (summary.end - summary.start) / NANOSECONDS / 60
-    click.echo(f'{bag}: {summary.count} messages in {minutes:.1f} min from {begin:%F %T} UTC')
-    for topic in summary.topics:
-        click.echo(f'{topic.count:8d}  {topic.topic}  {topic.type}')
-    for problem in summary.problems:
+    if as_json:
+        click.echo(info_as_json(opened, summary))
+        return
+    print_info(opened, summary, output_console())
+    for problem in opened.problems:
+        click.echo(f'Damaged: {problem}', err=True)
+
+
+@command.command('check')
+@click.argument('bag', type=BAG)
+@click.option(
+    '--require',
+    multiple=True,
+    metavar='NAME',
+    help=f'A topic, or all of {", ".join(GROUPS)}, that must be there. May be given several times.',
+)
+@NAMESPACE_OPTION
+@JSON_OPTION
+@click.pass_context
+def check(
+    context: click.Context, bag: Path, require: tuple[str, ...], namespace: str, as_json: bool
+) -> None:
+    """Hold a bag against what it says of itself, and against the project's topics.
+
+    Exit codes: 0 sound, 3 something was found, 1 the bag cannot be looked at.
+
+    Findings are: files that are damaged, cut short or have no index; chunks that fail their
+    checksum; metadata that disagree with the content; and on the project's topics a wrong type,
+    best effort or volatile QoS where more is due, a rate a dozen times off the usual one, pauses
+    of more than ten median intervals, stamps that run backward or repeat, stamps more than 5 s
+    from the log time, and what --require names and is not there.
+    """
+    done = check_bag(bag, namespace=namespace, required=require)
+    if as_json:
+        click.echo(check_as_json(done))
+    else:
+        print_check(done, output_console())
+    context.exit(0 if done.sound else FINDINGS)
+
+
+@command.command('export')
+@click.argument('bag', type=BAG)
+@click.option('--out', required=True, type=FOLDER, help='Folder to be made.')
+@click.option(
+    '--topic',
+    'topics',
+    multiple=True,
+    metavar='NAME',
+    help='A topic wanted, e.g. winch/joint_states. May be given several times; by default all.',
+)
+@click.option(
+    '--array-limit',
+    type=click.IntRange(1, 1000),
+    default=ARRAY_LIMIT,
+    show_default=True,
+    help='Elements up to which an array is spread over columns; longer ones are left out.',
+)
+@NAMESPACE_OPTION
+def export(bag: Path, out: Path, topics: tuple[str, ...], array_limit: int, namespace: str) -> None:
+    """Write a bag as CSV, one file per topic.
+
+    Columns are named by the path of their field; columns.csv says the unit of each. Times stand
+    there twice, in seconds and in whole nanoseconds. A cell is empty where there is no reading.
+    """
+    console = error_console()
+    with TimeProgress('exporting', None, console) as progress:
+        done = export_bag(
+            bag,
+            out,
+            topics=topics,
+            namespace=namespace,
+            array_limit=array_limit,
+            progress=progress.update,
+        )
+    for topic in done.topics:
+        where = topic.file or 'no file'
+        click.echo(f'{topic.rows:8d} rows  {where}')
+        for path, reason in topic.left_out.items():
+            click.echo(f'{topic.topic}: {path} is left out, since it {reason}', err=True)
+    click.echo(f'{out / DICTIONARY} says what the columns are')
+    for problem in done.problems:
         click.echo(f'Damaged: {problem}', err=True)

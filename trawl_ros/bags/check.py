@@ -1,0 +1,316 @@
+"""Whether a bag is sound: what is in it held against what it says of itself, and the contract.
+
+A finding is something that whoever uses the bag has to know of; a note only says what the bag
+is. A bag without findings is sound.
+"""
+
+from array import array
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import median
+
+from rosbags.interfaces import Qos, QosDurability, QosReliability
+
+from trawl_ros.bags.header_stamps import StampReader, stamp_reader
+from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.sources import BagFacts
+from trawl_ros.errors import BagError
+from trawl_ros.messages.stamps import SECOND
+from trawl_ros.messages.topics import (
+    COMMANDS,
+    ESTIMATES,
+    INSTRUMENTS,
+    NAMESPACE,
+    TRUTH,
+    Topic,
+    absolute,
+    find_topic,
+)
+
+GROUPS = {
+    'truth': TRUTH,
+    'instruments': INSTRUMENTS,
+    'estimates': ESTIMATES,
+    'commands': COMMANDS,
+}
+"""The contract's topics by what they are for."""
+
+RATE_FACTOR = 12.0
+"""A mean rate is a finding when it is this many times the usual one, or less than one such part:
+winches may come from 1 to 10 Hz, other instruments from 0.2 to 1 Hz, each with some jitter."""
+
+GAP_FACTOR = 10.0
+"""A pause is a finding when it is this many times the topic's median interval."""
+
+LAG_BOUND_S = 5.0
+"""A difference between log time and header stamp that is a finding: acoustic links take up to a
+few seconds, a clock that is off takes more."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing found: a word for scripts, the topic ('' for the bag), and a sentence."""
+
+    kind: str
+    topic: str
+    text: str
+
+
+@dataclass(frozen=True)
+class TopicCheck:
+    """What one topic of a bag looks like.
+
+    ``group`` is '' for a topic of somebody else. Rates are in Hz, log times in ns; ``lag_s`` is
+    the least and greatest log time after the header's stamp. What cannot be told is None.
+    """
+
+    topic: str
+    type: str
+    group: str
+    count: int
+    bytes: int
+    rate: float | None
+    usual_rate: float | None
+    longest_gap_s: float | None
+    gap_start: int | None
+    backward: int
+    duplicates: int
+    lag_s: tuple[float, float] | None
+    qos: str
+
+
+@dataclass(frozen=True)
+class BagCheck:
+    """All that was found out about a bag."""
+
+    path: Path
+    facts: BagFacts
+    count: int
+    start: int | None
+    end: int | None
+    damaged_chunks: int
+    topics: tuple[TopicCheck, ...]
+    missing: dict[str, tuple[str, ...]]
+    findings: tuple[Finding, ...]
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing was found."""
+        return not self.findings
+
+
+def check_bag(
+    path: str | Path, *, namespace: str = NAMESPACE, required: Collection[str] = ()
+) -> BagCheck:
+    """Read through a bag and hold it against what it says of itself, and the contract.
+
+    Parameters
+    ----------
+    path
+        A bag's folder, or one file of it; may be damaged.
+    namespace
+        Where the project's topics live in this bag.
+    required
+        Groups (see `GROUPS`) or topics, relative or in full, that must be there. What else the
+        contract has and the bag has not is no finding: nobody records everything.
+
+    Raises
+    ------
+    BagError
+        If there is no bag at all, or a required name is no group and no topic's.
+    """
+    wanted = _required(required, namespace)
+    bag = Bag(path, namespace=namespace, lenient=True)
+    records = {
+        topic: _Record(stamp_reader(topic, definition))
+        for topic, definition in bag.definitions().items()
+    }
+    for message in bag.as_stored():
+        records[message.topic].take(message)
+    offered = bag.offered()
+    topics = [
+        _topic_check(topic, bag.topics[topic], record, _words(offered[topic]), namespace)
+        for topic, record in sorted(records.items())
+    ]
+    findings = _whole(bag, topics)
+    for seen in topics:
+        known = find_topic(seen.topic, namespace)
+        if known is not None:
+            findings += _against_contract(seen, known, offered[seen.topic], records[seen.topic])
+    there = {seen.topic for seen in topics if seen.count}
+    for name in sorted(wanted - there):
+        findings.append(Finding('missing', name, 'is required, and has no message'))
+    times = [time for record in records.values() for time in record.span()]
+    return BagCheck(
+        path=bag.path,
+        facts=bag.facts,
+        count=sum(seen.count for seen in topics),
+        start=min(times, default=None),
+        end=max(times, default=None),
+        damaged_chunks=bag.damaged_chunks,
+        topics=tuple(topics),
+        missing=_missing(there, namespace),
+        findings=tuple(findings),
+    )
+
+
+@dataclass
+class _Record:
+    """Times of one topic's messages, as they come."""
+
+    stamp_in: StampReader | None
+    times: 'array[int]' = field(default_factory=lambda: array('q'))
+    bytes: int = 0
+    backward: int = 0
+    duplicates: int = 0
+    last_stamp: int | None = None
+    lag: tuple[int, int] | None = None
+    types: set[str] = field(default_factory=set)
+
+    def take(self, message: RawMessage) -> None:
+        self.times.append(message.log_time)
+        self.bytes += len(message.data)
+        self.types.add(message.type)
+        stamp = self.stamp_in(message.data) if self.stamp_in else None
+        if stamp is None:
+            return
+        if self.last_stamp is not None:
+            self.backward += stamp < self.last_stamp
+            self.duplicates += stamp == self.last_stamp
+        self.last_stamp = stamp
+        lag = message.log_time - stamp
+        least, greatest = self.lag or (lag, lag)
+        self.lag = min(least, lag), max(greatest, lag)
+
+    def span(self) -> tuple[int, ...]:
+        return (self.times[0], self.times[-1]) if self.times else ()
+
+    def intervals(self) -> list[int]:
+        return [after - before for before, after in zip(self.times, self.times[1:])]
+
+
+def _required(names: Collection[str], namespace: str) -> set[str]:
+    wanted: set[str] = set()
+    for name in names:
+        if name in GROUPS:
+            wanted |= {absolute(topic.name, namespace) for topic in GROUPS[name]}
+        elif name.startswith('/') or find_topic(name, namespace):
+            wanted.add(absolute(name, namespace))
+        else:
+            raise BagError(
+                f'{name}: neither a group nor a topic; expected {", ".join(GROUPS)} or a name such '
+                'as winch/joint_states'
+            )
+    return wanted
+
+
+def _topic_check(
+    topic: str, type_name: str, record: _Record, qos: str, namespace: str
+) -> TopicCheck:
+    known = find_topic(topic, namespace)
+    groups = [group for group, members in GROUPS.items() if known in members]
+    intervals = record.intervals()
+    span = sum(intervals)
+    longest = max(intervals, default=None)
+    return TopicCheck(
+        topic=topic,
+        type=' and '.join(sorted(record.types | {type_name})),
+        group=groups[0] if groups else '',
+        count=len(record.times),
+        bytes=record.bytes,
+        rate=len(intervals) * SECOND / span if span else None,
+        usual_rate=known.rate if known else None,
+        longest_gap_s=None if longest is None else longest / SECOND,
+        gap_start=None if longest is None else record.times[intervals.index(longest)],
+        backward=record.backward,
+        duplicates=record.duplicates,
+        lag_s=record.lag and (record.lag[0] / SECOND, record.lag[1] / SECOND),
+        qos=qos,
+    )
+
+
+def _whole(bag: Bag, topics: list[TopicCheck]) -> list[Finding]:
+    found = [Finding('content', '', problem) for problem in bag.problems]
+    found += [
+        Finding('index', '', f'{path.name} has no index that can be used; `trawl bag repair` '
+                'makes one')
+        for path in bag.files_without_index
+    ]  # fmt: skip
+    if bag.damaged_chunks:
+        text = f'{bag.damaged_chunks} chunks fail their checksum or make no sense'
+        found.append(Finding('crc', '', text))
+    if not any(seen.count for seen in topics):
+        found.append(Finding('content', '', f'{bag.path}: holds no message'))
+    return found
+
+
+def _against_contract(
+    seen: TopicCheck, known: Topic, offered: tuple[Qos, ...], record: _Record
+) -> list[Finding]:
+    found = []
+
+    def add(kind: str, text: str) -> None:
+        found.append(Finding(kind, seen.topic, text))
+
+    if seen.type != known.type:
+        add('type', f'has type {seen.type or "unknown"}; expected {known.type}')
+    if any(profile.reliability is QosReliability.BEST_EFFORT for profile in offered):
+        add('qos', 'was offered best effort, so messages may be missing; expected reliable')
+    if known.latched and any(p.durability is QosDurability.VOLATILE for p in offered):
+        add('qos', 'was offered volatile, so who came late got none; expected transient local')
+    if seen.group not in ('truth', 'instruments'):
+        return found
+    if seen.rate and known.rate and not 1 / RATE_FACTOR < seen.rate / known.rate < RATE_FACTOR:
+        add('rate', f'comes at {seen.rate:.3g} Hz; expected about {known.rate:g} Hz')
+    if known.rate and (gaps := _gaps(record.intervals())):
+        add(
+            'gap',
+            f'pauses {len(gaps)} times for more than {GAP_FACTOR:g} median intervals, longest '
+            f'{max(gaps) / SECOND:.4g} s',
+        )
+    if seen.backward:
+        add('order', f'has {seen.backward} stamps before the one before; expected none')
+    if seen.duplicates:
+        add('order', f'has {seen.duplicates} stamps equal to the one before; expected none')
+    if seen.lag_s and max(map(abs, seen.lag_s)) > LAG_BOUND_S:
+        least, greatest = seen.lag_s
+        add(
+            'stamp',
+            f'was logged {least:.4g} to {greatest:.4g} s after its stamps; expected up to '
+            f'{LAG_BOUND_S:g} s',
+        )
+    return found
+
+
+def _gaps(intervals: list[int]) -> list[int]:
+    if len(intervals) < 3:
+        return []
+    usual = median(intervals)
+    return [interval for interval in intervals if interval > GAP_FACTOR * usual > 0]
+
+
+def _missing(there: set[str], namespace: str) -> dict[str, tuple[str, ...]]:
+    return {
+        group: tuple(
+            topic.name for topic in members if absolute(topic.name, namespace) not in there
+        )
+        for group, members in GROUPS.items()
+    }
+
+
+def _words(profiles: tuple[Qos, ...]) -> str:
+    """Say in words what was offered, e.g. ``reliable, volatile, last 100``."""
+    said = dict.fromkeys(describe_qos(profile) for profile in profiles)
+    return '; '.join(said)
+
+
+def describe_qos(profile: Qos) -> str:
+    """Say a profile in words, e.g. ``reliable, volatile, last 100``."""
+    words = [
+        profile.reliability.name.lower().replace('_', ' '),
+        profile.durability.name.lower().replace('_', ' '),
+    ]
+    history = profile.history.name.lower().replace('_', ' ')
+    words.append(f'last {profile.depth}' if history == 'keep last' else history)
+    return ', '.join(words)

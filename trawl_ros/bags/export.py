@@ -1,0 +1,213 @@
+"""Bags as CSV: one file per topic, for spreadsheets and data frames."""
+
+import csv
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.bags.decoding import find_store
+from trawl_ros.bags.field_units import unit_of
+from trawl_ros.bags.flattening import Column, Layout, as_seconds, as_text, singles, varies
+from trawl_ros.bags.reader import Bag
+from trawl_ros.errors import BagError, MessageError
+from trawl_ros.messages.stamps import SECOND
+from trawl_ros.messages.topics import NAMESPACE, absolute, find_topic
+
+ARRAY_LIMIT = 64
+"""Elements up to which an array is spread over columns, unless another number is asked for."""
+
+DICTIONARY = 'columns.csv'
+"""The file that says what the columns of the others are."""
+
+LOG_COLUMNS = ('log_time_s', 'log_time_ns')
+
+Progress = Callable[[float], None]
+"""Takes the recorded time done, s."""
+
+
+@dataclass(frozen=True)
+class ExportedTopic:
+    """What became of a topic: its file (None if none), rows, and what is not in it, and why."""
+
+    topic: str
+    file: Path | None
+    rows: int
+    left_out: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What an export made of a bag, and what was wrong with the bag."""
+
+    topics: tuple[ExportedTopic, ...]
+    problems: tuple[str, ...]
+
+
+def export_bag(
+    path: str | Path,
+    folder: str | Path,
+    *,
+    topics: Collection[str] = (),
+    namespace: str = NAMESPACE,
+    array_limit: int = ARRAY_LIMIT,
+    progress: Progress = lambda done_s: None,
+) -> Exported:
+    """Write the messages of a bag as CSV files into a new folder.
+
+    Parameters
+    ----------
+    path
+        A bag's folder, or one file of it; may be damaged.
+    folder
+        Folder to be made. Beside one file per topic it gets `DICTIONARY`, which says topic, type
+        and unit of each column.
+    topics
+        Names of those wanted, relative or in full; by default all.
+    namespace
+        Where the project's topics live in this bag.
+    array_limit
+        Longer arrays do not go into columns.
+    progress
+        Is told how far things are.
+
+    Raises
+    ------
+    BagError
+        If there is no bag, no such topic, or the folder exists or cannot be written.
+    """
+    bag = Bag(path, namespace=namespace, lenient=True)
+    wanted = _wanted(bag, topics, namespace)
+    layouts = _layouts(bag, wanted, array_limit)
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError:
+        raise BagError(
+            f'{folder}: exists already and is not written over; expected a new folder'
+        ) from None
+    except OSError as reason:
+        raise BagError(f'{folder}: cannot be made ({reason.strerror})') from reason
+    try:
+        done = tuple(_write(bag, folder, layouts, progress))
+        _write_dictionary(bag, folder, layouts, namespace)
+    except OSError as reason:
+        raise BagError(f'{folder}: cannot be written ({reason.strerror})') from reason
+    return Exported(done, tuple(bag.problems))
+
+
+@dataclass(frozen=True)
+class _Table:
+    """How a topic becomes a file: its layout, columns, and those of 32 bits."""
+
+    file_name: str
+    layout: Layout
+    columns: tuple[Column, ...]
+    singles: frozenset[str]
+
+    def cells(self, log_time: int, message: Any) -> list[str]:
+        return [
+            as_seconds(log_time),
+            str(log_time),
+            *(
+                as_text(column.value(message), single=column.path in self.singles)
+                for column in self.columns
+            ),
+        ]
+
+
+def _wanted(bag: Bag, names: Collection[str], namespace: str) -> list[str]:
+    if not names:
+        return sorted(bag.topics)
+    wanted = {absolute(name, namespace) for name in names}
+    if missing := sorted(wanted - bag.topics.keys()):
+        raise BagError(
+            f'{bag.path}: no topic {", ".join(missing)}; expected some of '
+            f'{", ".join(sorted(bag.topics))}'
+        )
+    return sorted(wanted)
+
+
+def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]:
+    """Find the columns of each topic: of those that vary, by looking at all of their messages."""
+    definitions = bag.definitions()
+    layouts: dict[str, Layout] = {}
+    known: dict[str, tuple[bool, frozenset[str]]] = {}
+    for topic in wanted:
+        try:
+            store = find_store(topic, definitions[topic])
+        except BagError:
+            continue
+        name = definitions[topic].type
+        known[topic] = varies(store, name), singles(store, name)
+    for message in bag.as_stored():
+        topic = message.topic
+        if topic not in known or (topic in layouts and not known[topic][0]):
+            continue
+        try:
+            decoded = bag.decode(message)
+        except MessageError:
+            continue
+        layouts.setdefault(topic, Layout(array_limit)).learn(decoded)
+    names = _file_names(layouts)
+    return {
+        topic: _Table(names[topic], layout, tuple(layout.finish()), known[topic][1])
+        for topic, layout in sorted(layouts.items())
+    }
+
+
+def _file_names(topics: Collection[str]) -> dict[str, str]:
+    """Name the files after the topics; no name leads anywhere, and none stands twice."""
+    names: dict[str, str] = {}
+    for topic in sorted(topics):
+        base = re.sub(r'[^A-Za-z0-9_]+', '.', topic).strip('.') or 'topic'
+        name, number = f'{base}.csv', 2
+        while name in (*names.values(), DICTIONARY):
+            name, number = f'{base}.{number}.csv', number + 1
+        names[topic] = name
+    return names
+
+
+def _write(
+    bag: Bag, folder: Path, tables: Mapping[str, _Table], progress: Progress
+) -> Iterator[ExportedTopic]:
+    rows = dict.fromkeys(tables, 0)
+    written = {topic: table for topic, table in tables.items() if table.columns}
+    with ExitStack() as stack:
+        writers = {}
+        for topic, table in written.items():
+            stream = stack.enter_context(
+                (folder / table.file_name).open('x', encoding='utf-8', newline='')
+            )
+            writers[topic] = csv.writer(stream, lineterminator='\n')
+            writers[topic].writerow([*LOG_COLUMNS, *(column.name for column in table.columns)])
+        start: int | None = None
+        if writers:
+            for received in bag.messages(writers):
+                cells = written[received.topic].cells(received.log_time, received.message)
+                writers[received.topic].writerow(cells)
+                rows[received.topic] += 1
+                start = received.log_time if start is None else start
+                progress((received.log_time - start) / SECOND)
+    for topic, table in tables.items():
+        file = folder / table.file_name if topic in written else None
+        yield ExportedTopic(topic, file, rows[topic], dict(table.layout.left_out))
+
+
+def _write_dictionary(bag: Bag, folder: Path, tables: Mapping[str, _Table], namespace: str) -> None:
+    with (folder / DICTIONARY).open('x', encoding='utf-8', newline='') as stream:
+        writer = csv.writer(stream, lineterminator='\n')
+        writer.writerow(['file', 'column', 'unit', 'topic', 'type'])
+        for topic, table in tables.items():
+            if not table.columns:
+                continue
+            type_name = bag.topics[topic]
+            known = find_topic(topic, namespace)
+            contract = known.name if known else ''
+            for column, unit in zip(LOG_COLUMNS, ('s', 'ns'), strict=True):
+                writer.writerow([table.file_name, column, unit, topic, type_name])
+            for entry in table.columns:
+                unit = unit_of(contract, type_name, entry.path)
+                writer.writerow([table.file_name, entry.name, unit, topic, type_name])

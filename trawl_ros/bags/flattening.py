@@ -1,0 +1,172 @@
+"""Messages as flat rows: one column per number or text, named by the path of its field.
+
+A time gives two columns, ``_s`` for reading and plotting and ``_ns`` for exactness; the elements
+of an array are counted from 0 in brackets: ``position[1]``.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+from rosbags.interfaces import Nodetype
+from rosbags.typesys.store import Typestore
+
+from trawl_ros.messages.stamps import SECOND
+
+MAX_COLUMNS = 1000
+"""Columns that one field of a message may spread over."""
+
+_TIMES = ('builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration')
+
+Place = tuple[int, ...]
+"""Where a column stands in its message: field and element numbers from the top down."""
+
+
+@dataclass(frozen=True, order=True)
+class Column:
+    """A column: where it stands, its name, and its field's path without element numbers.
+
+    ``steps`` are the names and numbers by which a message's value is reached.
+    """
+
+    place: Place
+    name: str
+    path: str
+    steps: tuple[str | int, ...]
+
+    def value(self, message: Any) -> Any:
+        """Give the value in a message; None where an array of it is shorter."""
+        found = message
+        try:
+            for step in self.steps:
+                found = found[step] if isinstance(step, int) else getattr(found, step)
+        except IndexError:
+            return None
+        if getattr(found, '__msgtype__', '') not in _TIMES:
+            return found
+        stamp = int(found.sec) * SECOND + int(found.nanosec)
+        return as_seconds(stamp) if self.name.endswith('_s') else stamp
+
+
+@dataclass
+class Layout:
+    """The columns of a topic, and the arrays that do not go into columns.
+
+    Attributes
+    ----------
+    limit
+        Elements up to which an array is spread over columns.
+    left_out
+        Why not, by the array's path.
+    """
+
+    limit: int
+    columns: set[Column] = field(default_factory=set)
+    left_out: dict[str, str] = field(default_factory=dict)
+
+    def learn(self, message: Any) -> None:
+        """Take up the columns of a message; an array too long for them stays out for good."""
+        self.columns.update(self._walk(message, (), '', '', ()))
+        if self.left_out:
+            self.columns = {column for column in self.columns if not self._is_out(column.path)}
+
+    def finish(self) -> list[Column]:
+        """Give the columns in the order of the fields, without fields that need too many."""
+        for path, count in self._top_level().items():
+            if count > MAX_COLUMNS:
+                self.left_out[path] = f'would need {count} columns'
+        self.columns = {column for column in self.columns if not self._is_out(column.path)}
+        return sorted(self.columns)
+
+    def _is_out(self, path: str) -> bool:
+        return any(path == out or path.startswith((f'{out}.', f'{out}_')) for out in self.left_out)
+
+    def _top_level(self) -> dict[str, int]:
+        counts: dict[str, int] = {}
+        for column in self.columns:
+            top = column.path.partition('.')[0]
+            counts[top] = counts.get(top, 0) + 1
+        return counts
+
+    def _walk(
+        self, value: Any, place: Place, name: str, path: str, steps: tuple[str | int, ...]
+    ) -> Iterator[Column]:
+        if path in self.left_out:
+            return
+        if getattr(value, '__msgtype__', '') in _TIMES:
+            yield Column((*place, 0), f'{name}_s', f'{path}_s', steps)
+            yield Column((*place, 1), f'{name}_ns', f'{path}_ns', steps)
+        elif is_dataclass(value):
+            for number, part in enumerate(fields(value)):
+                # Constants stand among the fields; of those, ROS wants small letters.
+                if part.name.startswith('_') or part.name.isupper():
+                    continue
+                inner = f'{name}.{part.name}' if name else part.name
+                below = f'{path}.{part.name}' if path else part.name
+                deeper = (*steps, part.name)
+                yield from self._walk(
+                    getattr(value, part.name), (*place, number), inner, below, deeper
+                )
+        elif isinstance(value, list | np.ndarray):
+            if reason := self._refusal(value):
+                self.left_out[path] = reason
+                return
+            for number, element in enumerate(value):
+                deeper = (*steps, number)
+                yield from self._walk(element, (*place, number), f'{name}[{number}]', path, deeper)
+        else:
+            yield Column(place, name, path, steps)
+
+    def _refusal(self, value: Any) -> str:
+        if isinstance(value, np.ndarray) and value.dtype.itemsize == 1 and value.dtype != bool:
+            return 'is an image or another blob of bytes'
+        if len(value) > self.limit:
+            return f'has {len(value)} elements, more than {self.limit}'
+        return ''
+
+
+def as_seconds(stamp: int) -> str:
+    """Write nanoseconds as seconds with all their digits, which a float would not keep."""
+    sign = '-' if stamp < 0 else ''
+    seconds, nanoseconds = divmod(abs(stamp), SECOND)
+    return f'{sign}{seconds}.{nanoseconds:09d}'
+
+
+def as_text(value: Any, *, single: bool = False) -> str:
+    """Write a value for a cell: numbers as short as they can be read back, NaN and None as nothing.
+
+    ``single`` says that the number has 32 bits only, and so needs fewer digits.
+    """
+    if value is None:
+        return ''
+    if isinstance(value, float | np.floating):
+        if math.isnan(value):
+            return ''
+        return str(np.float32(value)) if single else repr(float(value))
+    return str(int(value)) if isinstance(value, bool | np.bool_) else str(value)
+
+
+def singles(store: Typestore, type_name: str) -> frozenset[str]:
+    """Name the paths of a type's fields that are floats of 32 bits."""
+    return frozenset(path for path, base in _leaves(store, type_name, '') if base == 'float32')
+
+
+def varies(store: Typestore, type_name: str) -> bool:
+    """Whether messages of a type may differ in their columns, as sequences make them."""
+    return any(base == 'sequence' for _, base in _leaves(store, type_name, ''))
+
+
+def _leaves(store: Typestore, type_name: str, path: str) -> Iterator[tuple[str, str]]:
+    definitions: Mapping[str, Any] = store.fielddefs
+    for name, (node, detail) in definitions[type_name][1]:
+        inner = f'{path}.{name}' if path else name
+        if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+            if node is Nodetype.SEQUENCE:
+                yield inner, 'sequence'
+            node, detail = detail[0]
+        if node is Nodetype.NAME:
+            yield from _leaves(store, detail, inner)
+        else:
+            yield inner, detail[0]

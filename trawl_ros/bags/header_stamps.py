@@ -1,0 +1,41 @@
+"""When the content of a stored message was so: the stamp of its header, by the bag's own types."""
+
+import struct
+from collections.abc import Callable
+
+from trawl_ros.bags.decoding import find_store
+from trawl_ros.bags.mcap_file import Definition
+from trawl_ros.errors import BagError
+from trawl_ros.messages.stamps import SECOND
+
+StampReader = Callable[[bytes], int | None]
+
+_HEADER = 'std_msgs/msg/Header'
+_ENCAPSULATION = 4
+_TIMES = {0: struct.Struct('>iI'), 1: struct.Struct('<iI')}
+
+
+def stamp_reader(topic: str, definition: Definition) -> StampReader | None:
+    """Make what reads the stamp (ns) off a topic's bytes without decoding the rest.
+
+    Returns
+    -------
+    callable or None
+        None where the type does not begin with a header or is not known. The callable gives
+        None for bytes that are too short.
+    """
+    try:
+        _, fields = find_store(topic, definition).fielddefs[definition.type]
+    except (BagError, KeyError):
+        return None
+    if not fields or fields[0][1][1] != _HEADER:
+        return None
+    return _read
+
+
+def _read(data: bytes) -> int | None:
+    try:
+        seconds, nanoseconds = _TIMES[data[1]].unpack_from(data, _ENCAPSULATION)
+    except (struct.error, KeyError, IndexError):
+        return None
+    return int(seconds) * SECOND + int(nanoseconds)

@@ -1,0 +1,127 @@
+"""What ``trawl bag info`` and ``trawl bag check`` print."""
+
+import json
+from dataclasses import asdict
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+
+from trawl_ros.bags.check import GROUPS, BagCheck, describe_qos
+from trawl_ros.bags.reader import Bag, BagSummary
+from trawl_ros.bags.sources import BagFacts
+from trawl_ros.cli.tables import figure, plain_table
+from trawl_ros.messages.stamps import SECOND
+
+UNKNOWN = 'unknown'
+
+
+def headline(path: Path, count: int, start: int | None, end: int | None) -> str:
+    """Say in a line how much there is, over which time."""
+    if start is None or end is None:
+        return f'{path}: no messages'
+    begin = datetime.fromtimestamp(start / SECOND, timezone.utc)
+    minutes = (end - start) / SECOND / 60
+    return f'{path}: {count} messages in {minutes:.1f} min from {begin:%F %T} UTC'
+
+
+def kind(facts: BagFacts) -> str:
+    """Say in a line what kind of bag it is."""
+    parts = [
+        f'storage {facts.storage}',
+        f'metadata version {facts.version}' if facts.version is not None else 'no metadata',
+        f'ROS {facts.distro or UNKNOWN}',
+        facts.compression or 'not compressed',
+        f'{sum(facts.sizes.values()) / 1e6:.3g} MB in {", ".join(facts.sizes)}',
+    ]
+    return ', '.join(parts)
+
+
+def print_info(bag: Bag, summary: BagSummary, console: Console) -> None:
+    """Print what is in a bag."""
+    console.print(
+        escape(headline(summary.path, summary.count, summary.start, summary.end)), soft_wrap=True
+    )
+    console.print(escape(kind(summary.facts)), soft_wrap=True)
+    for key, text in bag.custom_data.items():
+        first, *more = text.strip().splitlines() or ['']
+        rest = f' … ({len(more)} more lines)' if more else ''
+        console.print(escape(f'{key}: {first}{rest}'), soft_wrap=True)
+    table = plain_table(
+        'messages', 'Hz', 'kB', 'topic', 'type', 'QoS offered', right=('messages', 'Hz', 'kB')
+    )
+    offered = bag.offered()
+    for seen in summary.topics:
+        qos = '; '.join(dict.fromkeys(map(describe_qos, offered.get(seen.topic, ()))))
+        cells = (
+            str(seen.count),
+            figure(seen.rate),
+            f'{seen.bytes / 1e3:.0f}',
+            seen.topic,
+            seen.type,
+            qos or UNKNOWN,
+        )
+        table.add_row(*map(escape, cells))
+    console.print(table)
+
+
+def info_as_json(bag: Bag, summary: BagSummary) -> str:
+    """Give the same for scripts; times in ns, sizes in bytes."""
+    offered = bag.offered()
+    topics = [
+        asdict(seen)
+        | {
+            'rate': seen.rate,
+            'qos': [describe_qos(profile) for profile in offered.get(seen.topic, ())],
+        }
+        for seen in summary.topics
+    ]
+    told: dict[str, Any] = {
+        **asdict(summary),
+        'path': str(summary.path),
+        'topics': topics,
+        'custom_data': bag.custom_data,
+    }
+    return json.dumps(told, indent=2)
+
+
+def print_check(check: BagCheck, console: Console) -> None:
+    """Print what was found out about a bag, findings last."""
+    console.print(escape(headline(check.path, check.count, check.start, check.end)), soft_wrap=True)
+    console.print(escape(kind(check.facts)), soft_wrap=True)
+    numbers = ('messages', 'Hz', 'usual Hz', 'longest gap s', 'back', 'same', 'log − stamp s')
+    table = plain_table('topic', 'group', *numbers, 'QoS offered', right=numbers)
+    marked = {finding.topic for finding in check.findings}
+    for seen in check.topics:
+        lag = '–' if seen.lag_s is None else ' to '.join(f'{bound:.3g}' for bound in seen.lag_s)
+        cells = (
+            seen.topic + (' *' if seen.topic in marked else ''),
+            seen.group or 'other',
+            str(seen.count),
+            figure(seen.rate),
+            figure(seen.usual_rate),
+            figure(seen.longest_gap_s),
+            str(seen.backward),
+            str(seen.duplicates),
+            lag,
+            seen.qos or UNKNOWN,
+        )
+        table.add_row(*map(escape, cells))
+    console.print(table)
+    for group, names in check.missing.items():
+        if names:
+            told = 'all' if len(names) == len(GROUPS[group]) else ', '.join(names)
+            console.print(escape(f'Not in it of {group}: {told}'), soft_wrap=True)
+    for finding in check.findings:
+        where = f'{finding.topic} ' if finding.topic else ''
+        console.print(escape(f'Found ({finding.kind}): {where}{finding.text}'), soft_wrap=True)
+    number = len(check.findings)
+    console.print(f'{number} findings' if number else 'Sound: nothing found')
+
+
+def check_as_json(check: BagCheck) -> str:
+    """Give the same for scripts; times in ns, sizes in bytes."""
+    told = {'sound': check.sound, **asdict(check), 'path': str(check.path)}
+    return json.dumps(told, indent=2)
