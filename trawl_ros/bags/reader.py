@@ -167,8 +167,13 @@ class Bag:
 
     def as_stored(self) -> Iterator[RawMessage]:
         """Give all messages undecoded and unchecked, whatever their types; there may be none."""
+        read = 0
         for topic, type_name, message in self._source.messages():
+            read += 1
             yield RawMessage(topic, type_name, message.log_time, message.publish_time, message.data)
+        stated = self._source.stated_count
+        if read and stated is not None and stated != read:
+            self._report(f'{self.path}: {read} of {stated} messages could be read')
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Received]:
         """Give decoded messages, of all topics or of those named in full.
