@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rclpy.duration import Infinite
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
@@ -68,16 +69,27 @@ def connection_problems(
                     f'{topic} has type {info.topic_type} from {info.node_name}; expected '
                     f'{expected.type}'
                 )
-            elif reason := _mismatch(info.qos_profile, expected.profile):
+            elif reason := _mismatch(info.qos_profile, _as_found(expected.profile)):
                 problems.append(f'{topic}: nothing arrives from {info.node_name}: {reason}')
         if len(infos) > 1 and topic not in shared and find_topic(topic, node.get_namespace()):
             names = ', '.join(sorted(info.node_name for info in infos))
             problems.append(f'{len(infos)} publishers on {topic} ({names}); expected one')
     for topic, profile in offered.items():
         for info in node.get_subscriptions_info_by_topic(topic):
-            if reason := _mismatch(profile, info.qos_profile):
+            if reason := _mismatch(_as_found(profile), info.qos_profile):
                 problems.append(f'{topic}: nothing arrives at {info.node_name}: {reason}')
     return problems
+
+
+def _as_found(profile: QoSProfile) -> QoSProfile:
+    """An own profile as others find it in the graph: without end where it sets no limit."""
+    return QoSProfile(
+        depth=profile.depth,
+        reliability=profile.reliability,
+        durability=profile.durability,
+        deadline=Infinite,
+        liveliness_lease_duration=Infinite,
+    )
 
 
 def _mismatch(offered: QoSProfile, asked: QoSProfile) -> str:

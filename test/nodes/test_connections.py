@@ -1,0 +1,179 @@
+"""Who comes late, who speaks another quality of service, what gets lost, a clock set back."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
+
+from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
+from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
+from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.nodes.message_classes import message_class  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
+from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
+from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 103
+WINCH = 'truth/winch'
+BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+TRANSIENT = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Lookout(TrawlNode):
+    """Hears what nodes say of themselves."""
+
+    def __init__(self, name='lookout', **kwargs):
+        super().__init__(name, **kwargs)
+        self.heard = {}
+        self.listen('/diagnostics', self._hear, CONSUMER)
+
+    def _hear(self, message):
+        for status in read_statuses(message):
+            self.heard[status.name] = status
+
+    def message_of(self, name):
+        status = self.heard.get(f'/trawl/{name}')
+        return status.message if status else ''
+
+
+class Late(TrawlNode):
+    """Listens to truth and to the log from whenever it comes."""
+
+    def __init__(self, **kwargs):
+        super().__init__('late', **kwargs)
+        self.truth, self.speeds = [], []
+        self.listen(WINCH, self.truth.append, CONSUMER)
+        self.listen('vessel/velocity_water', self.speeds.append, CONSUMER)
+
+
+@pytest.fixture
+def graph(open_graph):
+    with open_graph(DOMAIN) as graph:
+        yield graph
+
+
+def test_who_comes_late_hears_what_follows_and_stops_nobody(graph, gear_path):
+    lookout = graph.add(Lookout)
+    first = graph.add(WinchNode, gear=str(gear_path), use_sim_time=True)
+    simulation = graph.add(
+        SimNode, gear=str(gear_path), warp_length_m=300, speed_m_s=2.1, time_scale=0.0,
+        wait_for=['winch_node'],
+    )  # fmt: skip
+    graph.until(lambda: simulation._tow.time_s > 10.0)
+    second = graph.add(VesselNode, gear=str(gear_path), use_sim_time=True)
+    late = graph.add(Late, use_sim_time=True)
+    begun = simulation._tow.time_s
+    graph.until(lambda: len(late.speeds) > 5 and len(late.truth) > 50)
+    assert stamp_of(late.truth[0]) >= begun * SECOND - SECOND
+    stamps = [stamp_of(message) for message in late.truth]
+    assert stamps == list(range(stamps[0], stamps[-1] + 1, SECOND // 10))
+    for node in (first, second):
+        assert node.traffic.dropped == 0, 'what was published before is not lost'
+        assert node.traffic.total('received') > 50
+    graph.until(lambda: lookout.message_of('vessel_node: instruments').startswith('every instant'))
+
+
+@pytest.mark.parametrize(
+    ('offered', 'asked', 'reason'),
+    [
+        (BEST_EFFORT, CONSUMER, 'best effort publisher and reliable subscription'),
+        (CONSUMER, TRANSIENT, 'volatile publisher and transient local subscription'),
+    ],
+    ids=['reliability', 'durability'],
+)
+def test_a_mismatch_of_qos_is_said_on_both_sides(graph, offered, asked, reason):
+    lookout = graph.add(Lookout)
+    talker = graph.add(lambda **kwargs: TrawlNode('talker', **kwargs))
+    listener = graph.add(lambda **kwargs: TrawlNode('listener', **kwargs))
+    kind = 'sensor_msgs/msg/JointState'
+    sender = talker.create_publisher(message_class(kind), WINCH, offered)
+    talker._senders[WINCH] = sender
+    listener.listen(WINCH, lambda message: None, asked)
+    there = f'/trawl/truth/winch: nothing arrives from talker: {reason}'
+    here = f'/trawl/truth/winch: nothing arrives at listener: {reason}'
+    graph.until(lambda: lookout.message_of('listener: messages') == there, 5.0)
+    graph.until(lambda: lookout.message_of('talker: messages') == here, 5.0)
+    assert lookout.heard['/trawl/listener: messages'].level == WARN
+    del talker._senders[WINCH]
+    talker.destroy_publisher(sender)
+    graph.until(lambda: lookout.heard['/trawl/listener: messages'].level == OK, 5.0)
+
+
+BURST = """\
+import sys, time, rclpy
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+rclpy.init(domain_id={domain})
+node = rclpy.create_node('talker', namespace='trawl')
+sender = node.create_publisher(JointState, '{topic}', QoSProfile(depth=5))
+while not sender.get_subscription_count():
+    time.sleep(0.05)
+time.sleep(0.5)
+message = JointState(position=[0.0] * 2000)
+for number in range({number}):
+    sender.publish(message)
+sys.stdin.read()
+"""
+
+
+def test_messages_that_get_lost_are_counted_and_said(graph):
+    number = 2000
+    lookout = graph.add(Lookout)
+    ear = graph.add(lambda **kwargs: TrawlNode('ear', **kwargs))
+    ear.listen(WINCH, lambda message: None, CONSUMER)
+    code = BURST.format(domain=DOMAIN, topic=WINCH, number=number)
+    talker = subprocess.Popen(
+        [sys.executable, '-c', code], stdin=subprocess.PIPE, env=dict(os.environ)
+    )
+
+    def counts():
+        values = lookout.heard['/trawl/ear: messages'].values
+        return tuple(int(values.get(f'{way} /trawl/truth/winch', 0))
+                     for way in ('received', 'dropped'))  # fmt: skip
+
+    try:
+        graph.until(lambda: '/trawl/ear: messages' in lookout.heard)
+        graph.until(lambda: sum(counts()) == number)
+        _, dropped = counts()
+        assert 0 < dropped < number
+        status = lookout.heard['/trawl/ear: messages']
+        assert status.level == WARN
+        assert f'{dropped} messages were lost on the way here' in status.message
+        assert status.values['dropped'] == str(dropped)
+    finally:
+        talker.communicate(b'')
+
+
+def test_a_clock_that_is_set_back_starts_the_identification_anew(graph, gear_path):
+    lookout = graph.add(Lookout)
+    graph.add(IdentificationNode, gear=str(gear_path), use_sim_time=True)
+    watch = graph.add(lambda **kwargs: TrawlNode('watch', **kwargs))
+    watch.advertise('/clock')
+
+    def resets():
+        status = lookout.heard.get('/trawl/identification_node: estimate')
+        return status.values['resets'] if status else None
+
+    def show(second):
+        watch.send(*clock_message(second * SECOND))
+        graph.rest(0.2)
+
+    graph.until(lambda: watch._senders['/clock'].get_subscription_count())
+    for second in (100, 101, 102):
+        show(second)
+    graph.until(lambda: resets() == '0')
+    show(5)
+    graph.until(lambda: resets() == '1', 5.0)
+    show(6)
+    graph.rest(1.2)
+    assert resets() == '1'

@@ -1,0 +1,138 @@
+"""A tow is paused, towed on step by step, and resumed; set back, all begin anew."""
+
+from itertools import pairwise
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.messages.cdr import serialize  # noqa: E402
+from trawl_ros.messages.diagnostics import read_statuses  # noqa: E402
+from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
+from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
+from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
+from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 102
+INSTRUMENTS = (WinchNode, DoorSensorNode, TrawlSonarNode, VesselNode)
+
+
+class Crew(TrawlNode):
+    """Hears truth and every sample."""
+
+    def __init__(self, **kwargs):
+        super().__init__('crew', **kwargs)
+        self.truth = []
+        self.statuses_heard = {}
+        self.samples = {}
+        self.listen('truth/winch', self.truth.append, CONSUMER)
+        self.listen('/diagnostics', self._hear, CONSUMER)
+        for kind in INSTRUMENTS:
+            for topic in kind.SAMPLES:
+                self.samples[topic] = []
+                self.listen(topic, self.samples[topic].append, CONSUMER)
+
+    def _hear(self, message):
+        for status in read_statuses(message):
+            self.statuses_heard[status.name] = status
+
+    @property
+    def latest(self):
+        return stamp_of(self.truth[-1]) / SECOND if self.truth else -1.0
+
+
+@pytest.fixture(scope='module')
+def graph(open_graph):
+    with open_graph(DOMAIN) as graph:
+        yield graph
+
+
+@pytest.fixture(scope='module')
+def crew(graph):
+    return graph.add(Crew, use_sim_time=True)
+
+
+@pytest.fixture(scope='module')
+def simulation(graph, crew, gear_path):
+    for kind in INSTRUMENTS:
+        graph.add(kind, gear=str(gear_path), use_sim_time=True)
+    node = graph.add(
+        SimNode,
+        gear=str(gear_path),
+        warp_length_m=300,
+        speed_m_s=2.1,
+        time_scale=10.0,
+    )
+    graph.until(lambda: crew.latest > 1.0)
+    return node
+
+
+# In the order of one watch at sea: the tests share the simulation, which is slow to begin.
+
+
+def test_paused_nothing_moves_and_resumed_it_goes_on_without_a_gap(graph, crew, simulation):
+    answer = graph.call(crew, 'pause')
+    assert answer.success
+    assert answer.message.startswith('the tow is paused at ')
+    graph.rest(0.2)
+    at = crew.latest
+    graph.rest(0.5)
+    assert crew.latest == at
+    graph.until(lambda: crew.statuses_heard['/trawl/sim_node: tow'].message == 'paused', 3.0)
+    assert graph.call(crew, 'resume').success
+    graph.until(lambda: crew.latest > at + 1.0)
+    stamps = [stamp_of(message) for message in crew.truth]
+    assert {after - before for before, after in pairwise(stamps)} == {SECOND // 10}
+
+
+def test_a_step_is_one_truth(graph, crew, simulation):
+    refusal = graph.call(crew, 'step')
+    assert not refusal.success
+    assert refusal.message == 'the tow is not paused; expected a call of pause before'
+    graph.call(crew, 'pause')
+    graph.rest(0.2)
+    number, at = len(crew.truth), crew.latest
+    for _ in range(3):
+        assert graph.call(crew, 'step').success
+    graph.until(lambda: len(crew.truth) == number + 3)
+    graph.rest(0.2)
+    assert len(crew.truth) == number + 3
+    assert crew.latest == pytest.approx(at + 0.3)
+    graph.call(crew, 'resume')
+
+
+def test_real_time_factors_are_reported_by_all_who_go_by_stamps(graph, crew, simulation):
+    names = ('sim_node', *(node_name(kind) for kind in INSTRUMENTS))
+    graph.rest(2.5)
+    for name in names:
+        values = crew.statuses_heard[f'/trawl/{name}: clock'].values
+        assert float(values['real-time factor']) == pytest.approx(10.0, rel=0.3), name
+    assert 'real-time factor' not in crew.statuses_heard['/trawl/crew: clock'].values
+
+
+def test_after_a_reset_instruments_begin_anew_and_read_the_same_again(graph, crew, simulation):
+    graph.until(lambda: crew.latest > 22.0)
+    answer = graph.call(crew, 'reset')
+    assert answer.success, answer.message
+    graph.until(lambda: crew.truth[-1].header.stamp.sec < 5)
+    graph.until(lambda: crew.latest > 22.0)
+    for topic, messages in crew.samples.items():
+        stamps = [stamp_of(message) for message in messages]
+        (again,) = (i for i in range(1, len(stamps)) if stamps[i] < stamps[i - 1])
+        first, second = messages[:again], messages[again:]
+        number = min(len(first), len(second))
+        assert number >= 1, topic
+        assert [*map(serialize, first[:number])] == [*map(serialize, second[:number])], topic
+    for kind in INSTRUMENTS:
+        status = crew.statuses_heard[f'/trawl/{node_name(kind)}: instruments']
+        assert status.values['incomplete instants'] == '0'
+
+
+def node_name(kind):
+    return kind.__module__.rpartition('.')[2]
