@@ -11,13 +11,15 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
 
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import SECOND, header, stamp_of  # noqa: E402
 from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
+from trawl_ros.nodes import sync  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.nodes.message_classes import message_class  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
+from trawl_ros.nodes.sync import HEADER, SYNC  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 
@@ -81,6 +83,41 @@ def test_who_comes_late_hears_what_follows_and_stops_nobody(graph, gear_path):
         assert node.traffic.dropped == 0, 'what was published before is not lost'
         assert node.traffic.total('received') > 50
     graph.until(lambda: lookout.message_of('vessel_node: instruments').startswith('every instant'))
+
+
+class Consumer(TrawlNode):
+    """Reports that it keeps up, until it falls silent."""
+
+    def __init__(self, **kwargs):
+        super().__init__('consumer', **kwargs)
+        self.silent = False
+        self.advertise(SYNC, HEADER)
+        self.listen(WINCH, lambda message: self.report(stamp_of(message)), CONSUMER)
+        self.every(0.2, lambda: self.report(0))
+
+    def report(self, stamp):
+        if not self.silent:
+            self.send(SYNC, header(stamp, 'consumer'))
+
+
+def test_a_needed_consumer_that_dies_holds_the_tow_up_for_a_while_only(
+    graph, scenario_path, monkeypatch
+):
+    monkeypatch.setattr(sync, 'SILENT_S', 1.5)
+    lookout = graph.add(Lookout)
+    consumer = graph.add(Consumer, use_sim_time=True)
+    simulation = graph.add(
+        SimNode, scenario=str(scenario_path), time_scale=0.0, exit_at_end=True,
+        wait_for=['consumer'],
+    )  # fmt: skip
+    graph.until(lambda: simulation._tow.time_s > 2.0)
+    consumer.silent = True
+    held_at = simulation._tow.time_s
+    graph.rest(0.5)
+    assert simulation._tow.time_s <= held_at + simulation.parameters['lead_s'] + 0.6
+    graph.until(lambda: 'goes on without consumer' in lookout.message_of('sim_node: tow'))
+    graph.until(lambda: simulation.exit_code is not None)
+    assert simulation.exit_code == 1, 'a tow that was not followed to its end'
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,133 @@
+"""A node that is killed in the middle of a tow stops no other, and comes back to work."""
+
+import signal
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.cli.processes import Processes  # noqa: E402
+from trawl_ros.messages.diagnostics import ERROR, read_statuses  # noqa: E402
+from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+DOMAIN = 104
+WATCHED = {
+    'sim_node': 'truth/winch',
+    'winch_node': 'winch/joint_states',
+    'door_sensor_node': 'door/port/pressure',
+    'trawl_sonar_node': 'sonar/pressure',
+    'vessel_node': 'vessel/heading',
+}
+"""A topic of each source."""
+
+INSTRUMENTS = tuple(node for node in WATCHED if node != 'sim_node')
+LISTENERS = {'bag_recorder': ('bag', 'recorded until'),
+             'identification_node': ('estimate', 'samples used until')}  # fmt: skip
+"""Status and key in which each listener says how far it has come."""
+
+NEEDED = ['bag_recorder', *INSTRUMENTS]
+
+
+class Lookout(TrawlNode):
+    """Keeps the stamps of each source, and what every node says of itself."""
+
+    def __init__(self, **kwargs):
+        super().__init__('lookout', **kwargs)
+        self.stamps = {node: [] for node in WATCHED}
+        self.heard = {}
+        for node, topic in WATCHED.items():
+            self.listen(topic, self.noting(node), CONSUMER)
+        self.listen('/diagnostics', self._hear, CONSUMER)
+
+    def noting(self, node):
+        return lambda message: self.stamps[node].append(stamp_of(message))
+
+    def _hear(self, message):
+        for status in read_statuses(message):
+            self.heard[status.name] = status
+
+    def come_to(self, listener):
+        subsystem, key = LISTENERS[listener]
+        status = self.heard.get(f'/trawl/{listener}: {subsystem}')
+        return float(status.values[key]) if status else 0.0
+
+
+class Tow:
+    """All nodes as processes, and somebody who looks at them."""
+
+    def __init__(self, graph, processes, folder, gear):
+        self.graph, self.processes, self.folder = graph, processes, folder
+        self.gear = str(gear)
+        self.bags = 0
+        self.lookout = graph.add(Lookout, use_sim_time=True)
+        for node in (*INSTRUMENTS, *LISTENERS, 'sim_node'):
+            self.start(node)
+
+    def start(self, node):
+        parameters = {'gear': self.gear}
+        if node == 'bag_recorder':
+            self.bags += 1
+            parameters = {'output': str(self.folder / f'bag{self.bags}')}
+        if node == 'sim_node':
+            parameters |= {'warp_length_m': 300, 'speed_m_s': 2.1, 'time_scale': 5.0}
+            parameters |= {'wait_for': NEEDED}
+        else:
+            parameters |= {'use_sim_time': True}
+        self.processes.start(node, **parameters)
+
+    def kill(self, node):
+        process = self.processes._running.pop(node)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+
+    def all_go_on(self):
+        """Wait until each source has spoken and each listener has come further."""
+        sources = {node: len(stamps) for node, stamps in self.lookout.stamps.items()}
+        latest = self.lookout.stamps['sim_node']
+        mark = latest[-1] / SECOND if latest else 0.0
+        for node, before in sources.items():
+            self.graph.until(lambda: len(self.lookout.stamps[node]) > before + 1)  # noqa: B023
+        for listener in LISTENERS:
+            self.graph.until(lambda: self.lookout.come_to(listener) > mark)  # noqa: B023
+
+
+@pytest.fixture(scope='module')
+def tow(open_graph, gear_path, tmp_path_factory):
+    folder = tmp_path_factory.mktemp('tow')
+    environment = {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_DOMAIN_ID': str(DOMAIN),
+        'ROS_LOG_DIR': str(folder),
+    }
+    with open_graph(DOMAIN) as graph, Processes(folder / 'log', environment) as processes:
+        tow = Tow(graph, processes, folder, gear_path)
+        tow.all_go_on()
+        yield tow
+
+
+@pytest.mark.parametrize('node', [*INSTRUMENTS, *LISTENERS])
+def test_a_node_that_is_killed_comes_back_to_work_and_stops_nobody(tow, node):
+    tow.kill(node)
+    tow.start(node)
+    tow.all_go_on()
+    tow.processes.check()
+    errors = [s.name for s in tow.lookout.heard.values() if s.level == ERROR]
+    assert not errors
+
+
+def test_a_simulation_that_is_killed_begins_anew_and_its_listeners_with_it(tow):
+    tow.kill('sim_node')
+    reached = {node: stamps[-1] for node, stamps in tow.lookout.stamps.items()}
+    for stamps in tow.lookout.stamps.values():
+        stamps.clear()
+    tow.start('sim_node')
+    tow.graph.until(lambda: all(tow.lookout.stamps.values()))
+    for node, stamps in tow.lookout.stamps.items():
+        began = [stamp for stamp in stamps if stamp < reached[node]]
+        assert began, node
+    assert tow.lookout.stamps['sim_node'][0] == 0
+    tow.processes.check()
