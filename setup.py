@@ -89,6 +89,7 @@ setup(
     ],
     install_requires=[
         'click>=8.1,<9',
+        'gsw>=3.6,<4',
         'jinja2>=3.1,<4',
         'lz4>=4,<5',
         'matplotlib>=3.6,<4',

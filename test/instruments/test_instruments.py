@@ -5,32 +5,42 @@ import math
 import numpy as np
 import pytest
 
-from trawl_ros.instruments.channel import ErrorModel
-from trawl_ros.instruments.doors import DoorAttitude, DoorPressure, DoorSpread, pitch_and_roll
+from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, pitch_and_roll
+from trawl_ros.instruments.error_records import (
+    ForceErrors,
+    LengthErrors,
+    SpeedErrors,
+    TurnErrors,
+)
 from trawl_ros.instruments.geodesy import Datum, to_latitude_longitude
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import (
     AttitudeParameters,
     FixParameters,
-    ForceErrors,
     HeadingParameters,
-    LengthErrors,
     PressureParameters,
     RangeParameters,
-    SpeedErrors,
-    TurnErrors,
+    SpreadParameters,
     VelocityParameters,
     WinchParameters,
 )
+from trawl_ros.instruments.pressure import PressureInstrument
 from trawl_ros.instruments.sampling import SECOND
+from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.trawl_sonar import SonarOpening, SonarPressure
 from trawl_ros.instruments.vessel import GpsFix, GpsVelocity, Heading, SpeedLog
 from trawl_ros.instruments.winch import WinchInstrument
 from trawl_ros.model.water import Water
-from trawl_ros.simulation.truth import WinchTruth
+from trawl_ros.simulation.truth import DoorTruth, WinchTruth
 
 DRAWS = Draws(seed=4)
+SEA = Surroundings(Water().pressure)
 LIMITS = {'min_range_m': 5.0, 'max_range_m': 400.0}
+
+
+def door(y: float, z: float) -> DoorTruth:
+    nothing, level = np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0])
+    return DoorTruth(np.array([0.0, y, z]), level, nothing, nothing, 0, 0, 0, nothing, nothing)
 
 
 def turn(axis: str, angle: float) -> np.ndarray:
@@ -53,8 +63,7 @@ def test_a_winch_sample_has_both_sides_with_errors_of_their_own() -> None:
         tension=ForceErrors(resolution_kn=0.1),
     )
     winches = (WinchTruth(500.0, 0.5, 160_049.0), WinchTruth(510.0, -0.5, 150_051.0))
-    sample = WinchInstrument(parameters, DRAWS).observe(winches, 7)
-    assert sample is not None
+    (sample,) = WinchInstrument(parameters, DRAWS).observe(winches, 7)
     assert sample.stamp == 7
     assert sample.speeds == (0.5, -0.5)
     assert sample.tensions == pytest.approx((160_000.0, 150_100.0))
@@ -64,9 +73,10 @@ def test_a_winch_sample_has_both_sides_with_errors_of_their_own() -> None:
 
 def test_door_pressure_is_absolute_and_follows_the_density_of_the_water() -> None:
     water = Water(density=1026.0, density_gradient=0.005)
-    sensor = DoorPressure('port', PressureParameters(rate_hz=1.0), water.pressure, DRAWS)
-    sample = sensor.observe(np.array([9.0, 9.0, -200.0]), 0)
-    assert sample is not None
+    sensor = PressureInstrument(
+        'door/port/pressure', 'port', PressureParameters(rate_hz=1.0), water.pressure, DRAWS
+    )
+    (sample,) = sensor.observe(200.0, 0)
     assert (sample.place, sample.std) == ('port', 0.0)
     expected = 101_325 + 9.80665 * (1026.0 * 200 + 0.005 * 200**2 / 2)
     assert sample.pressure == pytest.approx(expected, rel=1e-12)
@@ -74,10 +84,8 @@ def test_door_pressure_is_absolute_and_follows_the_density_of_the_water() -> Non
 
 def test_a_pressure_sensor_out_of_the_water_reads_the_air() -> None:
     sensor = SonarPressure(PressureParameters(rate_hz=1.0), Water().pressure, DRAWS)
-    above = sensor.observe(-3.0, 0)
-    unknown = sensor.observe(math.nan, SECOND)
-    assert above is not None
-    assert unknown is not None
+    (above,) = sensor.observe(-3.0, 0)
+    (unknown,) = sensor.observe(math.nan, SECOND)
     assert above.pressure == 101_325.0
     assert math.isnan(unknown.pressure)
 
@@ -100,26 +108,24 @@ def test_pitch_is_nose_down_and_roll_is_top_to_starboard_on_any_heading(heading:
 
 def test_attitude_errs_by_the_stated_amount() -> None:
     sensor = DoorAttitude('starboard', AttitudeParameters(rate_hz=1.0, noise_deg=0.5), DRAWS)
-    samples = [sensor.observe(turn('y', 0.1), k * SECOND) for k in range(4000)]
-    pitches = np.array([s.pitch for s in samples if s is not None])
-    assert samples[0] is not None
+    samples = [s for k in range(4000) for s in sensor.observe(turn('y', 0.1), k * SECOND)]
+    pitches = np.array([s.pitch for s in samples])
     assert (samples[0].side, samples[0].std) == ('starboard', pytest.approx(math.radians(0.5)))
     assert pitches.mean() == pytest.approx(0.1, abs=1e-3)
     assert pitches.std() == pytest.approx(math.radians(0.5), rel=0.05)
 
 
 def test_spread_is_the_distance_between_the_doors() -> None:
-    sensor = DoorSpread(RangeParameters(rate_hz=0.5, **LIMITS), DRAWS)
-    sample = sensor.observe((np.array([0.0, 60.0, -99.0]), np.array([0.0, -60.0, -104.0])), 0)
-    assert sample is not None
+    sensor = DoorSpread(SpreadParameters(rate_hz=0.5, **LIMITS), SEA, DRAWS)
+    (sample,) = sensor.observe((door(60.0, -99.0), door(-60.0, -104.0)), 0)
     assert (sample.what, sample.min_range, sample.max_range) == ('spread', 5.0, 400.0)
     assert sample.distance == pytest.approx(math.hypot(120.0, 5.0))
 
 
 def test_a_distance_out_of_range_is_infinite() -> None:
     sensor = SonarOpening('opening_height', RangeParameters(rate_hz=1.0, **LIMITS), DRAWS)
-    readings = [sensor.observe(d, k * SECOND) for k, d in enumerate((4.0, 5.0, 401.0))]
-    assert [r.distance for r in readings if r is not None] == [-math.inf, 5.0, math.inf]
+    readings = [r for k, d in enumerate((4.0, 5.0, 401.0)) for r in sensor.observe(d, k * SECOND)]
+    assert [r.distance for r in readings] == [-math.inf, 5.0, math.inf]
 
 
 def test_log_and_gps_report_their_own_velocity() -> None:
@@ -129,16 +135,14 @@ def test_log_and_gps_report_their_own_velocity() -> None:
         (SpeedLog(parameters, DRAWS), 'water'),
         (GpsVelocity(parameters, DRAWS), 'ground'),
     ):
-        sample = sensor.observe(truth, 0)
-        assert sample is not None
+        (sample,) = sensor.observe(truth, 0)
         assert (sample.over, sample.yaw_rate) == (over, 0.01)
         assert sample.velocity == pytest.approx([2.0, -0.1, 0.0])
 
 
 def test_heading_stays_within_half_a_turn() -> None:
     sensor = Heading(HeadingParameters(rate_hz=1.0), DRAWS)
-    sample = sensor.observe(math.radians(350.0), 0)
-    assert sample is not None
+    (sample,) = sensor.observe(math.radians(350.0), 0)
     assert sample.heading == pytest.approx(math.radians(-10.0))
 
 
@@ -179,10 +183,9 @@ def test_a_position_comes_back_through_geocentric_coordinates(
 
 def test_a_fix_errs_by_metres_on_the_ground() -> None:
     sensor = GpsFix(FixParameters(rate_hz=1.0, noise_m=2.0), Datum(60.0, 2.0), DRAWS)
-    fixes = [sensor.observe(np.zeros(3), k * SECOND) for k in range(3000)]
-    east = np.array([(f.longitude - 2.0) * 55_800.0 for f in fixes if f is not None])
+    fixes = [fix for k in range(3000) for fix in sensor.observe(np.zeros(3), k * SECOND)]
+    east = np.array([(f.longitude - 2.0) * 55_800.0 for f in fixes])
     assert east.std() == pytest.approx(2.0, rel=0.05)
-    assert fixes[0] is not None
     assert fixes[0].std == 2.0
 
 
@@ -202,8 +205,15 @@ def test_units_of_the_file_become_si() -> None:
         bias_per_state_deg_s=18.0,
         resolution_deg_s=1.8,
         stated_std_deg_s=36.0,
+        offset_deg_s=-90.0,
+        drift_deg_s_per_hour=1.0,
+        lowest_deg_s=-180.0,
+        highest_deg_s=180.0,
     )
     pi = math.pi
-    assert errors.model() == ErrorModel(
-        *map(pytest.approx, (pi, pi / 2, 7.0, pi / 10, pi / 100, pi / 5))
-    )
+    found = errors.model()
+    assert (found.white_std, found.correlated_std) == pytest.approx((pi, pi / 2))
+    assert (found.correlation_time, found.bias_std) == pytest.approx((7.0, pi / 10))
+    assert (found.resolution, found.stated_std) == pytest.approx((pi / 100, pi / 5))
+    assert (found.offset, found.drift) == pytest.approx((-pi / 2, pi / 180))
+    assert (found.lowest, found.highest) == pytest.approx((-pi, pi))

@@ -23,6 +23,7 @@ from trawl_ros.instruments.samples import (
 )
 from trawl_ros.instruments.sampling import SECOND
 from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.instruments.winch import WinchInstruments
@@ -30,6 +31,7 @@ from trawl_ros.model.water import Water
 from trawl_ros.simulation.truth import DoorTruth, NetTruth, Truth, VesselTruth, WinchTruth
 
 PRESSURE = Water().pressure
+SEA = Surroundings(PRESSURE)
 DRAWS = Draws(seed=3)
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -65,7 +67,7 @@ def observed(instruments: Observer, truths: list[Truth]) -> list[Sample]:
 
 
 def suite(draws: Draws = DRAWS, parameters: InstrumentParameters | None = None) -> InstrumentSuite:
-    return InstrumentSuite(parameters or load_instruments(), pressure_at=PRESSURE, draws=draws)
+    return InstrumentSuite(parameters or load_instruments(), surroundings=SEA, draws=draws)
 
 
 def kind(sample: Sample) -> str:
@@ -111,8 +113,8 @@ def test_a_group_alone_gives_what_the_whole_suite_gives() -> None:
     parameters, draws = load_instruments(), Draws(seed=3, state_changes=(10.0,))
     groups = (
         WinchInstruments(parameters.winch, draws),
-        DoorInstruments(parameters.door, draws, pressure_at=PRESSURE),
-        SonarInstruments(parameters.sonar, draws, pressure_at=PRESSURE),
+        DoorInstruments(parameters.door, draws, surroundings=SEA),
+        SonarInstruments(parameters.sonar, draws, surroundings=SEA),
         VesselInstruments(parameters.vessel, draws),
     )
     alone = [repr(s) for group in groups for s in observed(group, tow(30))]

@@ -16,6 +16,7 @@ from trawl_ros.errors import TrawlError  # noqa: E402
 from trawl_ros.instruments.instrument import Draws  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
+from trawl_ros.instruments.surroundings import Surroundings  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.diagnostics import ERROR, WARN, read_statuses  # noqa: E402
 from trawl_ros.messages.estimates import (  # noqa: E402
@@ -74,7 +75,7 @@ def steady_bag(model, tmp_path_factory):
     """Instruments that look at one steady state of the gear for a while."""
     truth = Simulation(model, Command(400.0, 400.0, 2.1)).truth()
     suite = InstrumentSuite(
-        load_instruments(), pressure_at=model.water.pressure, draws=Draws(seed=3)
+        load_instruments(), surroundings=Surroundings(model.water.pressure), draws=Draws(seed=3)
     )
     path = tmp_path_factory.mktemp('steady') / 'bag'
     with BagWriter(path) as bag:

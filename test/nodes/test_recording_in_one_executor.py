@@ -102,7 +102,7 @@ def test_the_data_are_those_of_one_process(tow, scenario_path):
     scenario = load_scenario(scenario_path)
     trial = Trial(scenario)
     suite = InstrumentSuite(
-        scenario.instruments, pressure_at=trial.model.water.pressure, draws=scenario.draws
+        scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
     )
     truth, samples = {}, {}
     while (instant := trial.step()) is not None:

@@ -60,7 +60,10 @@ def recorded(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
     """Tow a trial to its end; give each stamp (ns) with all messages its scenario records."""
     scenario = trial.scenario
     suite = InstrumentSuite(
-        scenario.instruments, pressure_at=trial.model.water.pressure, draws=scenario.draws
+        scenario.instruments,
+        surroundings=scenario.surroundings,
+        draws=scenario.draws,
+        faults=scenario.faults,
     )
     while (truth := trial.step()) is not None:
         messages: list[TopicMessage] = []

@@ -1,4 +1,4 @@
-"""Distances: what spread sensors and a sonar's operator report."""
+"""Distances: what range sensors report."""
 
 import math
 
@@ -7,19 +7,22 @@ from trawl_ros.instruments.parameters import RangeParameters
 from trawl_ros.instruments.samples import RangeSample
 
 
+def within(distance: float, low: float, high: float) -> float:
+    """Give a distance (m), or ±infinity where it is out of the sensor's limits (REP-117)."""
+    if distance > high:
+        return math.inf
+    return -math.inf if distance < low else distance
+
+
 class RangeInstrument(Instrument[float, RangeSample]):
-    """Sees a distance (m) and reports it; out of its limits it reports ±infinity (REP-117)."""
+    """Sees a distance (m) and reports it."""
 
     def __init__(self, name: str, what: str, parameters: RangeParameters, draws: Draws) -> None:
-        super().__init__(name, parameters.rate_hz, {'distance': parameters.model()}, draws)
+        super().__init__(name, parameters.timing(), {'distance': parameters.model()}, draws)
         self._what = what
         self._limits = parameters.min_range_m, parameters.max_range_m
 
     def _read(self, part: float, stamp: int) -> RangeSample:
         low, high = self._limits
-        distance = self._measure('distance', part, stamp)
-        if distance > high:
-            distance = math.inf
-        elif distance < low:
-            distance = -math.inf
+        distance = within(self._measure('distance', part, stamp), low, high)
         return RangeSample(stamp, self._what, distance, self._stated_std('distance'), low, high)

@@ -4,17 +4,23 @@ import math
 
 import numpy as np
 
-from trawl_ros.instruments.distance import RangeInstrument
+from trawl_ros.instruments.distance import within
+from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import (
     AttitudeParameters,
     DoorParameters,
-    PressureParameters,
-    RangeParameters,
+    SpreadParameters,
 )
-from trawl_ros.instruments.pressure import PressureAt, PressureInstrument
-from trawl_ros.instruments.samples import AttitudeSample, PressureSample, RangeSample, Sample
-from trawl_ros.simulation.truth import SIDES, Truth
+from trawl_ros.instruments.pressure import PressureInstrument
+from trawl_ros.instruments.samples import AttitudeSample, RangeSample, Sample
+from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.simulation.truth import SIDES, DoorTruth, Truth
+
+Doors = tuple[DoorTruth, DoorTruth]
+
+_OUTWARD = (1.0, -1.0)
+"""The way (along y of the door frame) in which each door's outer face looks, port first."""
 
 
 def pitch_and_roll(orientation: np.ndarray) -> tuple[float, float]:
@@ -29,19 +35,18 @@ def pitch_and_roll(orientation: np.ndarray) -> tuple[float, float]:
     return math.atan2(-up[0], math.hypot(up[1], up[2])), math.atan2(up[1], up[2])
 
 
-class DoorPressure:
-    """A door's depth sensor. Sees the door's position (3,) in ``map``."""
-
-    def __init__(
-        self, side: str, parameters: PressureParameters, pressure_at: PressureAt, draws: Draws
-    ) -> None:
-        self._sensor = PressureInstrument(
-            f'door/{side}/pressure', side, parameters, pressure_at, draws
-        )
-
-    def observe(self, position: np.ndarray, stamp: int) -> PressureSample | None:
-        """Give a sample where one is due."""
-        return self._sensor.observe(-float(position[2]), stamp)
+def off_axis(doors: Doors) -> float:
+    """Give the larger angle (rad) between a door's inward normal and the way to the other door."""
+    port, starboard = (door.position for door in doors)
+    worst = 0.0
+    for door, way, outward in zip(
+        doors, (starboard - port, port - starboard), _OUTWARD, strict=True
+    ):
+        x, y, z, w = door.orientation
+        sideways = np.array([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)])
+        cosine = -outward * float(sideways @ way) / float(np.linalg.norm(way))
+        worst = max(worst, math.acos(min(max(cosine, -1.0), 1.0)))
+    return worst
 
 
 class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
@@ -49,7 +54,7 @@ class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
 
     def __init__(self, side: str, parameters: AttitudeParameters, draws: Draws) -> None:
         errors = {'pitch': parameters.model(), 'roll': parameters.model()}
-        super().__init__(f'door/{side}/attitude', parameters.rate_hz, errors, draws)
+        super().__init__(f'door/{side}/attitude', parameters.timing(), errors, draws)
         self._side = side
 
     def _read(self, part: np.ndarray, stamp: int) -> AttitudeSample:
@@ -63,36 +68,62 @@ class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
         )
 
 
-class DoorSpread:
-    """The acoustic distance from door to door. Sees the positions of both, port first."""
+class DoorSpread(Instrument[Doors, RangeSample]):
+    """The acoustic distance from door to door. Sees both doors, port first.
 
-    def __init__(self, parameters: RangeParameters, draws: Draws) -> None:
-        self._sensor = RangeInstrument('door/spread', 'spread', parameters, draws)
+    Sound takes its time by the speed it has there, and that time is turned into metres by the
+    speed that was set. When the doors turn away from each other there is no sample.
+    """
 
-    def observe(self, positions: tuple[np.ndarray, np.ndarray], stamp: int) -> RangeSample | None:
-        """Give a sample where one is due."""
-        port, starboard = positions
-        return self._sensor.observe(float(np.linalg.norm(port - starboard)), stamp)
+    def __init__(
+        self, parameters: SpreadParameters, surroundings: Surroundings, draws: Draws
+    ) -> None:
+        errors = {'distance': parameters.model()}
+        super().__init__('door/spread', parameters.timing(), errors, draws)
+        self._limits = parameters.min_range_m, parameters.max_range_m
+        self._half_angle = math.radians(parameters.beam_half_angle_deg)
+        self._assumed = parameters.assumed_sound_speed_m_s
+        self._surroundings = surroundings
+
+    def _read(self, part: Doors, stamp: int) -> RangeSample | None:
+        port, starboard = (door.position for door in part)
+        apart = float(np.linalg.norm(port - starboard))
+        if self._assumed is not None:
+            depth = -0.5 * float(port[2] + starboard[2])
+            apart *= self._assumed / self._surroundings.sound_speed(depth)
+        distance = self._measure('distance', apart, stamp)
+        if self._half_angle < math.pi and off_axis(part) > self._half_angle:
+            return None
+        low, high = self._limits
+        reading = within(distance, low, high)
+        return RangeSample(stamp, 'spread', reading, self._stated_std('distance'), low, high)
 
 
 class DoorInstruments:
     """All that measures on the doors; ``pressure`` and ``attitude`` in the order of `SIDES`."""
 
     def __init__(
-        self, parameters: DoorParameters, draws: Draws, *, pressure_at: PressureAt
+        self, parameters: DoorParameters, draws: Draws, *, surroundings: Surroundings
     ) -> None:
         self.pressure = tuple(
-            DoorPressure(side, parameters.pressure, pressure_at, draws) for side in SIDES
+            PressureInstrument(
+                f'door/{side}/pressure',
+                side,
+                parameters.pressure,
+                surroundings.pressure_at,
+                draws,
+            )
+            for side in SIDES
         )
         self.attitude = tuple(DoorAttitude(side, parameters.attitude, draws) for side in SIDES)
-        self.spread = DoorSpread(parameters.spread, draws)
+        self.spread = DoorSpread(parameters.spread, surroundings, draws)
+        self.instruments: tuple[Faulty, ...] = (*self.pressure, *self.attitude, self.spread)
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due."""
-        port, starboard = truth.doors
-        samples: list[Sample | None] = []
+        samples: list[Sample] = []
         for door, pressure, attitude in zip(truth.doors, self.pressure, self.attitude, strict=True):
-            samples.append(pressure.observe(door.position, truth.stamp))
-            samples.append(attitude.observe(door.orientation, truth.stamp))
-        samples.append(self.spread.observe((port.position, starboard.position), truth.stamp))
-        return [sample for sample in samples if sample is not None]
+            samples += pressure.observe(-float(door.position[2]), truth.stamp)
+            samples += attitude.observe(door.orientation, truth.stamp)
+        samples += self.spread.observe(truth.doors, truth.stamp)
+        return samples

@@ -1,4 +1,4 @@
-"""From ``map`` to latitude and longitude.
+"""Between ``map`` and latitude and longitude.
 
 ``map`` is the plane that touches the ellipsoid WGS 84 at the datum (NIMA TR8350.2). A point
 goes to geocentric coordinates by the rotation of east, north, up at the datum, and on to
@@ -41,3 +41,25 @@ def to_latitude_longitude(position: np.ndarray, datum: Datum) -> tuple[float, fl
         distance - _ECCENTRICITY_2 * SEMI_MAJOR * math.cos(parametric) ** 3,
     )
     return math.degrees(latitude), math.degrees(math.remainder(longitude, 2 * math.pi))
+
+
+def to_east_north(
+    latitudes: np.ndarray, longitudes: np.ndarray, datum: Datum
+) -> tuple[np.ndarray, np.ndarray]:
+    """Give east and north (n,) in ``map``, m, of places (n,) on the ellipsoid, degrees.
+
+    The inverse of `to_latitude_longitude` but for the height, which a place at sea does not need.
+    """
+    lat, lon = np.radians(latitudes), np.radians(longitudes - datum.longitude)
+    at = math.radians(datum.latitude)
+    outward, axial = _in_meridian_plane(lat)
+    outward_at, axial_at = _in_meridian_plane(np.array(at))
+    along = outward * np.cos(lon) - outward_at
+    north = (axial - axial_at) * math.cos(at) - along * math.sin(at)
+    return outward * np.sin(lon), north
+
+
+def _in_meridian_plane(latitude: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance (m) from the Earth's axis and height above the equator, of the ellipsoid."""
+    curvature = SEMI_MAJOR / np.sqrt(1 - _ECCENTRICITY_2 * np.sin(latitude) ** 2)
+    return curvature * np.cos(latitude), curvature * (1 - _ECCENTRICITY_2) * np.sin(latitude)

@@ -1,159 +1,93 @@
 """Parameters of the instruments as a file has them, checked on load."""
 
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from trawl_ros.errors import InstrumentError, TrawlError
-from trawl_ros.instruments.channel import ErrorModel
+from trawl_ros.instruments.bursts import BurstModel
+from trawl_ros.instruments.error_records import (
+    AngleErrors,
+    ForceErrors,
+    LengthErrors,
+    NotNegative,
+    PressureErrors,
+    Seconds,
+    SpeedErrors,
+    TurnErrors,
+)
+from trawl_ros.instruments.timing import Timing
 from trawl_ros.schema import Record, load_yaml, validated
 from trawl_ros.share import share_path
 
 Rate = Annotated[float, Field(gt=0, le=100)]
-NotNegative = Annotated[float, Field(ge=0)]
-Seconds = Annotated[float, Field(ge=0, le=100_000)]
 
 
-class Errors(Record):
-    """Errors of a channel in a unit of its own; each kind is a standard deviation but one.
+class Timed(Record):
+    """When an instrument samples and sends.
 
-    Keys end in the unit: ``noise_m`` is drawn per sample, ``correlated_m`` belongs to a
-    first-order process with ``correlation_time_s``, ``bias_per_state_m`` is drawn anew for
-    each state of the tow, readings are multiples of ``resolution_m``, and ``stated_std_m`` is
-    what the maker states. If that is left out, noise and rounding together are stated.
+    ``rate_hz`` is that of its samples; ``jitter_s`` the standard deviation with which they are
+    off the beat, ``latency_s`` the time until they are sent, ``start_up_s`` the time after
+    switching on before the first. Sending fails ``dropouts_per_hour`` times, for ``dropout_s`` in
+    the mean.
     """
 
-    unit: ClassVar[str]
-    si: ClassVar[float] = 1.0
-
-    correlation_time_s: Seconds = 0.0
+    rate_hz: Rate
+    jitter_s: Seconds = 0.0
+    latency_s: Seconds = 0.0
+    start_up_s: Seconds = 0.0
+    dropouts_per_hour: NotNegative = 0.0
+    dropout_s: Seconds = 0.0
 
     @model_validator(mode='after')
-    def _time_for_correlation(self) -> 'Errors':
-        if getattr(self, f'correlated_{self.unit}') > 0 and self.correlation_time_s == 0:
+    def _dropouts_have_a_length(self) -> 'Timed':
+        if (self.dropouts_per_hour > 0) != (self.dropout_s > 0):
             raise ValueError(
-                f'correlation_time_s: found 0, expected more, as correlated_{self.unit} is given'
+                f'dropouts_per_hour: found {self.dropouts_per_hour:g} with dropout_s '
+                f'{self.dropout_s:g}, expected both or neither'
             )
         return self
 
-    def model(self) -> ErrorModel:
-        """Give the same errors in SI units."""
-        white, correlated, bias, resolution = (
-            float(getattr(self, f'{kind}_{self.unit}')) * self.si
-            for kind in ('noise', 'correlated', 'bias_per_state', 'resolution')
+    def timing(self) -> Timing:
+        """Give the same as instruments take it."""
+        return Timing(
+            self.rate_hz,
+            self.jitter_s,
+            self.latency_s,
+            self.start_up_s,
+            BurstModel(self.dropouts_per_hour, self.dropout_s),
         )
-        stated = getattr(self, f'stated_std_{self.unit}')
-        if stated is None:
-            # Rounding to multiples of r adds r²/12 of variance.
-            stated_std = float(np.hypot(white, resolution / np.sqrt(12)))
-        else:
-            stated_std = float(stated) * self.si
-        return ErrorModel(white, correlated, self.correlation_time_s, bias, resolution, stated_std)
 
 
-class LengthErrors(Errors):
-    """Errors in metres."""
+class WinchParameters(Timed):
+    """Both winches: counter, pay-out speed and load cell; sides err independently.
 
-    unit: ClassVar[str] = 'm'
+    The counting wheel counts wire as it is stretched when it passes: by its tension over
+    ``wire_stiffness_mn``, beyond what the counter was calibrated with, ``calibrated_at_kn``. The
+    load cell lags by friction: it follows the tension only once that has moved by
+    ``hysteresis_kn``.
+    """
 
-    noise_m: NotNegative = 0.0
-    correlated_m: NotNegative = 0.0
-    bias_per_state_m: NotNegative = 0.0
-    resolution_m: NotNegative = 0.0
-    stated_std_m: NotNegative | None = None
-
-
-class SpeedErrors(Errors):
-    """Errors in metres per second."""
-
-    unit: ClassVar[str] = 'm_s'
-
-    noise_m_s: NotNegative = 0.0
-    correlated_m_s: NotNegative = 0.0
-    bias_per_state_m_s: NotNegative = 0.0
-    resolution_m_s: NotNegative = 0.0
-    stated_std_m_s: NotNegative | None = None
-
-
-class ForceErrors(Errors):
-    """Errors in kilonewtons."""
-
-    unit: ClassVar[str] = 'kn'
-    si: ClassVar[float] = 1e3
-
-    noise_kn: NotNegative = 0.0
-    correlated_kn: NotNegative = 0.0
-    bias_per_state_kn: NotNegative = 0.0
-    resolution_kn: NotNegative = 0.0
-    stated_std_kn: NotNegative | None = None
-
-
-class PressureErrors(Errors):
-    """Errors in kilopascals; 10 kPa is about a metre of water."""
-
-    unit: ClassVar[str] = 'kpa'
-    si: ClassVar[float] = 1e3
-
-    noise_kpa: NotNegative = 0.0
-    correlated_kpa: NotNegative = 0.0
-    bias_per_state_kpa: NotNegative = 0.0
-    resolution_kpa: NotNegative = 0.0
-    stated_std_kpa: NotNegative | None = None
-
-
-class AngleErrors(Errors):
-    """Errors in degrees."""
-
-    unit: ClassVar[str] = 'deg'
-    si: ClassVar[float] = np.pi / 180
-
-    noise_deg: NotNegative = 0.0
-    correlated_deg: NotNegative = 0.0
-    bias_per_state_deg: NotNegative = 0.0
-    resolution_deg: NotNegative = 0.0
-    stated_std_deg: NotNegative | None = None
-
-
-class TurnErrors(Errors):
-    """Errors in degrees per second."""
-
-    unit: ClassVar[str] = 'deg_s'
-    si: ClassVar[float] = np.pi / 180
-
-    noise_deg_s: NotNegative = 0.0
-    correlated_deg_s: NotNegative = 0.0
-    bias_per_state_deg_s: NotNegative = 0.0
-    resolution_deg_s: NotNegative = 0.0
-    stated_std_deg_s: NotNegative | None = None
-
-
-class WinchParameters(Record):
-    """Both winches: counter, pay-out speed and load cell; sides err independently."""
-
-    rate_hz: Rate
     length: LengthErrors
     speed: SpeedErrors
     tension: ForceErrors
+    wire_stiffness_mn: Annotated[float, Field(gt=0)] | None = None
+    calibrated_at_kn: NotNegative = 0.0
+    hysteresis_kn: NotNegative = 0.0
 
 
-class PressureParameters(PressureErrors):
+class PressureParameters(PressureErrors, Timed):
     """A pressure sensor."""
 
-    rate_hz: Rate
 
-
-class AttitudeParameters(AngleErrors):
+class AttitudeParameters(AngleErrors, Timed):
     """An inclinometer; pitch and roll err alike and independently."""
 
-    rate_hz: Rate
 
-
-class RangeParameters(LengthErrors):
+class RangeParameters(LengthErrors, Timed):
     """A distance; outside its limits the reading is infinite (REP-117)."""
 
-    rate_hz: Rate
     min_range_m: NotNegative
     max_range_m: Annotated[float, Field(gt=0, le=10_000)]
 
@@ -167,24 +101,31 @@ class RangeParameters(LengthErrors):
         return self
 
 
-class VelocityParameters(Record):
+class VelocityParameters(Timed):
     """A velocity over ground or through the water, with the rate of turn."""
 
-    rate_hz: Rate
     velocity: SpeedErrors
     yaw_rate: TurnErrors
 
 
-class FixParameters(LengthErrors):
+class FixParameters(LengthErrors, Timed):
     """A position; east and north err alike and independently."""
 
-    rate_hz: Rate
 
-
-class HeadingParameters(AngleErrors):
+class HeadingParameters(AngleErrors, Timed):
     """A compass."""
 
-    rate_hz: Rate
+
+class SpreadParameters(RangeParameters):
+    """The acoustic distance from door to door.
+
+    A time of flight is turned into metres with ``assumed_sound_speed_m_s``, whatever that of the
+    water is. Each door looks inward along its own normal, and hears nothing once the other is
+    more than ``beam_half_angle_deg`` off.
+    """
+
+    assumed_sound_speed_m_s: Annotated[float, Field(ge=1400, le=1600)] | None = None
+    beam_half_angle_deg: Annotated[float, Field(gt=0, le=180)] = 180.0
 
 
 class DoorParameters(Record):
@@ -192,7 +133,7 @@ class DoorParameters(Record):
 
     pressure: PressureParameters
     attitude: AttitudeParameters
-    spread: RangeParameters
+    spread: SpreadParameters
 
 
 class SonarParameters(Record):

@@ -1,13 +1,9 @@
 """Pressure sensors: at a given depth of the water, in a given place."""
 
-from collections.abc import Callable
-
 from trawl_ros.instruments.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import PressureParameters
 from trawl_ros.instruments.samples import PressureSample
-
-PressureAt = Callable[[float], float]
-"""Absolute pressure (Pa) at a depth (m), as `trawl_ros.model.water.Water.pressure`."""
+from trawl_ros.instruments.surroundings import PressureAt
 
 
 class PressureInstrument(Instrument[float, PressureSample]):
@@ -24,7 +20,7 @@ class PressureInstrument(Instrument[float, PressureSample]):
         pressure_at: PressureAt,
         draws: Draws,
     ) -> None:
-        super().__init__(name, parameters.rate_hz, {'pressure': parameters.model()}, draws)
+        super().__init__(name, parameters.timing(), {'pressure': parameters.model()}, draws)
         self._place = place
         self._pressure_at = pressure_at
 

@@ -5,6 +5,9 @@ SECOND = 1_000_000_000
 TOLERANCE = 1_000
 """Stamps made from seconds in floating point are off by less than this (ns)."""
 
+MOST_JITTER = 0.45
+"""No sample is off its beat by more than this part of the period, so samples keep their order."""
+
 
 class Sampler:
     """Tells whether a sample is due at a stamp.
@@ -17,17 +20,20 @@ class Sampler:
     ----------
     rate
         Samples per second.
+    start_up
+        Time (s) after the first stamp in which nothing is due.
     """
 
-    def __init__(self, rate: float) -> None:
+    def __init__(self, rate: float, start_up: float = 0.0) -> None:
         self._rate = rate
+        self._start_up = round(start_up * SECOND)
         self._first = 0
         self._latest: int | None = None
         self._next = 0
 
     @property
     def first(self) -> int:
-        """Stamp of the first sample (ns)."""
+        """Stamp of the first truth (ns)."""
         return self._first
 
     def started_anew(self, stamp: int) -> bool:
@@ -39,10 +45,15 @@ class Sampler:
             self._next = 0
         return anew
 
-    def due(self, stamp: int) -> bool:
-        """Tell whether to sample at ``stamp`` (ns), which `started_anew` has been told of."""
-        since = stamp + TOLERANCE - self._first
-        if since < round(self._next * SECOND / self._rate):
+    def due(self, stamp: int, shift_s: float = 0.0) -> bool:
+        """Tell whether to sample at ``stamp`` (ns), which `started_anew` has been told of.
+
+        ``shift_s`` is how much later than on the beat the next sample is to be taken.
+        """
+        since = stamp + TOLERANCE - self._first - self._start_up
+        most = MOST_JITTER / self._rate
+        shift = round(min(max(shift_s, -most), most) * SECOND)
+        if since < round(self._next * SECOND / self._rate) + shift or since < 0:
             return False
-        self._next = int(since * self._rate / SECOND) + 1
+        self._next = max(self._next + 1, int((since - shift) * self._rate / SECOND) + 1)
         return True

@@ -1,10 +1,14 @@
 """All instruments of a ship, in the four groups that are nodes in the graph."""
 
+from collections.abc import Sequence
+
 from trawl_ros.instruments.doors import DoorInstruments
+from trawl_ros.instruments.fault_plan import FaultPlan, PlannedFault
+from trawl_ros.instruments.faults import FaultPanel, Faulty
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters
-from trawl_ros.instruments.pressure import PressureAt
 from trawl_ros.instruments.samples import Sample
+from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.instruments.winch import WinchInstruments
@@ -18,21 +22,41 @@ class InstrumentSuite:
     ----------
     parameters
         From `load_instruments`.
-    pressure_at
-        Absolute pressure (Pa) at a depth (m).
+    surroundings
+        The water around the sensors.
     draws
         Seed and changes of state.
+    faults
+        Faults that come and go.
+
+    Attributes
+    ----------
+    panel : FaultPanel
+        Where faults are switched.
     """
 
     def __init__(
-        self, parameters: InstrumentParameters, *, pressure_at: PressureAt, draws: Draws
+        self,
+        parameters: InstrumentParameters,
+        *,
+        surroundings: Surroundings,
+        draws: Draws,
+        faults: Sequence[PlannedFault] = (),
     ) -> None:
         self.winch = WinchInstruments(parameters.winch, draws)
-        self.door = DoorInstruments(parameters.door, draws, pressure_at=pressure_at)
-        self.sonar = SonarInstruments(parameters.sonar, draws, pressure_at=pressure_at)
+        self.door = DoorInstruments(parameters.door, draws, surroundings=surroundings)
+        self.sonar = SonarInstruments(parameters.sonar, draws, surroundings=surroundings)
         self.vessel = VesselInstruments(parameters.vessel, draws)
+
+        groups = (self.winch, self.door, self.sonar, self.vessel)
+        sensors: list[Faulty] = []
+        for group in groups:
+            sensors += group.instruments
+        self.panel = FaultPanel(sensors)
+        self._plan = FaultPlan(faults, self.panel)
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due at one instant, always in the same order."""
+        self._plan.follow(truth.stamp)
         groups = (self.winch, self.door, self.sonar, self.vessel)
         return [sample for group in groups for sample in group.observe(truth)]

@@ -3,8 +3,9 @@
 from trawl_ros.instruments.distance import RangeInstrument
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import PressureParameters, RangeParameters, SonarParameters
-from trawl_ros.instruments.pressure import PressureAt, PressureInstrument
+from trawl_ros.instruments.pressure import PressureInstrument
 from trawl_ros.instruments.samples import Sample
+from trawl_ros.instruments.surroundings import PressureAt, Surroundings
 from trawl_ros.simulation.truth import Truth
 
 
@@ -32,18 +33,18 @@ class SonarInstruments:
     """All that the trawl sonar reports."""
 
     def __init__(
-        self, parameters: SonarParameters, draws: Draws, *, pressure_at: PressureAt
+        self, parameters: SonarParameters, draws: Draws, *, surroundings: Surroundings
     ) -> None:
-        self.pressure = SonarPressure(parameters.pressure, pressure_at, draws)
+        self.pressure = SonarPressure(parameters.pressure, surroundings.pressure_at, draws)
         self.height = SonarOpening('opening_height', parameters.opening_height, draws)
         self.width = SonarOpening('opening_width', parameters.opening_width, draws)
+        self.instruments = (self.pressure, self.height, self.width)
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due."""
         net, stamp = truth.net, truth.stamp
-        samples = (
-            self.pressure.observe(net.headrope_depth, stamp),
-            self.height.observe(net.vertical_opening, stamp),
-            self.width.observe(net.horizontal_opening, stamp),
-        )
-        return [sample for sample in samples if sample is not None]
+        samples: list[Sample] = []
+        samples += self.pressure.observe(net.headrope_depth, stamp)
+        samples += self.height.observe(net.vertical_opening, stamp)
+        samples += self.width.observe(net.horizontal_opening, stamp)
+        return samples

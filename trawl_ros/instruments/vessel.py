@@ -25,7 +25,7 @@ class _Velocity(Instrument[Moving, VelocitySample]):
     def __init__(self, over: str, parameters: VelocityParameters, draws: Draws) -> None:
         speed = parameters.velocity.model()
         errors = {'x': speed, 'y': speed, 'yaw_rate': parameters.yaw_rate.model()}
-        super().__init__(f'vessel/velocity_{over}', parameters.rate_hz, errors, draws)
+        super().__init__(f'vessel/velocity_{over}', parameters.timing(), errors, draws)
         self._over = over
 
     def _read(self, part: Moving, stamp: int) -> VelocitySample:
@@ -60,7 +60,7 @@ class GpsFix(Instrument[np.ndarray, FixSample]):
 
     def __init__(self, parameters: FixParameters, datum: Datum, draws: Draws) -> None:
         errors = {'east': parameters.model(), 'north': parameters.model()}
-        super().__init__('vessel/fix', parameters.rate_hz, errors, draws)
+        super().__init__('vessel/fix', parameters.timing(), errors, draws)
         self._datum = datum
 
     def _read(self, part: np.ndarray, stamp: int) -> FixSample:
@@ -80,7 +80,7 @@ class Heading(Instrument[float, HeadingSample]):
 
     def __init__(self, parameters: HeadingParameters, draws: Draws) -> None:
         super().__init__(
-            'vessel/heading', parameters.rate_hz, {'heading': parameters.model()}, draws
+            'vessel/heading', parameters.timing(), {'heading': parameters.model()}, draws
         )
 
     def _read(self, part: float, stamp: int) -> HeadingSample:
@@ -99,14 +99,14 @@ class VesselInstruments:
         self.velocity_ground = GpsVelocity(parameters.velocity_ground, draws)
         self.fix = GpsFix(parameters.fix, datum, draws)
         self.heading = Heading(parameters.heading, draws)
+        self.instruments = (self.velocity_water, self.velocity_ground, self.fix, self.heading)
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due."""
         vessel, stamp = truth.vessel, truth.stamp
-        samples = (
-            self.velocity_water.observe((vessel.velocity_water, vessel.yaw_rate), stamp),
-            self.velocity_ground.observe((vessel.velocity_ground, vessel.yaw_rate), stamp),
-            self.fix.observe(vessel.position, stamp),
-            self.heading.observe(vessel.heading, stamp),
-        )
-        return [sample for sample in samples if sample is not None]
+        samples: list[Sample] = []
+        samples += self.velocity_water.observe((vessel.velocity_water, vessel.yaw_rate), stamp)
+        samples += self.velocity_ground.observe((vessel.velocity_ground, vessel.yaw_rate), stamp)
+        samples += self.fix.observe(vessel.position, stamp)
+        samples += self.heading.observe(vessel.heading, stamp)
+        return samples

@@ -1,9 +1,56 @@
 """The winches: counter, pay-out speed and load cell of both."""
 
+import math
+
 from trawl_ros.instruments.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import WinchParameters
 from trawl_ros.instruments.samples import Sample, WinchSample
 from trawl_ros.simulation.truth import SIDES, Truth, WinchTruth
+
+
+class CountingWheel:
+    """Counts the wire that passes over it, as far as tension has stretched it by then.
+
+    Parameters
+    ----------
+    stiffness
+        EA of the wire, N; None where it does not stretch.
+    calibrated_at
+        Tension (N) under which a metre counted is a metre of slack wire.
+    """
+
+    def __init__(self, stiffness: float | None, calibrated_at: float) -> None:
+        self._stiffness = stiffness
+        self._calibrated_at = calibrated_at
+        self._counted: float | None = None
+        self._before = 0.0
+
+    def count(self, length: float, tension: float) -> float:
+        """Give the metres counted when ``length`` (m, unstretched) is out under ``tension`` (N)."""
+        if self._stiffness is None:
+            return length
+        stretch = 1.0 + (tension - self._calibrated_at) / self._stiffness
+        # Set to zero by the marks on the wire before the tow, under what it bore then.
+        if self._counted is None or not math.isfinite(self._counted):
+            self._counted = length
+        else:
+            self._counted += (length - self._before) * stretch
+        self._before = length
+        return self._counted
+
+
+class LoadCell:
+    """Feels the tension through friction, which holds it back by up to ``play`` (N) either way."""
+
+    def __init__(self, play: float) -> None:
+        self._play = play
+        self._felt: float | None = None
+
+    def feel(self, tension: float) -> float:
+        """Give the force (N) on the cell."""
+        before = tension if self._felt is None or math.isnan(self._felt) else self._felt
+        self._felt = min(max(before, tension - self._play), tension + self._play)
+        return self._felt
 
 
 class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
@@ -20,17 +67,40 @@ class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
             for side in SIDES
             for name, channel in quantities.items()
         }
-        super().__init__('winch/joint_states', parameters.rate_hz, errors, draws)
+        self._parameters = parameters
+        super().__init__('winch/joint_states', parameters.timing(), errors, draws)
+
+    def _restart(self) -> None:
+        record = self._parameters
+        stiffness = record.wire_stiffness_mn and 1e6 * record.wire_stiffness_mn
+        self._wheels = [CountingWheel(stiffness, 1e3 * record.calibrated_at_kn) for _ in SIDES]
+        self._cells = [LoadCell(1e3 * record.hysteresis_kn) for _ in SIDES]
+
+    def observe(self, part: tuple[WinchTruth, WinchTruth], stamp: int) -> list[WinchSample]:
+        """Look at both winches: wheels and cells work between samples too."""
+        samples = super().observe(part, stamp)
+        self._turn(part)
+        return samples
+
+    def _turn(self, part: tuple[WinchTruth, WinchTruth]) -> tuple[list[float], list[float]]:
+        counted = [w.count(t.length, t.tension) for w, t in zip(self._wheels, part, strict=True)]
+        felt = [c.feel(t.tension) for c, t in zip(self._cells, part, strict=True)]
+        return counted, felt
 
     def _read(self, part: tuple[WinchTruth, WinchTruth], stamp: int) -> WinchSample:
-        def both(quantity: str) -> tuple[float, float]:
+        counted, felt = self._turn(part)
+
+        def both(quantity: str, values: list[float]) -> tuple[float, float]:
             port, starboard = (
-                self._measure(f'{side}/{quantity}', getattr(winch, quantity), stamp)
-                for side, winch in zip(SIDES, part, strict=True)
+                self._measure(f'{side}/{quantity}', value, stamp)
+                for side, value in zip(SIDES, values, strict=True)
             )
             return port, starboard
 
-        return WinchSample(stamp, both('length'), both('speed'), both('tension'))
+        speeds = [winch.speed for winch in part]
+        return WinchSample(
+            stamp, both('length', counted), both('speed', speeds), both('tension', felt)
+        )
 
 
 class WinchInstruments:
@@ -38,8 +108,8 @@ class WinchInstruments:
 
     def __init__(self, parameters: WinchParameters, draws: Draws) -> None:
         self.winch = WinchInstrument(parameters, draws)
+        self.instruments = (self.winch,)
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due."""
-        sample = self.winch.observe(truth.winches, truth.stamp)
-        return [] if sample is None else [sample]
+        return list(self.winch.observe(truth.winches, truth.stamp))

@@ -1,4 +1,4 @@
-"""What `sim_node` listens to: wanted warp lengths, and the ship's speed and rate of turn."""
+"""What nodes listen to: wanted warp lengths, the ship's speed and rate of turn, and faults."""
 
 import math
 from typing import Any
@@ -14,6 +14,7 @@ from trawl_ros.messages.topics import TOPICS, WINCH_NAMES
 
 WINCH_COMMAND = 'command/winch'
 VESSEL_COMMAND = 'command/vessel'
+FAULT_COMMAND = 'command/fault'
 
 
 def winch_command(stamp: int, port: float, starboard: float) -> TopicMessage:
@@ -38,6 +39,16 @@ def vessel_command(stamp: int, speed: float, yaw_rate: float) -> TopicMessage:
             ros.geometry_msgs__msg__Vector3(0.0, 0.0, float(yaw_rate)),
         ),
     )
+
+
+def fault_command(where: str, what: str) -> TopicMessage:
+    """Ask for a fault at an instrument's topic or topic/quantity; 'none' ends all there."""
+    return FAULT_COMMAND, ros.diagnostic_msgs__msg__KeyValue(where, what)
+
+
+def read_fault_command(message: Any) -> tuple[str, str]:
+    """Read where a fault is to sit and what it is; they are checked by who has the instrument."""
+    return message.key.strip().removeprefix('/'), message.value.strip()
 
 
 def read_winch_command(message: Any) -> tuple[float | None, float | None]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from trawl_ros.instruments.doors import DoorInstruments
+from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.messages.from_messages import door_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
@@ -28,11 +29,12 @@ class DoorSensorNode(InstrumentNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('door_sensor_node', **kwargs)
 
-    def set_up(self, setup: Setup) -> None:
-        """Make the instruments."""
+    def set_up(self, setup: Setup) -> Sequence[Faulty]:
+        """Make the instruments and give all of them."""
         self._instruments = DoorInstruments(
-            setup.parameters.door, setup.draws, pressure_at=setup.pressure_at
+            setup.parameters.door, setup.draws, surroundings=setup.surroundings
         )
+        return self._instruments.instruments
 
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns)."""

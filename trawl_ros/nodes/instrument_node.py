@@ -6,23 +6,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from trawl_ros.errors import MessageError
+from trawl_ros.errors import InstrumentError, MessageError
 from trawl_ros.files import packaged
 from trawl_ros.gear.load import load_gear
+from trawl_ros.instruments.fault_plan import FaultPlan, PlannedFault
+from trawl_ros.instruments.faults import FaultPanel, Faulty
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
-from trawl_ros.instruments.pressure import PressureAt
 from trawl_ros.instruments.samples import Sample
+from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.model.gear_model import build_water
+from trawl_ros.messages.topics import INSTRUMENTS
 from trawl_ros.nodes.joining import Joiner
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.parameters import Names, Number, Text
-from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.qos import CONSUMER, STREAM
 from trawl_ros.nodes.sync import Consumers, Progress
 from trawl_ros.scenario.scenario import load_scenario
+from trawl_ros.scenario.surroundings import build_surroundings
 
 
 @dataclass(frozen=True)
@@ -30,8 +34,9 @@ class Setup:
     """What instruments are made with, as in `InstrumentSuite`."""
 
     parameters: InstrumentParameters
-    pressure_at: PressureAt
+    surroundings: Surroundings
     draws: Draws
+    faults: tuple[PlannedFault, ...] = ()
 
 
 class InstrumentNode(TrawlNode, ABC):
@@ -55,23 +60,30 @@ class InstrumentNode(TrawlNode, ABC):
              'its own.'),
         Number('seed', -1, 'none', -1, 2**32 - 1, 'Seed of all noise; -1 is that of the scenario, '
                'or 0 without one.', whole=True),
+        Names('faults', "Faults that are on, each as 'PLACE: FAULT', such as 'door/spread: offset "
+              "3'; beside those of the scenario and of command/fault.", live=True),
         Names('wait_for', 'Consumers of the samples (node names) without which this node does not '
               'announce itself to the simulation.'),
     )  # fmt: skip
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         super().__init__(name, **kwargs)
-        self.set_up(self._setup())
+        setup = self._setup()
+        self._panel = FaultPanel(self.set_up(setup))
+        self._plan = FaultPlan(setup.faults, self._panel)
+        self._by_parameter: dict[str, str] = {}
+        self._take_parameter()
         self._joiner = Joiner(self.TRUTH)
         for topic in self.SAMPLES:
             self.advertise(topic)
+        self.listen(FAULT_COMMAND, self._command_fault, STREAM)
         self._progress = Progress(self, self._ready())
         for topic in self.TRUTH:
             self._look_at(topic)
 
     @abstractmethod
-    def set_up(self, setup: Setup) -> None:
-        """Make the instruments."""
+    def set_up(self, setup: Setup) -> Sequence[Faulty]:
+        """Make the instruments and give all of them."""
 
     @abstractmethod
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
@@ -84,10 +96,51 @@ class InstrumentNode(TrawlNode, ABC):
             'truth seen until': f'{self._progress.stamp / 1e9:.1f}',
             'incomplete instants': str(lost),
         }
+        faults = self._panel.active()
+        said = f'{len(faults)} places have faults' if faults else 'no fault is on'
+        there = Status('faults', WARN if faults else OK, said, faults)
         if lost:
             message = f'{lost} instants of truth were incomplete and gave no samples'
-            return [Status('instruments', WARN, message, values)]
-        return [Status('instruments', OK, 'every instant of truth was complete', values)]
+            return [Status('instruments', WARN, message, values), there]
+        return [Status('instruments', OK, 'every instant of truth was complete', values), there]
+
+    def objection(self, name: str, value: Any) -> str | None:
+        """Say why a live parameter cannot take a value just now; None if it can."""
+        if name == 'faults':
+            try:
+                for where, what in _faults(value).items():
+                    self._panel.check(where, what)
+            except InstrumentError as reason:
+                return str(reason)
+        return None
+
+    def parameter_changed(self, name: str) -> None:
+        """Let a live parameter's new value have its effect."""
+        if name == 'faults':
+            self._take_parameter()
+
+    def _take_parameter(self) -> None:
+        for where, what in self._by_parameter.items():
+            self._panel.switch_off(where, what)
+        self._by_parameter = _faults(self.parameters['faults'])
+        for where, what in self._by_parameter.items():
+            self._panel.switch(where, what)
+
+    def _command_fault(self, message: Any) -> None:
+        where, what = read_fault_command(message)
+        if self._is_of_others(where):
+            return
+        try:
+            self._panel.switch(where, what)
+        except InstrumentError as reason:
+            raise MessageError(f'{FAULT_COMMAND}: {reason}') from reason
+
+    def _is_of_others(self, where: str) -> bool:
+        """Whether a place is another node's to know."""
+        if self._panel.knows(where):
+            return False
+        topics = [topic.name for topic in INSTRUMENTS if topic.name not in self.SAMPLES]
+        return any(where == topic or where.startswith(f'{topic}/') for topic in topics)
 
     def _ready(self) -> Any:
         names = self.parameters['wait_for']
@@ -98,11 +151,10 @@ class InstrumentNode(TrawlNode, ABC):
         if name := self.parameters['scenario']:
             scenario = load_scenario(packaged(Path(name), 'scenarios'))
             draws = scenario.draws if seed < 0 else Draws(seed, scenario.state_changes_s)
-            water = build_water(scenario.plant)
-            return Setup(scenario.instruments, water.pressure, draws)
+            return Setup(scenario.instruments, scenario.surroundings, draws, scenario.faults)
         return Setup(
             load_instruments(self.parameters['instruments']),
-            build_water(load_gear(self.parameters['gear'])).pressure,
+            build_surroundings(load_gear(self.parameters['gear'])),
             Draws(max(seed, 0)),
         )
 
@@ -112,6 +164,7 @@ class InstrumentNode(TrawlNode, ABC):
             complete = self._joiner.add(topic, stamp, message)
             if complete is None:
                 return
+            self._plan.follow(stamp)
             try:
                 for sample in self.observe(stamp, complete):
                     self.send(*sample_message(sample))
@@ -121,3 +174,14 @@ class InstrumentNode(TrawlNode, ABC):
 
         # As patient as a recorder: a truth that is lost is a sample that is lost.
         self.listen(topic, take, CONSUMER)
+
+
+def _faults(texts: Sequence[str]) -> dict[str, str]:
+    """Read fault by place off texts such as 'door/spread: offset 3'."""
+    found = {}
+    for text in texts:
+        where, colon, what = text.partition(':')
+        if not colon:
+            raise InstrumentError(f"parameter faults: found '{text}', expected 'PLACE: FAULT'")
+        found[where.strip()] = what.strip()
+    return found

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.messages.from_messages import net_truth
@@ -22,11 +23,12 @@ class TrawlSonarNode(InstrumentNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('trawl_sonar_node', **kwargs)
 
-    def set_up(self, setup: Setup) -> None:
-        """Make the instruments."""
+    def set_up(self, setup: Setup) -> Sequence[Faulty]:
+        """Make the instruments and give all of them."""
         self._instruments = SonarInstruments(
-            setup.parameters.sonar, setup.draws, pressure_at=setup.pressure_at
+            setup.parameters.sonar, setup.draws, surroundings=setup.surroundings
         )
+        return self._instruments.instruments
 
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns)."""

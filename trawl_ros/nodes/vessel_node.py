@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.messages.from_messages import vessel_truth
@@ -28,8 +29,8 @@ class VesselNode(InstrumentNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('vessel_node', **kwargs)
 
-    def set_up(self, setup: Setup) -> None:
-        """Make the instruments."""
+    def set_up(self, setup: Setup) -> Sequence[Faulty]:
+        """Make the instruments and give all of them."""
         record = setup.parameters.vessel
         datum = Parameters(
             self,
@@ -44,6 +45,7 @@ class VesselNode(InstrumentNode):
         )  # fmt: skip
         placed = {'datum_lat_deg': datum['datum_lat'], 'datum_lon_deg': datum['datum_lon']}
         self._instruments = VesselInstruments(record.model_copy(update=placed), setup.draws)
+        return self._instruments.instruments
 
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns)."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.winch import WinchInstruments
 from trawl_ros.messages.from_messages import winch_truth
@@ -22,9 +23,10 @@ class WinchNode(InstrumentNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('winch_node', **kwargs)
 
-    def set_up(self, setup: Setup) -> None:
-        """Make the instruments."""
+    def set_up(self, setup: Setup) -> Sequence[Faulty]:
+        """Make the instruments and give all of them."""
         self._instruments = WinchInstruments(setup.parameters.winch, setup.draws)
+        return self._instruments.instruments
 
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns)."""

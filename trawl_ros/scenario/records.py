@@ -4,7 +4,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from trawl_ros.gear.records import CurrentAt
+from trawl_ros.gear.records import CurrentAt, TemperatureAt
+from trawl_ros.scenario.faults import FaultRecord
+from trawl_ros.scenario.sea import SeaRecord
 from trawl_ros.schema import Record
 
 Length = Annotated[float, Field(gt=0, lt=3000)]
@@ -87,6 +89,10 @@ class WaterOverrides(Record):
     density_kg_m3: Annotated[float, Field(ge=990, le=1060)] | None = None
     density_gradient_kg_m4: Annotated[float, Field(ge=0, le=0.1)] | None = None
     current: Annotated[tuple[CurrentAt, ...], Field(max_length=200)] | None = None
+    temperature: (
+        Annotated[tuple[TemperatureAt, ...], Field(min_length=1, max_length=200)] | None
+    ) = None
+    salinity_g_kg: Annotated[float, Field(ge=0, le=42)] | None = None
 
 
 class CoefficientOverrides(Record):
@@ -118,7 +124,9 @@ class ScenarioRecord(Record):
     refine: RefineRecord = RefineRecord()
     coefficients: CoefficientOverrides = CoefficientOverrides()
     water: WaterOverrides = WaterOverrides()
+    sea: SeaRecord = SeaRecord()
     instruments: str | dict[str, Any] = 'default'
+    faults: Annotated[tuple[FaultRecord, ...], Field(max_length=1000)] = ()
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     heading_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
     start: StartRecord

@@ -12,14 +12,18 @@ import numpy as np
 from trawl_ros.errors import InstrumentError, ScenarioError, TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.instruments.fault_plan import PlannedFault
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import (
     InstrumentParameters,
     default_instruments_with,
     load_instruments,
 )
+from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
+from trawl_ros.scenario.surroundings import build_surroundings
 from trawl_ros.schema import load_yaml, validated
 from trawl_ros.simulation.simulation import Command
 
@@ -80,6 +84,16 @@ class Scenario:
         """Seed and changes of state, as instruments want them."""
         return Draws(self.record.seed, self.state_changes_s)
 
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """The water around the instruments."""
+        return build_surroundings(self.plant)
+
+    @property
+    def faults(self) -> tuple[PlannedFault, ...]:
+        """Faults of instruments that come and go."""
+        return tuple(record.planned() for record in self.record.faults)
+
     def step_at(self, time: float) -> StepRecord:
         """Give the step that is under way at a time (s since the start)."""
         return self.record.steps[self._number(time)]
@@ -116,7 +130,22 @@ def load_scenario(path: str | Path) -> Scenario:
         raise ScenarioError(
             f"{path}: gear: '{record.gear}' is no usable gear: {reason}"
         ) from reason
-    return Scenario(path, record, gear, _plant(gear, record, path), _instruments(record, path))
+    plant, instruments = _plant(gear, record, path), _instruments(record, path)
+    scenario = Scenario(path, record, gear, plant, instruments)
+    _check_faults(scenario)
+    return scenario
+
+
+def _check_faults(scenario: Scenario) -> None:
+    """Ask the instruments whether each fault can sit where it is to sit."""
+    panel = InstrumentSuite(
+        scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
+    ).panel
+    for number, fault in enumerate(scenario.faults):
+        try:
+            panel.check(fault.where, fault.what)
+        except InstrumentError as reason:
+            raise ScenarioError(f'{scenario.path}: faults[{number}]: {reason}') from reason
 
 
 def _beside(path: Path, name: str) -> str | Path:

@@ -1,0 +1,237 @@
+"""What the beams of the trawl sonar meet: ropes, twine, fish and the seabed.
+
+All echoes are backscattering cross-sections σ in m², 10 log σ being the target strength, as the
+sonar receives them: weighed with its beam pattern on the way out and back.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.instruments.sonar.image import Grid
+from trawl_ros.simulation.truth import SchoolTruth
+
+HALF_POWER = 1.3915573782515103
+"""Argument at which (sin u / u)² is one half."""
+
+SEABED_STEPS = 4
+"""Patches of the seabed per beam."""
+
+
+@dataclass(frozen=True)
+class Ping:
+    """One ping: where the beam looks (``angle``, rad, as the scan's) and what is there.
+
+    ``position`` (3,) and ``axes`` (3, 3), whose columns are x, y, z, are the pose of frame
+    ``sonar`` in ``map``. ``section`` (k, 3) is that of `NetTruth`; ``altitude`` (m) is how far
+    the seabed is below, infinite without any.
+    """
+
+    angle: float
+    position: np.ndarray
+    axes: np.ndarray
+    section: np.ndarray
+    schools: tuple[SchoolTruth, ...] = ()
+    altitude: float = np.inf
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A beam: its full widths (rad) between the half-power points, ``width`` in the plane of the
+    sweep and ``thickness`` across it, and the ``wave_length`` (m) of its sound.
+    """
+
+    width: float
+    thickness: float
+    wave_length: float
+
+    def two_way(self, off: np.ndarray) -> np.ndarray:
+        """Power gain out and back at angles (rad) off the axis in the plane of the sweep.
+
+        That of a line transducer, (sin u / u)⁴: side lobes of -26.5 dB; none behind it.
+        """
+        u = HALF_POWER / np.pi * np.sin(off) / np.sin(0.5 * self.width)
+        return np.where(np.abs(off) < np.pi / 2, np.sinc(u) ** 4, 0.0)
+
+
+@dataclass(frozen=True)
+class Strengths:
+    """How strongly things scatter sound back.
+
+    ``rope`` is the part of the sound that hits a rope or twine and goes into all directions;
+    ``fish`` the cross-section of one fish, m²; ``seabed`` that of a square metre of seabed hit
+    at a right angle.
+    """
+
+    rope: float
+    fish: float
+    seabed: float
+
+
+def rope_cross_section(
+    diameter: np.ndarray, distance: np.ndarray, beam: Beam, strengths: Strengths
+) -> np.ndarray:
+    """Cross-section (m²) of ropes that pass through a beam.
+
+    Over the length l = distance × thickness that lies in the beam, a rope of diameter d is hit by
+    the sound of an area d l. Laid and braided ropes are rough, so of this the part ``rope`` goes
+    evenly into all directions: σ = rope d l / 4π. A thin one, k a < 1, scatters by (k a)³ less
+    (the high-pass form of Johnson, J. Acoust. Soc. Am. 61, 1977).
+    """
+    radius = np.pi * diameter / beam.wave_length
+    shape = radius**3 / (1 + radius**3)
+    return strengths.rope * shape * diameter * distance * beam.thickness / (4 * np.pi)
+
+
+@dataclass(frozen=True)
+class Sounding:
+    """How the sonar turns time into distance.
+
+    ``stretch`` is the speed of sound it assumes over the true one; ``pulse`` (m) the length in
+    range between the half-power points of an echo from a point.
+    """
+
+    stretch: float
+    pulse: float
+
+
+def echoes(
+    pings: Sequence[Ping],
+    grid: Grid,
+    beam: Beam,
+    strengths: Strengths,
+    sounding: Sounding,
+    generator: np.random.Generator,
+) -> np.ndarray:
+    """Mean cross-section received, for each beam and cell.
+
+    Parameters
+    ----------
+    pings
+        One per beam.
+    generator
+        Where the number of fish in a cell is drawn from; not used without a school.
+
+    Returns
+    -------
+    array
+        Shape (beams, cells), m².
+    """
+    axis = np.array([ping.angle for ping in pings])
+    received = _ropes(pings, axis, grid, beam, strengths, sounding.stretch)
+    if any(ping.altitude < grid.max_range for ping in pings):
+        received += _seabed(pings, axis, grid, beam, strengths, sounding.stretch)
+    if any(ping.schools for ping in pings):
+        received += _fish(pings, axis, grid, beam, strengths, sounding.stretch, generator)
+    return _as_long_as_a_pulse(received, sounding.pulse / grid.cell)
+
+
+def _ropes(
+    pings: Sequence[Ping],
+    axis: np.ndarray,
+    grid: Grid,
+    beam: Beam,
+    strengths: Strengths,
+    stretch: float,
+) -> np.ndarray:
+    rows = np.repeat(np.arange(len(pings)), [len(ping.section) for ping in pings])
+    x, y, diameter = np.concatenate([ping.section for ping in pings]).T
+    distance = np.hypot(x, y)
+    strength = rope_cross_section(diameter, distance, beam, strengths)
+    strength *= beam.two_way(_turned(np.arctan2(y, x) - axis[rows]))
+    return _gathered(rows, stretch * distance, strength, grid)
+
+
+def _seabed(
+    pings: Sequence[Ping],
+    axis: np.ndarray,
+    grid: Grid,
+    beam: Beam,
+    strengths: Strengths,
+    stretch: float,
+) -> np.ndarray:
+    """A level seabed in patches, which scatter by Lambert's law as the cosine squared."""
+    step = grid.angle_increment / SEABED_STEPS
+    angle = np.arange(-0.5 * np.pi, 0.5 * np.pi, step)
+    down = np.array([-ping.axes[2] for ping in pings])
+    altitude = np.array([ping.altitude for ping in pings])
+    # How steeply each direction in the sonar's plane goes down.
+    slope = np.outer(down[:, 0], np.cos(angle)) + np.outer(down[:, 1], np.sin(angle))
+    row, column = np.nonzero(slope * grid.max_range > stretch * altitude[:, None])
+    slope = slope[row, column]
+    distance = altitude[row] / slope
+    # A patch r dφ wide as seen from the sonar has this length along the seabed, over its slope;
+    # one of these slopes is that of Lambert's law that is thereby spent.
+    area = distance * step * distance * beam.thickness / slope
+    strength = strengths.seabed * slope**2 * area * beam.two_way(angle[column] - axis[row])
+    return _gathered(row, stretch * distance, strength, grid)
+
+
+def _fish(
+    pings: Sequence[Ping],
+    axis: np.ndarray,
+    grid: Grid,
+    beam: Beam,
+    strengths: Strengths,
+    stretch: float,
+    generator: np.random.Generator,
+) -> np.ndarray:
+    """Fish drawn cell by cell, each seen by its own beam and, as far as they reach, by others."""
+    true_cell = grid.cell / stretch
+    ranges = grid.ranges / stretch
+    volume = true_cell * (ranges * grid.angle_increment) * (ranges * beam.thickness)
+    expected = np.zeros((len(pings), grid.cells))
+    for row, ping in enumerate(pings):
+        way = ping.axes[:, 0] * np.cos(ping.angle) + ping.axes[:, 1] * np.sin(ping.angle)
+        for school in ping.schools:
+            near, far = _inside(school, ping.position, way)
+            within = (ranges >= near) & (ranges <= far)
+            expected[row, within] += school.density * volume[within]
+    fish = generator.poisson(expected)
+    return strengths.fish * (beam.two_way(_turned(axis[:, None] - axis)) @ fish)
+
+
+def _inside(school: SchoolTruth, position: np.ndarray, way: np.ndarray) -> tuple[float, float]:
+    """Between which distances (m) along ``way`` a school lies; (inf, inf) where it does not."""
+    start = 2 * (position - school.position) / school.size
+    move = 2 * way / school.size
+    a, b, c = move @ move, start @ move, start @ start - 1
+    root = b * b - a * c
+    if root <= 0:
+        return np.inf, np.inf
+    return float((-b - np.sqrt(root)) / a), float((-b + np.sqrt(root)) / a)
+
+
+def _turned(angle: np.ndarray) -> np.ndarray:
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+def _gathered(
+    rows: np.ndarray, ranges: np.ndarray, strengths: np.ndarray, grid: Grid
+) -> np.ndarray:
+    """Put point targets into cells, each shared by the two whose middles are nearest."""
+    place = ranges / grid.cell - 0.5
+    first = np.floor(place).astype(int)
+    share = place - first
+    total = np.zeros(grid.beams * grid.cells)
+    for column, weight in ((first, 1 - share), (first + 1, share)):
+        there = (column >= 0) & (column < grid.cells)
+        total += np.bincount(
+            rows[there] * grid.cells + column[there],
+            (weight * strengths)[there],
+            minlength=len(total),
+        )
+    return total.reshape(grid.beams, grid.cells)
+
+
+def _as_long_as_a_pulse(received: np.ndarray, cells: float) -> np.ndarray:
+    """Spread what is in one cell over a bell curve of so many cells between half-power points.
+
+    The peak keeps its height, as a point's echo is as strong as the point for its whole length.
+    """
+    reach = int(np.ceil(1.5 * cells))
+    bell = 0.5 ** ((2 * np.arange(-reach, reach + 1) / cells) ** 2)
+    padded = np.pad(received, ((0, 0), (reach, reach)))
+    width = received.shape[1]
+    return sum(weight * padded[:, k : k + width] for k, weight in enumerate(bell))

@@ -1,0 +1,37 @@
+"""The sonar's image as a grid: beams by angle, cells by range."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Which beam and which range a row and a column of the image stand for.
+
+    ``beams`` rows: row i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame
+    ``sonar``: 0 down, positive to port). ``cells`` columns: column j holds what comes from
+    (j + ½) ``max_range`` / ``cells`` (m). Nothing is heard from nearer than ``min_range`` (m).
+    """
+
+    beams: int
+    cells: int
+    angle_min: float
+    angle_increment: float
+    min_range: float
+    max_range: float
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Angle of each row, (beams,) rad."""
+        return self.angle_min + self.angle_increment * np.arange(self.beams)
+
+    @property
+    def cell(self) -> float:
+        """Length of a cell, m."""
+        return self.max_range / self.cells
+
+    @property
+    def ranges(self) -> np.ndarray:
+        """Range of each column, (cells,) m."""
+        return self.cell * (np.arange(self.cells) + 0.5)
