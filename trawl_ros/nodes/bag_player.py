@@ -1,19 +1,23 @@
 """`bag_player`: publishes a bag again, message for message, and ends with it."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Sequence
 from time import monotonic
 from typing import Any, ClassVar
 
+from rclpy.qos import HistoryPolicy
+
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.errors import BagError, MessageError, TrawlError
+from trawl_ros.errors import TrawlError
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import CLOCK
 from trawl_ros.messages.truth_to_messages import clock_message
+from trawl_ros.nodes.excerpt import Excerpt
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.pacer import Pacer
 from trawl_ros.nodes.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.qos import PUBLISHED_DEPTH
+from trawl_ros.nodes.replay import replayed
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Consumers
 
@@ -28,17 +32,23 @@ CLOCK_STEP = SECOND // 100
 class BagPlayer(TrawlNode):
     """Plays a bag at a rate, or as fast as its consumers follow.
 
-    It begins when discovery has come to rest and all of ``wait_for`` report on
-    ``sync/progress``, and ends when subscribers have everything.
+    Publishers offer the QoS that was recorded. It begins when discovery has come to rest and all
+    of ``wait_for`` report on ``sync/progress``, and ends when subscribers have everything.
+    ``~/pause``, ``~/resume``, ``~/toggle_paused`` and ``~/play_next`` (one message, while paused)
+    are services.
     """
 
     SPECS: ClassVar = (
         Text('bag', '', 'Folder of the bag, or one MCAP file.', needed=True),
         Number('rate', 1.0, 'factor', 0.0, 1000.0, 'Recorded seconds per second of wall time; 0 '
                'is as fast as the consumers in wait_for follow.', live=True),
-        Names('topics', 'Topics to play; by default all of the bag.'),
+        Names('topics', 'Topics to play, as the bag names them; by default all.'),
         Flag('loop', False, 'Whether to begin again at the end.', live=True),
         Number('start', 0.0, 's', 0.0, 1e7, 'Recorded time to leave out at the beginning.'),
+        Number('end', 0.0, 's', 0.0, 1e7, "Recorded time since the bag's first message at which "
+               'to end; 0 is at the end of the bag.'),
+        Flag('start_paused', False, 'Whether to wait for a call of resume before the first '
+             'message.'),
         Flag('publish_clock', False, 'Whether to publish recorded time on /clock; a rate other '
              'than 1 forces it.'),
         Names('wait_for', 'Consumers (node names) without which it does not begin.'),
@@ -48,29 +58,24 @@ class BagPlayer(TrawlNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('bag_player', **kwargs)
-        if self.parameters['rate'] == 0.0 and not self.parameters['wait_for']:
-            raise TrawlError(
-                'parameter rate: found 0 without wait_for, expected the names of consumers to '
-                'follow, or a rate above 0'
-            )
+        self._check_parameters()
         self._bag = Bag(self.parameters['bag'], namespace=self.get_namespace())
-        self._topics = self._chosen()
+        topics = self._advertise_all()
         self._clock_published = self.parameters['publish_clock'] or self.parameters['rate'] != 1.0
-        self._halves: dict[str, tuple[int, int | None]] = {}
-        for topic in sorted(self._topics):
-            try:
-                self.advertise(topic, self._bag.topics[topic])
-            except MessageError as reason:
-                raise BagError(f'{self._bag.path}: {topic}: {reason}') from reason
         if self._clock_published:
             self.advertise(CLOCK.name)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['rate'])
+        self._halves: dict[str, tuple[int, int | None]] = {}
         self._rounds = 0
         self._began = False
         self._ended = False
+        self._paused = self.parameters['start_paused']
         self._last_progress: tuple[int | None, float] = (None, monotonic())
+        self._excerpt = Excerpt(self._bag, topics, self.parameters['start'], self.parameters['end'])
         self._begin()
+        for act in (self._pause, self._resume, self._toggle_paused, self._play_next):
+            self.offer(f'~/{act.__name__.strip("_")}', act)
         self.every(TICK_S, self._tick)
 
     def objection(self, name: str, value: Any) -> str | None:
@@ -103,37 +108,44 @@ class BagPlayer(TrawlNode):
         if missing:
             text = f'waits for {", ".join(missing)}, which should report on sync/progress'
             return [Status('bag', WARN, text, values)]
-        if self._bag.problems:
-            return [Status('bag', WARN, '; '.join(self._bag.problems), values)]
+        if problems := [*self._left_out, *self._bag.problems]:
+            return [Status('bag', WARN, '; '.join(problems), values)]
+        if self._paused:
+            return [Status('bag', OK, 'paused', values)]
         return [Status('bag', OK, 'playing' if self._began else 'waits for subscribers', values)]
 
-    def _chosen(self) -> Collection[str]:
-        names = self.parameters['topics']
-        # A new clock is made where one is wanted; an old one beside it would be a second.
-        there = {topic for topic in self._bag.topics if topic != CLOCK.name}
-        if not names:
-            return there
-        wanted = {self.full_name(name) for name in names}
-        if missing := sorted(wanted - there):
-            raise BagError(
-                f'{self._bag.path}: no topic {", ".join(missing)}; there are: '
-                f'{", ".join(sorted(there))}'
+    def _check_parameters(self) -> None:
+        start, end = self.parameters['start'], self.parameters['end']
+        if self.parameters['rate'] == 0.0 and not self.parameters['wait_for']:
+            raise TrawlError(
+                'parameter rate: found 0 without wait_for, expected the names of consumers to '
+                'follow, or a rate above 0'
             )
-        return wanted
+        if 0.0 < end <= start:
+            raise TrawlError(f'parameter end: found {end:g}, expected more than start ({start:g})')
+
+    def _advertise_all(self) -> list[str]:
+        """Create the publishers, and give the topics as the bag names them."""
+        # Remappings say where a topic goes, and not what it is called in the bag.
+        wanted = [
+            self.resolve_topic_name(name, only_expand=True) for name in self.parameters['topics']
+        ]
+        topics, self._left_out = replayed(self._bag, wanted, self.get_namespace())
+        self._depths: dict[str, int] = {}
+        for name, topic in topics.items():
+            offer = self.advertise(name, topic.type, topic.profile).qos_profile
+            keeps_last = offer.history == HistoryPolicy.KEEP_LAST
+            self._depths[name] = offer.depth if keeps_last else PUBLISHED_DEPTH
+            if not topic.as_recorded:
+                self.get_logger().info(
+                    f'{name}: its publishers offered different QoS; the usual one is offered'
+                )
+        for sentence in self._left_out:
+            self.get_logger().warning(sentence)
+        return list(topics)
 
     def _begin(self) -> None:
-        self._messages: Iterator[RawMessage] = self._bag.raw(self._topics)
-        first = next(self._messages, None)
-        start = round(self.parameters['start'] * SECOND)
-        origin = first.log_time if first else 0
-        while first is not None and first.log_time < origin + start:
-            first = next(self._messages, None)
-        if first is None:
-            raise BagError(
-                f'{self._bag.path}: no message {self.parameters["start"]:g} s after its beginning '
-                'on the topics to be played; expected an earlier start'
-            )
-        self._next: RawMessage | None = first
+        first = self._excerpt.begin()
         self._latest = first.log_time
         self._clocked: int | None = None
         self._halves.clear()
@@ -142,18 +154,17 @@ class BagPlayer(TrawlNode):
 
     def _tick(self) -> None:
         self._began = self._began or self._consumers.ready()
-        if not self._began:
+        if not self._began or self._paused:
             return
         if self._ended:
             self._end_if_done()
             return
         end = monotonic() + BURST_S
-        while self._next is not None and self._may_go_on(self._next.log_time):
-            self._play(self._next)
-            self._next = next(self._messages, None)
+        while (message := self._excerpt.upcoming) and self._may_go_on(message.log_time):
+            self._play(message)
             if monotonic() > end:
                 return
-        if self._next is None:
+        if self._excerpt.upcoming is None:
             self._finish_round()
 
     def _may_go_on(self, stamp: int) -> bool:
@@ -180,12 +191,13 @@ class BagPlayer(TrawlNode):
         self._latest = stamp
         self._consumers.sent(stamp)
         self._let_arrive(message.topic)
+        self._excerpt.advance()
 
     def _let_arrive(self, topic: str) -> None:
         # Counted in halves of what the publisher keeps: a half goes out when the one before has
         # arrived, so that nothing that may have to be sent again is ever replaced.
         sent, before = self._halves.get(topic, (0, None))
-        if sent + 1 < PUBLISHED_DEPTH // 2:
+        if sent + 1 < self._depths[topic] // 2:
             self._halves[topic] = (sent + 1, before)
             return
         slowest = self._consumers.slowest()
@@ -209,6 +221,27 @@ class BagPlayer(TrawlNode):
             for problem in self._bag.problems:
                 self.get_logger().warning(problem)
             self.end(0, f'{self._bag.path}: played {self._rounds} times to its end')
+
+    def _pause(self) -> str:
+        self._paused = True
+        return f'paused at {self._latest / SECOND:.3f}'
+
+    def _resume(self) -> str:
+        self._paused = False
+        self._pacer.restart()
+        return f'goes on from {self._latest / SECOND:.3f}'
+
+    def _toggle_paused(self) -> str:
+        return self._resume() if self._paused else self._pause()
+
+    def _play_next(self) -> str:
+        if not self._paused:
+            raise TrawlError('playing; expected a call of pause before')
+        message = self._excerpt.upcoming
+        if message is None:
+            raise TrawlError('at the end; expected a call of resume')
+        self._play(message)
+        return f'played {message.topic} of {message.log_time / SECOND:.3f}'
 
 
 def main(args: Sequence[str] | None = None) -> int:
