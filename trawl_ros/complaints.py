@@ -19,6 +19,7 @@ UNITS = {
     'mm': 'millimetres',
     'm2': 'square metres',
     'm3': 'cubic metres',
+    'per_m3': 'per cubic metre',
     'm4': 'metres to the fourth power',
     'kg': 'kilograms',
     't': 'tonnes',

@@ -8,6 +8,8 @@ import math
 from trawl_ros.errors import NoSteadyState, ScenarioError
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.scenario.scenario import Scenario
+from trawl_ros.scenario.sea import build_sea
+from trawl_ros.simulation.seabed import SeabedTouched
 from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
 from trawl_ros.simulation.truth import Truth
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
@@ -18,10 +20,24 @@ MOST_UNITS, UNITS_PER_S = 5, 20
 0.5 s leave it within a per cent of a converged run."""
 
 
-def periods_per_truth(truth_rate_hz: float) -> int:
-    """Into how many periods of the simulation that between two truths is cut."""
+PERIODS_PER_WAVE = 40
+"""The simulation's period is at most this part of the shortest wave's: its solver, which steps
+twice as far, then gives how much the warps' tension varies within 3 % of a converged run."""
+
+
+def periods_per_truth(truth_rate_hz: float, shortest_wave_s: float = math.inf) -> int:
+    """Into how many periods of the simulation that between two truths is cut.
+
+    Parameters
+    ----------
+    truth_rate_hz
+        How often truth is asked for.
+    shortest_wave_s
+        Shortest period of the ship's heave.
+    """
     units = round(UNITS_PER_S / truth_rate_hz)
-    longest = max(d for d in range(1, MOST_UNITS + 1) if units % d == 0)
+    most = min(MOST_UNITS, max(1.0, UNITS_PER_S * shortest_wave_s / PERIODS_PER_WAVE))
+    longest = max(d for d in range(1, math.floor(most) + 1) if units % d == 0)
     return units // longest
 
 
@@ -50,6 +66,8 @@ class Trial:
     ------
     NoSteadyState
         If the start, or what a step without a turn asks for, is no usable steady state.
+    SeabedTouched
+        If the gear starts on the seabed.
     """
 
     def __init__(
@@ -59,14 +77,19 @@ class Trial:
         self.model = build_model(scenario.plant) if model is None else model
         self.duration_s = scenario.duration_s
         require_steady_states(scenario, self.model)
-        steps = periods_per_truth(scenario.record.truth_rate_hz)
-        self.simulation = Simulation(
-            self.model,
-            scenario.start,
-            heading=scenario.heading,
-            stamp=stamp,
-            period=1.0 / scenario.record.truth_rate_hz / steps,
-        )
+        sea = build_sea(scenario.record.sea, self.model.water, scenario.record.seed)
+        steps = periods_per_truth(scenario.record.truth_rate_hz, sea.heave.shortest_period)
+        try:
+            self.simulation = Simulation(
+                self.model,
+                scenario.start,
+                heading=scenario.heading,
+                stamp=stamp,
+                period=1.0 / scenario.record.truth_rate_hz / steps,
+                sea=sea,
+            )
+        except SeabedTouched as reason:
+            raise SeabedTouched(f'{scenario.path}: start: {reason}') from reason
         self._first_stamp = stamp
         self._steps_per_truth = steps
         self._truths = 1 + math.floor(self.duration_s * scenario.record.truth_rate_hz + 1e-6)
@@ -93,7 +116,8 @@ class Trial:
         Raises
         ------
         ScenarioError
-            If the gear is moved so violently that its motion cannot be computed.
+            If the gear is moved so violently that its motion cannot be computed, or comes to
+            the seabed.
         """
         if self._given == self._truths:
             return None
@@ -113,6 +137,11 @@ class Trial:
                 f"{self.scenario.path}: step '{step.name}': the motion of the gear cannot be "
                 f'computed beyond {self.time_s:.1f} s ({reason}); expected milder changes of '
                 'warp length, speed or course'
+            ) from reason
+        except SeabedTouched as reason:
+            step = self.scenario.step_at(self.time_s)
+            raise SeabedTouched(
+                f"{self.scenario.path}: step '{step.name}', after {self.time_s:.1f} s: {reason}"
             ) from reason
 
 

@@ -1,6 +1,6 @@
 """Ship and winches: what moves the gear, within what they can do."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,23 +14,37 @@ def _approach(value: float, target: float, most: float) -> float:
 @dataclass(frozen=True)
 class Ship:
     """Position (m) midway between the blocks, heading (ENU yaw, rad), speed through the
-    water (m/s), rate of turn (rad/s, to port positive).
+    water (m/s), rate of turn (rad/s, to port positive), and how fast she heaves (m/s, up).
     """
 
     position: np.ndarray
     heading: float
     speed: float
     yaw_rate: float
+    heave_rate: float = 0.0
 
     @property
     def ahead(self) -> np.ndarray:
         """Unit vector (3,) of the heading."""
         return np.array([np.cos(self.heading), np.sin(self.heading), 0.0])
 
+    @property
+    def velocity(self) -> np.ndarray:
+        """Velocity (3,) through the water in ``map`` axes, m/s."""
+        return self.speed * self.ahead + np.array([0.0, 0.0, self.heave_rate])
+
+    def heaved(self, height: float, rate: float) -> 'Ship':
+        """The ship at a ``height`` (m) above the mean surface that changes at a ``rate`` (m/s)."""
+        position = np.array([self.position[0], self.position[1], height])
+        return replace(self, position=position, heave_rate=rate)
+
     def advanced(
         self, limits: ShipRecord, speed: float, yaw_rate: float, current: np.ndarray, dt: float
     ) -> 'Ship':
-        """After ``dt`` seconds of approaching a wanted speed and rate of turn in a current."""
+        """After ``dt`` seconds of approaching a wanted speed and rate of turn in a current.
+
+        Her height stays as it was: that is for `heaved`.
+        """
         new_speed = _approach(self.speed, speed, limits.max_acceleration_m_s2 * dt)
         most = np.radians(limits.max_turn_acceleration_deg_s2) * dt
         new_rate = _approach(self.yaw_rate, yaw_rate, most)
@@ -43,6 +57,7 @@ class Ship:
             heading=float(turned),
             speed=new_speed,
             yaw_rate=new_rate,
+            heave_rate=self.heave_rate,
         )
 
 

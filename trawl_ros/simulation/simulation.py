@@ -1,6 +1,6 @@
 """The tow in time: ship, winches and gear, from an equilibrium onward."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,6 +8,8 @@ from trawl_ros.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import Tow, halfway
 from trawl_ros.simulation.reading import read_picture, read_truth
+from trawl_ros.simulation.sea import Sea
+from trawl_ros.simulation.seabed import require_clear
 from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.simulation.truth import GearPicture, Truth
 from trawl_ros.solver.equilibrium import find_equilibrium, require_usable
@@ -15,8 +17,8 @@ from trawl_ros.solver.operating_point import OperatingPoint, block_offsets
 from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
 
 NANOSECONDS = 1_000_000_000
+CALM = Sea()
 HALVINGS = 6
-
 """How often a time step that fails is halved before the tow is given up."""
 
 
@@ -45,7 +47,7 @@ class Instant:
 def tow_of(model: GearModel, ship: Ship, winches: tuple[Winch, Winch]) -> Tow:
     """What ship and winches impose on the gear at one instant."""
     offsets = block_offsets(model, ship.heading)
-    velocity = ship.speed * ship.ahead + model.water.current(np.array(0.0))
+    velocity = ship.velocity + model.water.current(np.array(0.0))
     spin = np.array([0.0, 0.0, ship.yaw_rate])
     return Tow(
         blocks=ship.position + offsets,
@@ -71,6 +73,15 @@ class Simulation:
     period
         Time between two instants, s. The solver takes steps of twice the period; the instant
         between lies on the cubic through both ends.
+    sea
+        What lifts the ship, what lies below, and what swims around.
+
+    Raises
+    ------
+    NoSteadyState
+        If the gear has none to start from.
+    ScenarioError
+        If it is to start in a turn, or on the seabed (`SeabedTouched`).
     """
 
     def __init__(
@@ -81,6 +92,7 @@ class Simulation:
         heading: float = 0.0,
         stamp: int = 0,
         period: float = 0.1,
+        sea: Sea = CALM,
     ) -> None:
         if command.turn_rate:
             raise ScenarioError(
@@ -88,12 +100,15 @@ class Simulation:
                 f'{command.turn_rate} rad/s'
             )
         self.model = model
+        self.sea = sea
         self.command = command
         self._period = round(period * NANOSECONDS)
         self._reached: Instant | None = None
+        self._first_stamp = stamp
         self._stepper = Stepper(model)
         self.now = self._first(command, heading, stamp)
         self._start = (command, self.now)
+        require_clear(sea.seabed, model, self.now.motion.state)
 
     def _first(self, command: Command, heading: float, stamp: int) -> Instant:
         point = OperatingPoint(
@@ -120,11 +135,15 @@ class Simulation:
         ------
         StepFailed
             When the motion cannot be computed even with short steps.
+        SeabedTouched
+            When the gear comes to the bottom; it stays where it was.
         """
         if self._reached is None:
             start = self.now
-            self._reached = self._advanced(start, 2 * self._period, HALVINGS)
-            self.now = self._between(start, self._reached)
+            reached = self._advanced(start, 2 * self._period, HALVINGS)
+            require_clear(self.sea.seabed, self.model, reached.motion.state)
+            self.now = self._between(start, reached)
+            self._reached = reached
         else:
             self.now, self._reached = self._reached, None
         return self.now
@@ -132,9 +151,16 @@ class Simulation:
     def _between(self, start: Instant, end: Instant) -> Instant:
         span = self._period / NANOSECONDS
         ship, winches = self._boundary(start, span)
+        # The blocks lie on a cubic like that of the gear: between a block and a wire that take
+        # ways of their own, a millimetre is a kilonewton.
+        z0, z1 = start.ship.position[2], end.ship.position[2]
+        v0, v1 = start.ship.heave_rate, end.ship.heave_rate
         return Instant(
             start.stamp + self._period,
-            ship,
+            ship.heaved(
+                0.5 * (z0 + z1) + span / 4 * (v0 - v1),
+                0.75 / span * (z1 - z0) - 0.25 * (v0 + v1),
+            ),
             winches,
             at_rest(halfway(start.motion.state, end.motion.state, 2 * span)),
         )
@@ -144,6 +170,7 @@ class Simulation:
         gear, wanted = self.model.gear, self.command
         surface = self.model.water.current(np.array(0.0))
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
+        ship = ship.heaved(*self.sea.heave.at(self._seconds(now.stamp) + dt))
         port, starboard = now.winches
         return ship, (
             port.advanced(gear.winch, wanted.port_length, dt),
@@ -162,16 +189,25 @@ class Simulation:
             return self._advanced(half, span - span // 2, halvings - 1)
         return Instant(now.stamp + span, ship, winches, motion)
 
+    def _seconds(self, stamp: int) -> float:
+        """Since the start."""
+        return (stamp - self._first_stamp) / NANOSECONDS
+
     def truth(self) -> Truth:
         """The present instant as instruments see it."""
         now = self.now
-        return read_truth(
+        truth = read_truth(
             self.model,
             now.stamp,
             now.ship,
             now.winches,
             now.motion.state,
             tow_of(self.model, now.ship, now.winches),
+        )
+        return replace(
+            truth,
+            schools=self.sea.schools_at(self._seconds(now.stamp)),
+            seabed=self.sea.seabed_under(now.ship.position, truth.net.sonar_position),
         )
 
     def picture(self) -> GearPicture:

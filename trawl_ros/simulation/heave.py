@@ -1,0 +1,88 @@
+"""How the ship moves up and down in waves, as a sum of sines."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+COMPONENTS = 100
+"""Sines of an irregular heave. Each carries the same energy at a frequency of its own, so they
+never come round to the same pattern again."""
+
+HIGHEST = 2.0
+"""Highest frequency of an irregular heave over that of the spectrum's peak: waves that are
+shorter pass under a ship of usual length without lifting her."""
+
+
+@dataclass(frozen=True)
+class Heave:
+    """Height of the towing blocks above their mean, as a function of time.
+
+    ``amplitudes`` (m), ``frequencies`` (rad/s) and ``phases`` (rad) of its sines, all of shape
+    (n,); none for a calm sea. It grows from nothing at ``begin`` to its full size ``growth``
+    seconds later, both in s since the start of the trial; the growth is smooth to the second
+    derivative, so that it does not jerk the warps.
+    """
+
+    amplitudes: np.ndarray = field(default_factory=lambda: np.empty(0))
+    frequencies: np.ndarray = field(default_factory=lambda: np.empty(0))
+    phases: np.ndarray = field(default_factory=lambda: np.empty(0))
+    begin: float = 0.0
+    growth: float = 30.0
+
+    @property
+    def shortest_period(self) -> float:
+        """Of its sines, s; infinite in a calm sea."""
+        return 2 * math.pi / float(self.frequencies.max()) if len(self.frequencies) else math.inf
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Height (m) and its rate (m/s) at a time (s since the start of the trial)."""
+        x = (time - self.begin) / self.growth
+        if x <= 0.0 or not len(self.frequencies):
+            return 0.0, 0.0
+        angles = self.frequencies * (time - self.begin) + self.phases
+        height = float(self.amplitudes @ np.sin(angles))
+        rate = float((self.amplitudes * self.frequencies) @ np.cos(angles))
+        if x >= 1.0:
+            return height, rate
+        grown = x**3 * (10 - 15 * x + 6 * x**2)
+        growing = 30 * x**2 * (1 - x) ** 2 / self.growth
+        return grown * height, grown * rate + growing * height
+
+
+def regular_heave(height: float, period: float, *, begin: float, growth: float) -> Heave:
+    """Give one sine of a ``height`` from trough to crest (m) and a ``period`` (s)."""
+    return Heave(
+        np.array([0.5 * height]), np.array([2 * math.pi / period]), np.zeros(1), begin, growth
+    )
+
+
+def irregular_heave(
+    height: float, period: float, draws: np.random.Generator, *, begin: float, growth: float
+) -> Heave:
+    """Give a heave with the spectrum of Bretschneider (1959), as ITTC and ISSC use it.
+
+    S(ω) = (5/16) H² ω_p⁴ ω⁻⁵ exp(−1.25 (ω_p/ω)⁴), of which the part below a frequency holds the
+    share exp(−1.25 (ω_p/ω)⁴) of the energy. It ends at `HIGHEST` ω_p and is scaled so that what
+    is left has the height asked for.
+
+    Parameters
+    ----------
+    height
+        Significant height of the heave (m): four standard deviations.
+    period
+        At the spectrum's peak, as it is felt on board (s).
+    draws
+        Where frequencies and phases are drawn from.
+    begin, growth
+        As in `Heave`.
+    """
+    below = (np.arange(COMPONENTS) + draws.random(COMPONENTS)) / COMPONENTS
+    below *= math.exp(-1.25 / HIGHEST**4)
+    return Heave(
+        amplitudes=np.full(COMPONENTS, 0.25 * height * math.sqrt(2 / COMPONENTS)),
+        frequencies=2 * math.pi / period * (1.25 / -np.log(below)) ** 0.25,
+        phases=draws.uniform(0.0, 2 * math.pi, COMPONENTS),
+        begin=begin,
+        growth=growth,
+    )

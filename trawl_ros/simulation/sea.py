@@ -1,0 +1,48 @@
+"""The sea around ship and gear: what lifts her, what lies below, and what swims in it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trawl_ros.simulation.heave import Heave
+from trawl_ros.simulation.seabed import Seabed
+from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth
+
+
+@dataclass(frozen=True)
+class School:
+    """A school of fish that moves evenly.
+
+    ``position`` (3,) of its middle at the start of the trial (m, ``map``), ``velocity`` (3,) over
+    ground (m/s); ``size`` and ``density`` as in `SchoolTruth`.
+    """
+
+    position: np.ndarray
+    size: np.ndarray
+    density: float
+    velocity: np.ndarray
+
+    def at(self, time: float) -> SchoolTruth:
+        """Where it is at a time (s since the start of the trial)."""
+        return SchoolTruth(self.position + self.velocity * time, self.size, self.density)
+
+
+@dataclass(frozen=True)
+class Sea:
+    """Heave, seabed and schools; by default calm, bottomless and empty.
+
+    Density and current are the gear's business: `trawl_ros.model.water.Water`.
+    """
+
+    heave: Heave = field(default_factory=Heave)
+    seabed: Seabed = field(default_factory=Seabed)
+    schools: tuple[School, ...] = ()
+
+    def schools_at(self, time: float) -> tuple[SchoolTruth, ...]:
+        """All schools at a time (s since the start of the trial)."""
+        return tuple(school.at(time) for school in self.schools)
+
+    def seabed_under(self, ship: np.ndarray, headrope: np.ndarray) -> SeabedTruth:
+        """Depths of the seabed under two positions (3,) in ``map``."""
+        under_ship, under_headrope = self.seabed.depth_at(np.stack([ship, headrope]))
+        return SeabedTruth(float(under_ship), float(under_headrope))

@@ -1,0 +1,66 @@
+"""The bottom of the sea: how deep it is, and where the gear would touch it."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trawl_ros.errors import ScenarioError
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.state import State
+from trawl_ros.simulation.truth import SIDES
+
+
+class SeabedTouched(ScenarioError):
+    """The gear came to the bottom of the sea, with which the model has no contact."""
+
+
+@dataclass(frozen=True)
+class Seabed:
+    """Depths (m) below the mean surface along one direction of ``map``; across it all is level.
+
+    ``distances`` (n,) from the origin along ``direction`` (ENU yaw, rad), rising, with the
+    ``depths`` (n,) there; straight in between, level beyond. By default there is no bottom.
+    """
+
+    direction: float = 0.0
+    distances: np.ndarray = field(default_factory=lambda: np.zeros(1))
+    depths: np.ndarray = field(default_factory=lambda: np.full(1, math.inf))
+
+    def depth_at(self, places: np.ndarray) -> np.ndarray:
+        """Depths (...,) at places (..., 3) in ``map``."""
+        along = np.array([math.cos(self.direction), math.sin(self.direction)])
+        return np.interp(places[..., :2] @ along, self.distances, self.depths)
+
+
+def require_clear(seabed: Seabed, model: GearModel, state: State) -> None:
+    """Check that no node and no door of the gear has reached the bottom.
+
+    Raises
+    ------
+    SeabedTouched
+        Naming the part that lies deepest in it, and the depths.
+    """
+    if not math.isfinite(seabed.depths.min()):
+        return
+    places = np.concatenate([state.board_positions, state.nodes])
+    heights = places[:, 2] + seabed.depth_at(places)
+    # Down to a door's lowest corner.
+    edges = np.array([model.board.chord, 0.0, model.board.span])
+    heights[:2] -= 0.5 * np.abs(state.board_rotations[:, 2]) @ edges
+    lowest = int(np.argmin(heights))
+    if heights[lowest] > 0.0:
+        return
+    if lowest < 2:
+        part = f'{SIDES[lowest]} door'
+    else:
+        part = next(
+            name.replace('_', ' ')
+            for name, numbers, _ in model.layout.lines
+            if lowest - 2 in numbers
+        )
+    raise SeabedTouched(
+        f'the {part} touches the seabed, which is {seabed.depth_at(places[lowest]):.1f} m deep '
+        'there; the model has no contact with the bottom, so expected shorter warps, more speed '
+        'or deeper water'
+    )
