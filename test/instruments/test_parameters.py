@@ -48,8 +48,44 @@ def test_a_wrong_parameter_is_named(tmp_path: Path, old: str, new: str, sentence
 
 
 def test_an_unknown_set_is_refused_with_the_names_there_are() -> None:
-    with pytest.raises(InstrumentError, match=r'there are: default\.yaml'):
+    with pytest.raises(InstrumentError, match=r'there are: default\.yaml, worn\.yaml'):
         load_instruments('nosuch')
+
+
+def test_a_file_may_say_only_what_differs_from_a_set_of_the_package(tmp_path: Path) -> None:
+    path = tmp_path / 'mine.yaml'
+    path.write_text('base: default\ndoor: {spread: {noise_m: 2.0}}\n')
+    found, default = load_instruments(path), load_instruments()
+    assert found.door.spread.noise_m == 2.0
+    assert found.vessel == default.vessel
+    path.write_text('base: other.yaml\n')
+    with pytest.raises(InstrumentError, match=r"base: found 'other\.yaml', expected the name"):
+        load_instruments(path)
+
+
+def test_the_worn_set_differs_from_the_default_in_every_group() -> None:
+    worn, default = load_instruments('worn'), load_instruments()
+    for group in ('winch', 'door', 'sonar', 'vessel'):
+        assert getattr(worn, group) != getattr(default, group)
+
+
+@pytest.mark.parametrize(
+    ('key', 'value', 'sentence'),
+    [
+        ('dropouts_per_hour', 3, 'dropouts_per_hour: found 3 with dropout_s 0, expected both'),
+        ('freeze_s', 3, 'freezes_per_hour: found 0 with freeze_s 3, expected both'),
+        ('outlier_share', 0.1, 'outlier_share: found 0.1 with outlier_m 0, expected both'),
+        ('outlier_share', 7, 'outlier_share: found 7'),
+    ],
+)
+def test_half_a_description_of_trouble_is_refused(
+    tmp_path: Path, key: str, value: float, sentence: str
+) -> None:
+    path = tmp_path / 'mine.yaml'
+    path.write_text(f'base: default\ndoor: {{spread: {{{key}: {value}}}}}\n')
+    with pytest.raises(InstrumentError) as caught:
+        load_instruments(path)
+    assert sentence in str(caught.value)
 
 
 def test_overrides_change_what_they_name_and_nothing_else() -> None:

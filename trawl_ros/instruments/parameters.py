@@ -21,6 +21,8 @@ from trawl_ros.instruments.timing import Timing
 from trawl_ros.schema import Record, load_yaml, validated
 from trawl_ros.share import share_path
 
+BASE = 'base'
+
 Rate = Annotated[float, Field(gt=0, le=100)]
 
 
@@ -170,7 +172,8 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
     Parameters
     ----------
     path
-        A file that ends in ``.yaml``, or the name of a set that comes with the package.
+        A file that ends in ``.yaml``, or the name of a set that comes with the package. A file
+        with the key ``base`` names a set of the package and says only what differs from it.
 
     Raises
     ------
@@ -178,7 +181,15 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
         Naming file, key, what was found and what was expected.
     """
     path = _file_of(path)
-    return validated(InstrumentParameters, load_yaml(path, InstrumentError), path, InstrumentError)
+    data = load_yaml(path, InstrumentError)
+    if isinstance(data, dict) and BASE in data:
+        base = data.pop(BASE)
+        if not isinstance(base, str) or base.endswith(('.yaml', '.yml')):
+            raise InstrumentError(
+                f'{path}: {BASE}: found {base!r}, expected the name of a set of the package'
+            )
+        data = _merged(load_yaml(_file_of(base), InstrumentError), data)
+    return validated(InstrumentParameters, data, path, InstrumentError)
 
 
 def default_instruments_with(

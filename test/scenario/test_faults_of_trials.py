@@ -1,0 +1,47 @@
+"""A trial's file brings faults at times and places, or is told why it cannot."""
+
+from pathlib import Path
+
+import pytest
+
+from trawl_ros.errors import ScenarioError
+from trawl_ros.instruments.fault_plan import PlannedFault
+from trawl_ros.scenario.scenario import load_scenario
+
+TRIAL = """\
+description: a counter fails
+gear: kaifuha
+start: {{warp_length_m: 300, speed_m_s: 2.0}}
+steps: [{{name: hold, minutes: 30}}]
+faults:
+  - {fault}
+"""
+
+
+def load(folder: Path, fault: str):
+    path = folder / 'trial.yaml'
+    path.write_text(TRIAL.format(fault=fault))
+    return load_scenario(path)
+
+
+def test_faults_are_planned_in_seconds(tmp_path: Path) -> None:
+    counter = 'winch/joint_states/port/length'
+    found = load(tmp_path, f'{{at_min: 2, for_min: 3, where: {counter}, what: frozen}}').faults
+    assert found == (PlannedFault(120.0, 300.0, counter, 'frozen'),)
+    (endless,) = load(tmp_path, '{at_min: 0, where: door/spread, what: offset 3}').faults
+    assert endless.end is None
+
+
+@pytest.mark.parametrize(
+    ('fault', 'sentence'),
+    [
+        ('{at_min: 2, where: door/spred, what: frozen}', "faults[0]: fault at 'door/spred': no su"),
+        ('{at_min: 2, where: door/spread, what: broken}', "fault 'broken': no such fault"),
+        ('{at_min: 2, where: door/spread, what: none}', "found 'none', expected a fault"),
+        ('{at_min: -2, where: door/spread, what: lost}', 'faults[0].at_min: found -2'),
+    ],
+)
+def test_what_cannot_be_is_named(tmp_path: Path, fault: str, sentence: str) -> None:
+    with pytest.raises(ScenarioError) as caught:
+        load(tmp_path, fault)
+    assert sentence in str(caught.value)
