@@ -96,6 +96,8 @@ class McapFile:
         self._channels: dict[int, Channel] = {}
         self._statistics: Statistics | None = None
         self._damaged: set[int] = set()
+        self.passed_bytes = 0
+        """Bytes between records, or behind the last one, that make no sense."""
         self.complete = False
         """Whether the file ends as a finished one does."""
         self.chunk_compressions: set[str] = set()
@@ -257,11 +259,15 @@ class McapFile:
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Give opcode, offset and length of each record before the end of data."""
-        for found in walk(stream, self._size, lambda said: self._report(f'{self.path}: {said}')):
+        for found in walk(stream, self._size, self._step_over):
             if found[0] != Opcode.DATA_END:
                 yield found
             elif not self.complete:
                 self._report(f'{self.path}: the index at the end is cut short; not needed')
+
+    def _step_over(self, sentence: str, count: int) -> None:
+        self.passed_bytes += count
+        self._report(f'{self.path}: {sentence}')
 
     def _load(self, stream: BinaryIO, piece: Piece) -> list[Record] | None:
         """Read a piece; None, with a report, if it is damaged."""

@@ -59,6 +59,15 @@ class BagMetadata(_Lenient):
     compression_mode: str = ''
     custom_data: dict[str, str] | None = None
     ros_distro: str = ''
+    starting_time: dict[str, int] = {}
+    duration: dict[str, int] = {}
+
+    @property
+    def span(self) -> tuple[int, int] | None:
+        """First and last log time (ns) as stated; None where that is not done."""
+        start = self.starting_time.get('nanoseconds_since_epoch')
+        lasts = self.duration.get('nanoseconds')
+        return None if start is None or lasts is None else (start, start + lasts)
 
     def counts(self) -> dict[tuple[str, str], int]:
         """Give the number of messages by (topic, type), of those that have any."""
@@ -167,6 +176,23 @@ def load_metadata(path: Path) -> BagMetadata:
     BagError
         If the file is unreadable, not YAML, or lacks what rosbag2 always writes.
     """
+    return validated(
+        BagMetadata,
+        read_information(path),
+        path,
+        BagError,
+        prefix='rosbag2_bagfile_information',
+    )
+
+
+def read_information(path: Path) -> Any:
+    """Read what stands under ``rosbag2_bagfile_information``, as it is.
+
+    Raises
+    ------
+    BagError
+        If the file is unreadable, not YAML, or has no such key.
+    """
     hint = 'the .mcap file beside it can be opened alone'
     try:
         with path.open('rb') as stream:
@@ -180,13 +206,7 @@ def load_metadata(path: Path) -> BagMetadata:
         raise BagError(f'{path}: not YAML; {hint}') from reason
     if not isinstance(data, dict) or 'rosbag2_bagfile_information' not in data:
         raise BagError(f'{path}: no key rosbag2_bagfile_information; {hint}')
-    return validated(
-        BagMetadata,
-        data['rosbag2_bagfile_information'],
-        path,
-        BagError,
-        prefix='rosbag2_bagfile_information',
-    )
+    return data['rosbag2_bagfile_information']
 
 
 def _dump(data: Any) -> str:

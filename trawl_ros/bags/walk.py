@@ -29,7 +29,7 @@ _INDEX_HEAD = struct.Struct('<HI')
 
 
 def walk(
-    stream: BinaryIO, size: int, report: Callable[[str], None]
+    stream: BinaryIO, size: int, report: Callable[[str, int], None]
 ) -> Iterator[tuple[int, int, int]]:
     """Give opcode, offset and length of each record, up to and with the end of data.
 
@@ -40,7 +40,8 @@ def walk(
     size
         Its length in bytes.
     report
-        Takes a sentence, without the file's name, for each stretch that was stepped over.
+        Takes a sentence, without the file's name, for each stretch that is stepped over, and how
+        many bytes that is.
     """
     offset = len(MCAP0_MAGIC)
     while offset + RECORD_START.size <= size:
@@ -57,12 +58,14 @@ def walk(
         following = next_chunk(stream, offset + 1, size)
         if following is None:
             break
-        report(f'damaged at byte {offset}; {following - offset} bytes were stepped over')
+        gap = following - offset
+        report(f'damaged at byte {offset}; {gap} bytes were stepped over', gap)
         offset = following
     rest = size - offset
     report(
         f'cut short or damaged at byte {offset}; what stands before is used'
-        + (f', {rest} bytes behind are not' if rest > 0 else '')
+        + (f', {rest} bytes behind are not' if rest > 0 else ''),
+        max(rest, 0),
     )
 
 

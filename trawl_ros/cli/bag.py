@@ -7,6 +7,7 @@ import click
 from trawl_ros.bags.check import GROUPS, check_bag
 from trawl_ros.bags.export import ARRAY_LIMIT, DICTIONARY, export_bag
 from trawl_ros.bags.reader import Bag
+from trawl_ros.cli.bag_repair import repair
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
 from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.progress import TimeProgress, error_console
@@ -25,7 +26,10 @@ JSON_OPTION = click.option('--json', 'as_json', is_flag=True, help='Print JSON f
 
 @click.group('bag')
 def command() -> None:
-    """Look into bags, check them, and turn them into tables."""
+    """Look into bags, check them, repair them, and turn them into tables."""
+
+
+command.add_command(repair)
 
 
 @command.command('info')

@@ -1,0 +1,260 @@
+"""A new bag from one that was cut short or damaged, or whose metadata are missing or wrong.
+
+The damaged bag is only read. All that passes its checksum goes into the new one, which has
+indexes and metadata again; what is known to have been there and is not, is counted.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from trawl_ros.bags.mcap_file import Definition, McapFile, Stored
+from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata, read_information
+from trawl_ros.bags.rosbag2_keys import lacking
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.errors import BagError
+
+SUFFIX = '_repaired'
+
+_NUMBERED = re.compile(r'(?P<stem>.*)_(?P<number>\d+)')
+_LATEST = 2**63
+_SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Repair:
+    """What came of a repair.
+
+    ``out`` is None where the bag was sound and nothing was written. ``saved`` and ``lost`` give
+    messages by full topic name; ``lost`` are those that metadata or indexes had counted.
+    ``unread`` says that bytes were passed over in which there may have been more. ``problems``
+    has a sentence for each thing that was wrong.
+    """
+
+    path: Path
+    out: Path | None
+    saved: Mapping[str, int]
+    lost: Mapping[str, int]
+    unread: bool
+    problems: tuple[str, ...]
+
+    @property
+    def whole(self) -> bool:
+        """Whether nothing can have been lost of what was in the files."""
+        return not self.lost and not self.unread
+
+
+def repair_bag(
+    path: Path,
+    out: Path | None = None,
+    *,
+    progress: Callable[[float], None] = lambda done_s: None,
+) -> Repair:
+    """Write what can be saved of a bag of MCAP files into a new one, file for file.
+
+    Parameters
+    ----------
+    path
+        The bag's folder, or one MCAP file. It is left as it is.
+    out
+        Folder to be made; by default beside the bag, with `SUFFIX` behind its name.
+    progress
+        Told how much recorded time (s) is done.
+
+    Raises
+    ------
+    BagError
+        If there is no bag of MCAP files, nothing of it can be saved, or the new one cannot be
+        written.
+    """
+    damaged = _Damaged(path)
+    place = path.resolve()
+    target = out or place.parent / f'{place.stem if place.is_file() else place.name}{SUFFIX}'
+    if damaged.is_sound():
+        return Repair(path, None, damaged.read, {}, False, ())
+    if target.exists():
+        raise BagError(f'{target}: exists already and is not written over; expected a new path')
+    with ExitStack() as stack:
+        bag: BagWriter | None = None
+        for number, file in enumerate(damaged.files):
+            begun = False
+            for definition, stored in damaged.messages(file, progress):
+                if bag is None:
+                    bag = stack.enter_context(BagWriter(target, custom_data=damaged.custom_data))
+                elif number and not begun:
+                    bag.split()
+                begun = True
+                if not bag.declared(stored.topic):
+                    bag.declare(stored.topic, definition)
+                message = stored.message
+                bag.write(
+                    stored.topic,
+                    stored.type,
+                    message.data,
+                    message.log_time,
+                    message.publish_time,
+                )
+        if bag is None:
+            raise BagError(
+                f'{path}: nothing can be saved ({"; ".join(damaged.problems) or "no message"})'
+            )
+        saved = bag.counts
+    lost = damaged.lost(saved)
+    return Repair(path, target, saved, lost, damaged.unread, tuple(damaged.problems))
+
+
+class _Damaged:
+    """The bag as it is, and what is found wrong with it."""
+
+    def __init__(self, path: Path) -> None:
+        if not path.exists():
+            raise BagError(f'{path}: no such bag')
+        self.path = path
+        self.problems: list[str] = []
+        self.read: Counter[str] = Counter()
+        self._types: dict[str, Definition] = {}
+        self._metadata = None if path.is_file() else self._load_metadata()
+        self._check_kind()
+        self.files = [file for name in self._names() if (file := self._open(name))]
+        if not self.files:
+            raise BagError(
+                f'{path}: no MCAP file that can be read; expected at least one '
+                f'({"; ".join(self.problems) or "there is none"})'
+            )
+
+    @property
+    def custom_data(self) -> dict[str, str]:
+        """Text by key, as far as the metadata have it."""
+        return dict((self._metadata and self._metadata.custom_data) or {})
+
+    @property
+    def unread(self) -> bool:
+        """Whether bytes were passed over; complete once all was read."""
+        return any(file.passed_bytes or file.damaged_chunks for file in self.files)
+
+    def is_sound(self) -> bool:
+        """Say whether there is nothing to find fault with, for which all of it is read."""
+        indexed = all(file.complete and file.indexed for file in self.files)
+        if self._metadata is None or self.problems or not indexed:
+            return False
+        times: list[int] = []
+        for file in self.files:
+            for _, stored in self.messages(file):
+                self.read[stored.topic] += 1
+                time = stored.message.log_time
+                times = [min(times[0], time), max(times[1], time)] if times else [time, time]
+        stated: Counter[str] = Counter()
+        for (topic, _), count in self._metadata.counts().items():
+            stated[topic] += count
+        if stated != self.read or self._metadata.message_count != self.read.total():
+            self._report(f'{self.path}: {FILE_NAME} and the data disagree')
+        if times and self._metadata.span != tuple(times):
+            self._report(f'{self.path}: {FILE_NAME} states other times than the data have')
+        return not self.problems
+
+    def messages(
+        self, file: McapFile, progress: Callable[[float], None] = lambda done_s: None
+    ) -> Iterator[tuple[Definition, Stored]]:
+        """Give what can be saved of a file, each with what the bag is to say of its topic."""
+        said = file.definitions
+        stated = self._metadata.offered() if self._metadata else {}
+        left_out: Counter[str] = Counter()
+        begin: int | None = None
+        for stored in file.messages():
+            topic, time = stored.topic, stored.message.log_time
+            definition = self._types.setdefault(topic, said[topic])
+            if not stored.type or stored.type != definition.type or time >= _LATEST:
+                left_out[topic] += 1
+                continue
+            if not definition.qos and stated.get(topic):
+                definition = self._types[topic] = replace(definition, qos=stated[topic])
+            begin = time if begin is None else begin
+            progress((time - begin) / _SECOND)
+            yield definition, stored
+        for topic, count in left_out.items():
+            self._report(
+                f'{file.path}: {count} messages on {topic} have no type, another type than the '
+                'rest, or no possible time, and were left out'
+            )
+
+    def lost(self, saved: Mapping[str, int]) -> dict[str, int]:
+        """Give by topic how many messages metadata or indexes have counted that are not saved."""
+        by_metadata: Counter[str] = Counter()
+        for (topic, _), count in (self._metadata.counts() if self._metadata else {}).items():
+            by_metadata[topic] += count
+        by_index: Counter[str] = Counter()
+        for file in self.files:
+            for (topic, _), count in (file.counts() or {}).items():
+                by_index[topic] += count
+        missing = {
+            topic: count - saved.get(topic, 0) for topic, count in (by_metadata | by_index).items()
+        }
+        return {topic: count for topic, count in sorted(missing.items()) if count > 0}
+
+    def _load_metadata(self) -> BagMetadata | None:
+        file = self.path / FILE_NAME
+        if not file.is_file():
+            self._report(f'{self.path}: no {FILE_NAME}')
+            return None
+        try:
+            metadata = load_metadata(file)
+        except BagError as reason:
+            self._report(str(reason))
+            return None
+        if missing := lacking(read_information(file)):
+            self._report(f'{file}: rosbag2 misses {", ".join(missing)}')
+        return metadata
+
+    def _check_kind(self) -> None:
+        known = self._metadata
+        if known and known.storage_identifier != 'mcap':
+            raise BagError(
+                f'{self.path}: storage {known.storage_identifier!r}; expected mcap (sqlite3 itself '
+                'recovers databases)'
+            )
+        if known and known.compression_mode.lower() not in ('', 'none'):
+            raise BagError(
+                f'{self.path}: compressed per {known.compression_mode.lower()}; expected MCAP '
+                'files as they are, so unpack them first'
+            )
+
+    def _names(self) -> list[Path]:
+        """The bag's files in the order in which they were written."""
+        if self.path.is_file():
+            return [self.path]
+        there = sorted(self.path.glob('*.mcap'), key=_place)
+        if self._metadata is None:
+            return there
+        named = [self.path / Path(name).name for name in self._metadata.relative_file_paths]
+        for name in named:
+            if name not in there:
+                self._report(f'{self.path}: {FILE_NAME} names {name.name}, which is not there')
+        stems = {_place(name)[0] for name in named}
+        for name in [name for name in there if name not in named]:
+            if _place(name)[0] in stems:
+                self._report(f'{self.path}: {FILE_NAME} does not name {name.name}')
+            else:
+                # Somebody else's: taken in, its messages might be in the bag twice.
+                self._report(f'{self.path}: {name.name} is not of this bag and is left out')
+                there.remove(name)
+        return there
+
+    def _open(self, path: Path) -> McapFile | None:
+        try:
+            return McapFile(path, self._report)
+        except BagError as reason:
+            self._report(str(reason))
+            return None
+
+    def _report(self, problem: str) -> None:
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+
+def _place(path: Path) -> tuple[str, int]:
+    """Stem and number of a file, for trial_10 comes after trial_9."""
+    found = _NUMBERED.fullmatch(path.stem)
+    return (found['stem'], int(found['number'])) if found else (path.stem, 0)
