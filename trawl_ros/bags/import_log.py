@@ -4,25 +4,19 @@ Everything is read before anything is written: a log with a mistake in its last 
 half a bag.
 """
 
-import csv
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from datetime import datetime, timedelta, timezone
-from decimal import Decimal, InvalidOperation
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
-from trawl_ros.bags.log_mapping import (
-    UNIX_SECONDS,
-    Clock,
-    LogMapping,
-    TopicMapping,
-    Water,
-    load_mapping,
-)
+from trawl_ros.bags.log_clock import ClockReader
+from trawl_ros.bags.log_layout import BadRow, Row, read_rows
+from trawl_ros.bags.log_mapping import Column, LogMapping, TopicMapping, Water, load_mapping
+from trawl_ros.bags.log_numbers import hemisphere_sign, parse_degrees, parse_number
 from trawl_ros.bags.units import UNITS
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.errors import LogError
@@ -38,35 +32,48 @@ from trawl_ros.instruments.samples import (
 )
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
+from trawl_ros.messages.topics import RANGES, absolute
 from trawl_ros.simulation.truth import SIDES
 
 _WINCH_READINGS = ('length', 'speed', 'tension')
-_EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
-_MICROSECOND = timedelta(microseconds=1)
-_LATEST = 2**31 * 1_000_000_000
-"""ns; stamps of messages count seconds in 32 bits."""
+_WHAT = {topic: what for what, topic in RANGES.items()}
+
+NO_READING = 'no reading, or none that is new'
 
 
 @dataclass(frozen=True)
 class Imported:
-    """What an import made of a log: rows read, and messages by full topic name."""
+    """What an import made of a log.
+
+    ``rows`` were read, ``counts`` are messages by full topic name, ``left_out`` says how many
+    rows gave none, by reason.
+    """
 
     rows: int
     counts: Mapping[str, int]
+    left_out: Mapping[str, int]
 
 
-def import_log(csv_path: str | Path, mapping_path: str | Path, bag_path: str | Path) -> Imported:
+def import_log(
+    csv_path: str | Path,
+    mapping_path: str | Path,
+    bag_path: str | Path,
+    *,
+    leave_out: bool = False,
+) -> Imported:
     """Turn a CSV log into a bag.
 
     Parameters
     ----------
     csv_path
-        The log, in UTF-8, with one line of column names.
+        The log.
     mapping_path
-        Says which column is what; see `LogMapping`.
+        Says how it lies in its file and which column is what; see `LogMapping`.
     bag_path
         Folder to be made.
+    leave_out
+        Whether rows that cannot be understood are left out and counted; by default the first
+        of them is an error.
 
     Returns
     -------
@@ -83,112 +90,162 @@ def import_log(csv_path: str | Path, mapping_path: str | Path, bag_path: str | P
         If the bag exists or cannot be written.
     """
     path = Path(csv_path)
-    mapping = load_mapping(mapping_path)
-    rows = [(_stamp(row, mapping.clock), row) for row in _rows(path, mapping)]
-    samples = [
-        sample
-        for stamp, row in rows
-        for topic, entry in mapping.topics.items()
-        if (sample := _sample(topic, stamp, _readings(row, entry, mapping), entry, mapping.water))
-    ]
-    if not samples:
-        raise LogError(f'{path}: {len(rows)} rows without any reading; expected at least one')
+    reading = _Reading(path, load_mapping(mapping_path), leave_out)
+    return write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
+
+
+def write_samples(
+    path: Path,
+    samples: Iterable[Sample],
+    bag_path: str | Path,
+    told: Callable[[], tuple[int, Mapping[str, int]]],
+) -> Imported:
+    """Write what a log says as a bag, in the order of time.
+
+    Parameters
+    ----------
+    path
+        The log, which the bag's metadata name.
+    samples
+        What it says.
+    bag_path
+        Folder to be made.
+    told
+        Gives rows read and left out by reason, once all samples are there.
+
+    Raises
+    ------
+    LogError
+        If there is no sample.
+    BagError
+        If the bag exists or cannot be written.
+    """
+    ordered = sorted(samples, key=lambda sample: sample.stamp)
+    rows, left_out = told()
+    if not ordered:
+        why = f' ({_listed(left_out)})' if left_out else ''
+        raise LogError(f'{path}: {rows} rows without any reading{why}; expected at least one')
     counts: Counter[str] = Counter()
     with BagWriter(bag_path, custom_data={'log': path.name}) as bag:
-        for sample in samples:
+        for sample in ordered:
             topic, message = sample_message(sample)
             bag.write(absolute(topic), message.__msgtype__, serialize(message), sample.stamp)
             counts[absolute(topic)] += 1
-    return Imported(len(rows), counts)
+    return Imported(rows, counts, left_out)
 
 
-@dataclass(frozen=True)
-class _Row:
-    path: Path
-    line: int
-    cells: Mapping[str, str]
-
-    def error(self, column: str, expected: str) -> LogError:
-        found = self.cells[column]
-        return LogError(
-            f'{self.path}: line {self.line}, column {column!r}: found {found!r}, '
-            f'expected {expected}'
-        )
+def compass_yaw(compass: float) -> float:
+    """Turn an angle clockwise from north into one counter-clockwise from east, -π to π."""
+    return math.remainder(math.pi / 2 - compass, 2 * math.pi)
 
 
-def _rows(path: Path, mapping: LogMapping) -> Iterator[_Row]:
-    needed = dict.fromkeys(mapping.clock.columns, 'clock')
-    for topic, entry in mapping.topics.items():
-        needed |= {field.column: f'topics.{topic}' for field in entry.fields.values()}
-    try:
-        with path.open(encoding='utf-8-sig', newline='') as stream:
-            reader = csv.reader(stream, strict=True)
-            names = [name.strip() for name in next(reader, [])]
-            if not names:
-                raise LogError(f'{path}: the file is empty; expected a line of column names')
-            for column, where in needed.items():
-                if names.count(column) != 1:
-                    found = 'more than one' if column in names else 'no'
-                    raise LogError(
-                        f'{path}: {found} column {column!r} (wanted by {where}); '
-                        f'columns are {", ".join(names)}'
-                    )
-            for cells in reader:
-                if not any(cell.strip() for cell in cells):
-                    continue
-                if len(cells) != len(names):
-                    raise LogError(
-                        f'{path}: line {reader.line_num} has {len(cells)} cells; '
-                        f'expected {len(names)} as in the first line'
-                    )
-                texts = (cell.strip() for cell in cells)
-                yield _Row(path, reader.line_num, dict(zip(names, texts, strict=True)))
-    except FileNotFoundError:
-        raise LogError(f'{path}: no such file') from None
-    except OSError as reason:
-        raise LogError(f'{path}: cannot be read ({reason.strerror})') from reason
-    except (UnicodeDecodeError, csv.Error) as reason:
-        raise LogError(f'{path}: not CSV in UTF-8 ({reason})') from reason
+def course_velocity(speed: float, course: float) -> np.ndarray:
+    """Turn a speed and a compass course (rad) into a velocity (3,) in ``map``."""
+    yaw = compass_yaw(course)
+    return speed * np.array([math.cos(yaw), math.sin(yaw), 0.0])
 
 
-def _stamp(row: _Row, clock: Clock) -> int:
-    text = ' '.join(row.cells[column] for column in clock.columns)
-    shift = timedelta(hours=clock.utc_offset_h)
-    try:
-        if clock.format == UNIX_SECONDS:
-            offset = Decimal(clock.utc_offset_h) * 3600
-            stamp = int((Decimal(text) - offset) * 1_000_000_000)
-        else:
-            time = datetime.strptime(text, clock.format)
-            zoned = time if time.tzinfo else time.replace(tzinfo=timezone(shift))
-            stamp = (zoned - _EPOCH) // _MICROSECOND * 1000
-    except (ValueError, OverflowError, InvalidOperation):
-        named = ' and '.join(repr(column) for column in clock.columns)
-        raise LogError(
-            f'{row.path}: line {row.line}, column {named}: found {text!r}, '
-            f'expected a time as {clock.format}'
-        ) from None
-    if not 0 <= stamp < _LATEST:
-        raise LogError(f'{row.path}: line {row.line}: time {text!r}, expected 1970 to 2038')
-    return stamp
+class _Reading:
+    """Goes through a log once, and counts."""
 
+    def __init__(self, path: Path, mapping: LogMapping, leave_out: bool) -> None:
+        self.rows = 0
+        self.left: Counter[str] = Counter()
+        self._path = path
+        self._mapping = mapping
+        self._leave_out = leave_out
+        self._decimal: Literal['.', ','] = mapping.layout.decimal
+        self._missing = set(mapping.missing)
+        self._missing_numbers = {
+            number for text in mapping.missing if (number := _number(text)) is not None
+        }
+        self._clocks = [(clock, ClockReader(clock, self._decimal)) for clock in mapping.clocks()]
+        self._last: dict[str, dict[str, float]] = {}
 
-def _readings(row: _Row, entry: TopicMapping, mapping: LogMapping) -> dict[str, float]:
-    """Give the fields of one topic in SI units; NaN where the row has none."""
-    found = {}
-    for field, source in entry.fields.items():
-        text = row.cells[source.column]
-        if text.lower() in mapping.missing:
-            found[field] = math.nan
-            continue
+    def samples(self) -> Iterable[Sample]:
+        keys = [column for clock in self._mapping.clocks() for column in clock.columns]
+        keys += self._mapping.only
+        for row in read_rows(self._path, self._mapping.layout, self._mapping.needed(), keys):
+            self.rows += 1
+            try:
+                if isinstance(row, BadRow):
+                    raise row
+                yield from self._row(row)
+            except BadRow as bad:
+                if not self._leave_out:
+                    raise
+                self.left[bad.reason] += 1
+
+    def _row(self, row: Row) -> list[Sample]:
+        for column, texts in self._mapping.only.items():
+            if row.text(column) not in texts:
+                self.left[f'column {column!r} is not {" or ".join(texts)}'] += 1
+                return []
+        stamps = [self._stamp(row, number) for number in range(len(self._clocks))]
+        found = []
+        own = 0
+        for topic, entry in self._mapping.topics.items():
+            own += entry.clock is not None
+            stamp = stamps[own] if entry.clock else stamps[0]
+            readings = self._readings(row, entry)
+            if entry.changes_only and readings == self._last.get(topic):
+                continue
+            if stamp is not None and (
+                sample := _sample(topic, stamp, readings, entry, self._mapping.water)
+            ):
+                self._last[topic] = readings
+                found.append(sample)
+        if not found:
+            self.left[NO_READING] += 1
+        return found
+
+    def _stamp(self, row: Row, number: int) -> int | None:
+        clock, reader = self._clocks[number]
+        text = ' '.join(row.text(column) for column in clock.columns)
+        # A topic that has a clock of its own may have no reading here, and then has no time.
+        if number and text.strip().lower() in self._missing:
+            return None
         try:
-            number = float(text)
-        except ValueError:
-            raise row.error(source.column, f'a number ({source.unit})') from None
-        if not math.isfinite(number) or '_' in text:
-            raise row.error(source.column, f'a finite number ({source.unit})')
-        found[field] = source.si(number)
-    return found
+            return reader.read(text)
+        except ValueError as expected:
+            named = ' and '.join(repr(column) for column in clock.columns)
+            raise BadRow(
+                f'{row.path}: line {row.line}, column {named}: found {text!r}, expected {expected}',
+                f'column {named}: expected {expected}',
+            ) from None
+
+    def _readings(self, row: Row, entry: TopicMapping) -> dict[str, float]:
+        """Give the fields of one topic in SI units; NaN where the row has none."""
+        return {field: self._reading(row, source) for field, source in entry.fields.items()}
+
+    def _reading(self, row: Row, source: Column) -> float:
+        text = row.text(source.column)
+        if text.lower() in self._missing:
+            return math.nan
+        parse = parse_degrees if source.unit == 'deg_min' else parse_number
+        try:
+            number = parse(text, self._decimal)
+        except ValueError as expected:
+            raise row.bad(source.column, f'{expected} ({source.unit})') from None
+        if number in self._missing_numbers:
+            return math.nan
+        if source.hemisphere:
+            try:
+                number *= hemisphere_sign(row.text(source.hemisphere))
+            except ValueError as expected:
+                raise row.bad(source.hemisphere, str(expected)) from None
+        return source.si(number)
+
+
+def _number(text: str) -> float | None:
+    try:
+        return parse_number(text.replace(',', '.'))
+    except ValueError:
+        return None
+
+
+def _listed(left_out: Mapping[str, int]) -> str:
+    return '; '.join(f'{count}: {reason}' for reason, count in left_out.items())
 
 
 def _sample(
@@ -217,20 +274,19 @@ def _sample(
         case ['vessel', what]:
             return _vessel_sample(what, stamp, readings, std)
     limits = [limit.si() for limit in (entry.min_range, entry.max_range) if limit]
-    return RangeSample(stamp, topic.split('/')[1], readings['distance'], std, *limits)
+    return RangeSample(stamp, _WHAT[topic], readings['distance'], std, *limits)
 
 
 def _vessel_sample(what: str, stamp: int, readings: dict[str, float], std: float) -> Sample:
     match what:
         case 'velocity_water':
-            velocity = np.array([readings['forward'], 0.0, 0.0])
+            velocity = np.array([readings['forward'], readings.get('to_port', 0.0), 0.0])
             return VelocitySample(stamp, 'water', velocity, math.nan)
         case 'velocity_ground':
-            yaw = _yaw(readings['compass_course'])
-            velocity = readings['speed'] * np.array([math.cos(yaw), math.sin(yaw), 0.0])
+            velocity = course_velocity(readings['speed'], readings['compass_course'])
             return VelocitySample(stamp, 'ground', velocity, math.nan)
         case 'heading':
-            return HeadingSample(stamp, _yaw(readings['compass_heading']), std)
+            return HeadingSample(stamp, compass_yaw(readings['compass_heading']), std)
     latitude, longitude = (math.degrees(readings[field]) for field in ('latitude', 'longitude'))
     return FixSample(stamp, latitude, longitude, std)
 
@@ -238,8 +294,3 @@ def _vessel_sample(what: str, stamp: int, readings: dict[str, float], std: float
 def _pair(readings: dict[str, float], what: str) -> tuple[float, float]:
     port, starboard = (readings.get(f'{side}_{what}', math.nan) for side in SIDES)
     return port, starboard
-
-
-def _yaw(compass: float) -> float:
-    """Turn an angle clockwise from north into one counter-clockwise from east, -π to π."""
-    return math.remainder(math.pi / 2 - compass, 2 * math.pi)

@@ -5,12 +5,12 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from trawl_ros.bags.log_clock import Clock
+from trawl_ros.bags.log_layout import Layout
 from trawl_ros.bags.units import UNITS, units_of
 from trawl_ros.errors import LogError
+from trawl_ros.messages.topics import RANGES
 from trawl_ros.schema import Record, load_yaml, validated
-
-UNIX_SECONDS = 'seconds'
-"""In place of a format: the column counts seconds since 1970-01-01 UTC."""
 
 _RANGE = {'distance': 'length'}
 _PRESSURE = {'pressure': 'pressure', 'depth': 'length'}
@@ -30,10 +30,8 @@ FIELDS: dict[str, dict[str, str]] = {
     'sonar/pressure': _PRESSURE,
     'door/port/attitude': _ATTITUDE,
     'door/starboard/attitude': _ATTITUDE,
-    'door/spread': _RANGE,
-    'sonar/opening_height': _RANGE,
-    'sonar/opening_width': _RANGE,
-    'vessel/velocity_water': {'forward': 'speed'},
+    **dict.fromkeys(RANGES.values(), _RANGE),
+    'vessel/velocity_water': {'forward': 'speed', 'to_port': 'speed'},
     'vessel/velocity_ground': {'speed': 'speed', 'compass_course': 'angle'},
     'vessel/heading': {'compass_heading': 'angle'},
     'vessel/fix': {'latitude': 'angle', 'longitude': 'angle'},
@@ -47,15 +45,21 @@ STD_QUANTITIES = {
     'sonar/pressure': 'pressure',
     'door/port/attitude': 'angle',
     'door/starboard/attitude': 'angle',
-    'door/spread': 'length',
-    'sonar/opening_height': 'length',
-    'sonar/opening_width': 'length',
+    **dict.fromkeys(RANGES.values(), 'length'),
     'vessel/heading': 'angle',
     'vessel/fix': 'length',
 }
 """Topics whose messages state their noise, with its quantity."""
 
 RANGE_TOPICS = tuple(topic for topic, fields in FIELDS.items() if fields is _RANGE)
+
+_TOGETHER = (
+    'door/port/attitude',
+    'door/starboard/attitude',
+    'vessel/velocity_ground',
+    'vessel/fix',
+)
+"""Topics that make no sense without all of their fields."""
 
 
 class Quantity(Record):
@@ -70,24 +74,20 @@ class Quantity(Record):
 
 
 class Column(Record):
-    """Where a reading comes from: (cell x scale + offset) in the unit."""
+    """Where a reading comes from: (cell x scale + offset) in the unit.
+
+    ``hemisphere`` names a column with N, S, E or W for a latitude or longitude.
+    """
 
     column: str
     unit: str
     scale: float = 1.0
     offset: float = 0.0
+    hemisphere: str | None = None
 
     def si(self, cell: float) -> float:
         """Turn what stands in the cell into SI units."""
         return (cell * self.scale + self.offset) * UNITS[self.unit][1]
-
-
-class Clock(Record):
-    """When a row was taken: its columns, joined by one blank, read by a strptime format."""
-
-    columns: Annotated[tuple[str, ...], Field(min_length=1)]
-    format: str
-    utc_offset_h: Annotated[float, Field(ge=-14, le=14)] = 0.0
 
 
 class Water(Record):
@@ -107,22 +107,49 @@ class Water(Record):
 
 
 class TopicMapping(Record):
-    """The readings of one topic by field, and what its messages state beside them."""
+    """The readings of one topic by field, and what its messages state beside them.
+
+    ``clock`` is the topic's own where its times stand in columns of their own. With
+    ``changes_only`` a reading that is the same as in the row before gives no message: many
+    loggers repeat the last one until the next comes.
+    """
 
     fields: Annotated[dict[str, Column], Field(min_length=1)]
+    clock: Clock | None = None
+    changes_only: bool = False
     std: Quantity | None = None
     min_range: Quantity | None = None
     max_range: Quantity | None = None
 
 
 class LogMapping(Record):
-    """A whole mapping."""
+    """A whole mapping.
+
+    ``only`` gives by column the texts of rows that are used; ``missing`` the texts, in lower case,
+    that stand for no reading, where ``-999`` also stands for ``-999.00``.
+    """
 
     clock: Clock
     topics: Annotated[dict[str, TopicMapping], Field(min_length=1)]
+    layout: Layout = Layout()
+    only: dict[str, tuple[str, ...]] = Field(default_factory=dict)
     water: Water | None = None
     missing: tuple[str, ...] = ('', 'nan', 'na', 'n/a', 'null')
-    """Texts, in lower case, that stand for no reading."""
+
+    def clocks(self) -> list[Clock]:
+        """Give all clocks, that of the whole log first."""
+        return [self.clock, *(entry.clock for entry in self.topics.values() if entry.clock)]
+
+    def needed(self) -> dict[str, str]:
+        """Name the columns that must be there, each with what wants it."""
+        wanted: dict[str, str] = {}
+        for topic, entry in self.topics.items():
+            for field in entry.fields.values():
+                wanted[field.column] = f'topics.{topic}'
+                if field.hemisphere:
+                    wanted[field.hemisphere] = f'topics.{topic}'
+        wanted |= dict.fromkeys(self.only, 'only')
+        return wanted | {column: 'clock' for clock in self.clocks() for column in clock.columns}
 
     @model_validator(mode='after')
     def _fits_the_topics(self) -> 'LogMapping':
@@ -142,12 +169,18 @@ class LogMapping(Record):
                     f'{where}.fields.{field}: unknown field, expected one of {", ".join(known)}'
                 )
             _check_unit(f'{where}.fields.{field}.unit', column.unit, known[field])
+            if column.hemisphere and field not in ('latitude', 'longitude'):
+                raise ValueError(
+                    f'{where}.fields.{field}.hemisphere: given, expected none: it is no position'
+                )
+        if known is FIELDS['vessel/velocity_water'] and 'forward' not in fields:
+            raise ValueError(f'{where}.fields: to_port alone, expected forward beside it')
         if 'depth' in fields and 'pressure' in fields:
             raise ValueError(f'{where}.fields: both depth and pressure, expected one of them')
         if 'depth' in fields and self.water is None:
             raise ValueError(f'water: missing, expected density_kg_m3 for the depth of {where}')
-        paired = known is not _PRESSURE and len(known) == 2
-        if paired and len(fields) < 2:
+        paired = where.removeprefix('topics.') in _TOGETHER
+        if paired and len(fields) < len(known):
             raise ValueError(f'{where}.fields: {", ".join(fields)}, expected {" and ".join(known)}')
 
     def _check_limits(self, where: str, mapping: TopicMapping, wanted: bool) -> None:
@@ -189,6 +222,19 @@ def load_mapping(path: str | Path) -> LogMapping:
         If the file is missing, unreadable, or names topics, fields or units that do not exist.
     """
     return validated(LogMapping, load_yaml(path, LogError), path, LogError)
+
+
+def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
+    """Refuse a quantity of another kind than wanted, or below zero.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, what was found and what was expected.
+    """
+    _check_unit(f'{key}.unit', quantity.unit, wanted)
+    if quantity.value < 0:
+        raise ValueError(f'{key}.value: found {quantity.value:g}, expected 0 or more')
 
 
 def _check_unit(key: str, unit: str, quantity: str) -> None:

@@ -5,22 +5,38 @@ from pathlib import Path
 import click
 
 from trawl_ros.bags.import_log import import_log
+from trawl_ros.bags.nmea import import_nmea
+from trawl_ros.bags.nmea_mapping import is_nmea
 from trawl_ros.cli.files import BAG
 from trawl_ros.files import packaged
 
 
 @click.command('import-log')
-@click.argument('log', metavar='CSV', type=click.Path(path_type=Path))
+@click.argument('log', type=click.Path(path_type=Path))
 @click.option(
     '--mapping',
     required=True,
     type=click.Path(path_type=Path),
-    help='YAML file that says which column is what, or a name such as door_test_haul_log.',
+    help='YAML file that says what is what, or a name: door_test_haul_log, nmea.',
 )
 @click.option('--out', required=True, type=BAG, help='Folder of the bag; must not exist yet.')
-def command(log: Path, mapping: Path, out: Path) -> None:
-    """Turn a CSV log from sea into a bag that replays like any other."""
-    done = import_log(log, packaged(mapping, 'logs'), out)
-    click.echo(f'{out}: {sum(done.counts.values())} messages from {done.rows} rows')
+@click.option(
+    '--leave-out',
+    is_flag=True,
+    help='Leave out rows that cannot be understood, and count them; else the first is an error.',
+)
+def command(log: Path, mapping: Path, out: Path, leave_out: bool) -> None:
+    """Turn a log from sea into a bag that replays like any other.
+
+    LOG is a table (CSV and its relatives) or a file of NMEA 0183 sentences; the mapping says
+    which, and which column or sentence becomes which topic.
+    """
+    file = packaged(mapping, 'logs')
+    turn = import_nmea if is_nmea(file) else import_log
+    done = turn(log, file, out, leave_out=leave_out)
+    rows = 'lines' if turn is import_nmea else 'rows'
+    click.echo(f'{out}: {sum(done.counts.values())} messages from {done.rows} {rows}')
     for topic, count in done.counts.items():
         click.echo(f'{count:8d}  {topic}')
+    for reason, count in done.left_out.items():
+        click.echo(f'{count:8d}  {rows} left out: {reason}')
