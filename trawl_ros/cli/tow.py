@@ -19,7 +19,7 @@ from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
+from trawl_ros.messages.topics import PICTURES, absolute
 from trawl_ros.messages.truth_to_messages import truth_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario
@@ -71,8 +71,9 @@ def recorded(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
             messages += truth_messages(truth)
             if truth.stamp % SECOND == 0:
                 messages.append(gear_markers(trial.simulation.picture()))
-        if 'instruments' in scenario.record.record:
-            messages += [sample_message(sample) for sample in suite.observe(truth)]
+        for topic, message in map(sample_message, suite.observe(truth)):
+            if ('pictures' if topic in PICTURES else 'instruments') in scenario.record.record:
+                messages.append((topic, message))
         yield truth.stamp, messages
 
 

@@ -354,6 +354,9 @@ COMMANDS = (
     ),
 )
 
+PICTURES = ('sonar/image', 'sonar/scan', 'sonar/points')
+"""Of the instruments' topics those that take most of the room in a bag."""
+
 RANGES = {
     'spread': 'door/spread',
     'opening_height': 'sonar/opening_height',

@@ -115,8 +115,9 @@ class CoefficientOverrides(Record):
 class ScenarioRecord(Record):
     """A trial, as its YAML file has it.
 
-    ``record`` says which topics go into the bag and ``truth_rate_hz`` how often truth does;
-    instruments look at every truth there is.
+    ``record`` says which topics go into the bag: ``pictures`` are the sonar's image, scan and
+    points, ``instruments`` all else that is measured. ``truth_rate_hz`` is how often there is
+    truth; instruments look at all of it.
     """
 
     description: Annotated[str, Field(min_length=1, max_length=300)]
@@ -133,8 +134,8 @@ class ScenarioRecord(Record):
     steps: Annotated[tuple[StepRecord, ...], Field(min_length=1, max_length=1000)]
     truth_rate_hz: Annotated[float, Field(ge=0.1, le=MAX_TRUTH_HZ)] = MAX_TRUTH_HZ
     record: Annotated[
-        tuple[Literal['instruments', 'truth'], ...], Field(min_length=1, max_length=2)
-    ] = ('instruments', 'truth')
+        tuple[Literal['instruments', 'pictures', 'truth'], ...], Field(min_length=1, max_length=3)
+    ] = ('instruments', 'pictures', 'truth')
 
     @model_validator(mode='after')
     def _whole_decimation(self) -> 'ScenarioRecord':
