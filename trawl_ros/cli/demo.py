@@ -3,7 +3,7 @@
 import random
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,16 +14,20 @@ from trawl_ros.bags.reader import summarise
 from trawl_ros.cli.demo_folder import DemoFolder
 from trawl_ros.cli.demo_report import load_result, print_result
 from trawl_ros.cli.files import FOLDER, SCENARIO
-from trawl_ros.cli.gear_figure import gear_figure
 from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress, error_console
-from trawl_ros.cli.trial_figures import history_figure, read_history
 from trawl_ros.errors import TrawlError
 from trawl_ros.files import packaged
 from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.messages.topics import INSTRUMENTS, TRUTH, absolute
+from trawl_ros.messages.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_water
+from trawl_ros.plots.gear import gear_figure
+from trawl_ros.plots.histories import history_figure
+from trawl_ros.plots.moments import GEAR, read_moments
+from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.shapes import gear_shape
+from trawl_ros.plots.style import DPI
 from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients
 
 if TYPE_CHECKING:
@@ -205,9 +209,13 @@ def _gear_file(scenario: Scenario) -> str:
 
 
 def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
-    history = read_history(folder.bag, build_water(scenario.plant).depth)
-    history_figure(history).savefig(folder.path / 'history.png', dpi=130)
-    gear_figure(history.gear).savefig(folder.path / 'gear.png', dpi=130)
+    read = read_tow(folder.bag, build_water(scenario.plant).depth, NAMESPACE)
+    tow = replace(read, name=scenario.path.stem)
+    history_figure(tow).savefig(folder.path / 'history.png', dpi=DPI)
+    (end,) = read_moments(folder.bag, tow, [tow.duration_s], NAMESPACE, [GEAR])
+    shape = gear_shape(end, tow, scenario.plant)
+    if shape is not None:
+        gear_figure(shape, tow.name).savefig(folder.path / 'gear.png', dpi=DPI)
     return sorted(file.name for file in folder.path.glob('*.png'))
 
 

@@ -19,9 +19,11 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'trim': ('trim', 'Find fastening points that give the boards wanted angles.'),
         'validate': ('validate', "Check the model's claims and write the report."),
         'benchmark': ('benchmark', 'Measure how fast things are, beside other tools.'),
+        'study': ('study', 'Run the whole chain for long, and report what that shows.'),
         'scenarios': ('scenarios', 'List the scenarios that come with the package.'),
         'import-log': ('import_log', 'Turn a CSV log from sea into a bag.'),
         'bag': ('bag', 'Look into bags.'),
+        'plot': ('plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
     }
 )
 """Name → module of `trawl_ros.cli` (its ``command``), and what the list of commands says.

@@ -35,7 +35,9 @@ _HULL = np.array(
 _BEAM_PER_BLOCKS = 20.0 / 12.0
 """Beam over the distance between the blocks, as of the default gear's ship."""
 
-_RAMP = np.array([[0.15, 0.35, 0.85], [0.10, 0.75, 0.55], [0.95, 0.80, 0.15], [0.85, 0.10, 0.10]])
+RAMP = np.array([[0.15, 0.35, 0.85], [0.10, 0.75, 0.55], [0.95, 0.80, 0.15], [0.85, 0.10, 0.10]])
+"""Red, green and blue (0 to 1) from slack to `FULL_SCALE`, at even distances."""
+
 _STEEL = ros.std_msgs__msg__ColorRGBA(0.45, 0.45, 0.50, 1.0)
 
 
@@ -66,8 +68,8 @@ def tension_colour(tension: float) -> ros.std_msgs__msg__ColorRGBA:
 
 
 def _colours(tensions: np.ndarray) -> list[ros.std_msgs__msg__ColorRGBA]:
-    places = np.clip(tensions / FULL_SCALE, 0.0, 1.0) * (len(_RAMP) - 1)
-    channels = [np.interp(places, np.arange(len(_RAMP)), channel).tolist() for channel in _RAMP.T]
+    places = np.clip(tensions / FULL_SCALE, 0.0, 1.0) * (len(RAMP) - 1)
+    channels = [np.interp(places, np.arange(len(RAMP)), channel).tolist() for channel in RAMP.T]
     return [
         ros.std_msgs__msg__ColorRGBA(red, green, blue, 1.0)
         for red, green, blue in zip(*channels, strict=True)

@@ -1,0 +1,88 @@
+"""``trawl plot``: pictures of a bag as `trawl tow` makes it, and of one with readings alone."""
+
+import os
+import signal
+
+import pytest
+from PIL import Image
+
+from trawl_ros.cli.progress import TimeProgress
+
+
+@pytest.fixture
+def bag(run, trial, tmp_path):
+    done = run('tow', trial, '--out', tmp_path / 'towed')
+    assert done.exit_code == 0, done.output
+    return tmp_path / 'towed'
+
+
+def test_a_tow_with_truth_becomes_pictures_and_a_page(run, bag, tmp_path):
+    out = tmp_path / 'pictures'
+    done = run('plot', bag, '--out', out, '--at', '2', '--at', '0:04', '--animate')
+    assert done.exit_code == 0, done.output
+    files = {path.name for path in out.iterdir()}
+    assert files >= {
+        'history.png', 'track.png', 'gear_00002s.png', 'gear_00004s.png', 'film.gif', 'index.html',
+    }  # fmt: skip
+    page = (out / 'index.html').read_text()
+    for file in files - {'index.html'}:
+        assert f'src="{file}"' in page
+        assert f'{out / file}: ' in done.stdout
+    assert 'the gear at 0:04 (truth)' in page
+    with Image.open(out / 'film.gif') as film:
+        assert film.n_frames == 7
+
+
+def test_readings_alone_are_drawn_and_the_page_says_so(run, steady_tow, tmp_path):
+    bag = steady_tow.bag(tmp_path / 'bag', leg_s=30)
+    done = run('plot', bag, '--out', tmp_path / 'pictures')
+    assert done.exit_code == 0, done.output
+    page = (tmp_path / 'pictures' / 'index.html').read_text()
+    for sentence in (
+        'The bag holds no truth, only what was measured.',
+        'the gear at 0:30 (as measured; warps drawn straight',
+        'No sonar/image near these times.',
+        'track is unknown',
+    ):
+        assert sentence in page
+    assert 'film.gif' not in page
+
+
+def test_an_interrupted_film_ends_with_what_was_drawn(run, steady_tow, tmp_path, monkeypatch):
+    monkeypatch.setattr(TimeProgress, 'update', lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    bag, out = steady_tow.bag(tmp_path / 'bag', leg_s=5), tmp_path / 'pictures'
+    done = run('plot', bag, '--out', out, '--at', '2', '--animate')
+    assert done.exit_code == 130
+    with Image.open(out / 'film.gif') as film:
+        assert film.n_frames == 1
+    assert 'the tow in 1 pictures, up to 0:00' in (out / 'index.html').read_text()
+
+
+def test_what_cannot_be_drawn_is_said_before_anything_is_written(run, steady_tow, tmp_path):
+    bag, out = steady_tow.bag(tmp_path / 'bag', leg_s=5), tmp_path / 'pictures'
+    for arguments, words in (
+        (['--at', '1:00'], '--at 1:00: after the end; expected a time within the 0:09 of bag'),
+        (['--at', 'soon'], "found 'soon', expected seconds, minutes:seconds or"),
+        ([part for k in range(101) for part in ('--at', f'{k / 100}')],
+         'found 101 times, expected at most 100'),
+        (['--gear', 'none'], 'none'),
+        (['--namespace', 'other'], 'none of the topics that can be drawn'),
+    ):  # fmt: skip
+        done = run('plot', bag, '--out', out, *arguments)
+        assert done.exit_code in (1, 2)
+        assert words in done.stderr
+        assert not out.exists()
+    assert run('plot', tmp_path / 'missing', '--out', out).exit_code == 1
+
+
+def test_nothing_is_written_over_unasked(run, steady_tow, tmp_path):
+    bag, out = steady_tow.bag(tmp_path / 'bag', leg_s=5), tmp_path / 'pictures'
+    out.mkdir()
+    (out / 'history.png').write_text('mine')
+    done = run('plot', bag, '--out', out)
+    assert done.exit_code == 1
+    assert 'are not written over' in done.stderr
+    assert (out / 'history.png').read_text() == 'mine'
+    assert run('plot', bag, '--out', out, '--force').exit_code == 0
+    with Image.open(out / 'history.png') as picture:
+        assert picture.size[0] > 1000

@@ -1,0 +1,89 @@
+"""The tow as a short film: the gear from above and from the side, and the sonar's picture."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.animation import PillowWriter
+from matplotlib.artist import Artist
+
+from trawl_ros.plots import gear, sonar, style
+from trawl_ros.plots.records import GearShape, SonarPicture, Tow
+
+MOST_FRAMES = 100
+"""However long the tow was: a frame of 0.8 m pixels is held in memory until the film is done."""
+
+LEAST_APART_S = 1.0
+FRAMES_PER_S = 10
+DPI = 75
+"""A film is about 800 pixels wide, some MB."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What one frame shows."""
+
+    shape: GearShape
+    picture: SonarPicture | None
+
+
+def frame_times(tow: Tow) -> list[float]:
+    """Times (s) of the frames, evenly from the start to the end."""
+    frames = int(np.clip(tow.duration_s / LEAST_APART_S + 1, 1, MOST_FRAMES))
+    return [float(time) for time in np.linspace(0.0, tow.duration_s, frames)]
+
+
+def write_film(path: Path, name: str, frames: Sequence[Frame], go_on: Callable[[int], bool]) -> int:
+    """Write frames as an animated GIF, which every browser shows.
+
+    Parameters
+    ----------
+    path
+        The file.
+    name
+        Of the tow, for the title.
+    frames
+        At least one.
+    go_on
+        Asked after each frame with the number drawn; where it says no, the film ends there.
+
+    Returns
+    -------
+    int
+        How many frames were drawn.
+    """
+    shapes = [frame.shape for frame in frames]
+    views = gear.lay_out(gear.extent(shapes), width=6.0, right=2.7)
+    first = next((frame.picture for frame in frames if frame.picture is not None), None)
+    if first is not None:
+        sonar.prepare(views.right, first)
+        views.right.set_title('sonar', fontsize='medium')
+    else:
+        gear.prepare_rear(views.right, gear.extent(shapes, rear=True))
+    title = views.figure.suptitle('')
+    writer = PillowWriter(fps=FRAMES_PER_S)
+    done = 0
+    with writer.saving(views.figure, str(path), DPI):
+        for frame in frames:
+            title.set_text(f'{name} at {style.clock(frame.shape.time)}: {frame.shape.source}')
+            drawn = _draw(views, frame, with_sonar=first is not None)
+            writer.grab_frame()
+            for artist in drawn:
+                artist.remove()
+            done += 1
+            if not go_on(done):
+                break
+    return done
+
+
+def _draw(views: gear.Views, frame: Frame, *, with_sonar: bool) -> list[Artist]:
+    drawn = [
+        *gear.draw(frame.shape, views.top, gear.ABOVE),
+        *gear.draw(frame.shape, views.side, gear.BESIDE),
+    ]
+    if not with_sonar:
+        drawn += gear.draw(frame.shape, views.right, gear.BEHIND)
+    elif frame.picture is not None:
+        drawn += sonar.draw(views.right, frame.picture)
+    return drawn

@@ -1,0 +1,163 @@
+"""The gear from above, from the side and from behind."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+
+from trawl_ros.messages.markers import FULL_SCALE, RAMP
+from trawl_ros.messages.topics import DOOR_FRAMES, VESSEL
+from trawl_ros.plots import style
+from trawl_ros.plots.records import GearShape, Strand
+
+BOLD = ('_warp', '_bridle', 'headrope', 'footrope', 'mouth', *DOOR_FRAMES.values())
+"""Ends of the names of what is drawn bold."""
+
+DOOR_COLOURS = {DOOR_FRAMES['port']: style.PORT, DOOR_FRAMES['starboard']: style.STARBOARD}
+
+ABOVE, BESIDE, BEHIND = (0, 1), (0, 2), (1, 2)
+"""Which of astern, to port, up are drawn to the right and up."""
+
+LEFT_IN, RIGHT_IN, TITLE_IN, FOOT_IN, GAP_IN = 0.8, 0.25, 0.55, 0.65, 0.4
+"""Room (inches) beside, above, below and between the views."""
+
+LEAST_HEIGHT = 0.13
+"""The views from above and from the side are at least this part of their width high."""
+
+Extent = tuple[np.ndarray, np.ndarray]
+"""Least and greatest astern, to port, up (3,), m."""
+
+
+@dataclass(frozen=True)
+class Views:
+    """A figure with views from above and from the side, and room (axes) to the right of them."""
+
+    figure: Figure
+    top: Axes
+    side: Axes
+    right: Axes
+
+
+def gear_figure(shape: GearShape, name: str) -> Figure:
+    """Draw the gear with the ship's towing blocks at the origin; all scales are equal."""
+    views = lay_out(extent([shape]), width=8.4, right=3.7)
+    prepare_rear(views.right, extent([shape], rear=True))
+    for axes, plane in ((views.top, ABOVE), (views.side, BESIDE), (views.right, BEHIND)):
+        draw(shape, axes, plane)
+    views.figure.suptitle(f'{name} at {style.clock(shape.time)}: {shape.source}')
+    if shape.by_tension:
+        _tension_bar(views.figure, views.right)
+    return views.figure
+
+
+def lay_out(whole: Extent, *, width: float, right: float) -> Views:
+    """Make a figure for views of ``whole``, all to one scale.
+
+    ``width`` (inches) is that of the views from above and from the side; they are as high as the
+    scale wants. ``right`` is the width of what stands beside them.
+    """
+    low, high = whole
+    margin = 0.03 * float((high - low).max())
+    spans = high - low + 2.0 * margin
+    scale = width / spans[0]
+    upper, lower = (max(scale * span, LEAST_HEIGHT * width) for span in spans[1:])
+    tall = upper + GAP_IN + lower
+    size = (LEFT_IN + width + LEFT_IN + right + RIGHT_IN, FOOT_IN + tall + TITLE_IN)
+    figure = Figure(figsize=size)
+
+    def place(x: float, y: float, wide: float, high: float) -> Axes:
+        return figure.add_axes((x / size[0], y / size[1], wide / size[0], high / size[1]))
+
+    side = place(LEFT_IN, FOOT_IN, width, lower)
+    top = place(LEFT_IN, FOOT_IN + lower + GAP_IN, width, upper)
+    beside = place(2.0 * LEFT_IN + width, FOOT_IN, right, tall)
+    for axes, down, height in ((top, 1, upper), (side, 2, lower)):
+        style.quiet(axes)
+        axes.set_xlim(low[0] - margin, high[0] + margin)
+        middle, half = 0.5 * (low[down] + high[down]), 0.5 * height / scale
+        axes.set_ylim(middle - half, middle + half)
+    top.set_ylabel('to port / m')
+    top.tick_params(labelbottom=False)
+    side.set_ylabel('depth / m')
+    side.set_xlabel('behind the ship / m')
+    side.axhline(0.0, color=style.SURFACE, linewidth=0.9, zorder=0)
+    side.yaxis.set_major_formatter(_depth)
+    return Views(figure, top, side, beside)
+
+
+def extent(shapes: Sequence[GearShape], *, rear: bool = False) -> Extent:
+    """What views have to show; the one from behind has neither ship nor warps."""
+    points = [
+        strand.pieces.reshape(-1, 3)
+        for shape in shapes
+        for strand in shape.strands
+        if not rear or _seen_from_behind(strand)
+    ]
+    # The surface belongs to what is seen from the side, the ship to what is seen from above.
+    every = np.concatenate([*points, *([] if rear else [np.zeros((1, 3))])])
+    return every.min(axis=0), every.max(axis=0)
+
+
+def prepare_rear(rear: Axes, wake: Extent) -> None:
+    """Labels and limits of the view from behind: port is on the left, as for who looks ahead."""
+    low, high = wake
+    margin = 0.06 * float((high - low)[1:].max())
+    style.quiet(rear)
+    rear.set_aspect('equal', adjustable='box', anchor='N')
+    rear.set_xlim(high[1] + margin, low[1] - margin)
+    rear.set_ylim(low[2] - margin, high[2] + margin)
+    rear.yaxis.set_major_formatter(_depth)
+    rear.set_xlabel('to port / m')
+    rear.set_ylabel('depth / m')
+    rear.set_title('from behind', fontsize='medium')
+
+
+def _depth(height: float, _: float) -> str:
+    return f'{0.0 - height:g}'
+
+
+def draw(shape: GearShape, axes: Axes, plane: tuple[int, int]) -> list[Artist]:
+    """Draw all strands into one view, with a dot in port's or starboard's colour on each door."""
+    drawn: list[Artist] = []
+    for strand in shape.strands:
+        if plane == BEHIND and not _seen_from_behind(strand):
+            continue
+        lines = LineCollection(
+            list(strand.pieces[:, :, plane]),
+            colors=strand.colours,
+            linewidths=1.8 if strand.name.endswith(BOLD) else 0.5,
+            capstyle='round',
+        )
+        drawn.append(axes.add_collection(lines))
+        if strand.name in DOOR_COLOURS and plane != BEHIND:
+            drawn += axes.plot(
+                *strand.pieces.reshape(-1, 3).mean(axis=0)[list(plane)], 'o',
+                color=DOOR_COLOURS[strand.name], markersize=4.5, markeredgecolor='white', zorder=4,
+            )  # fmt: skip
+    return drawn
+
+
+def _seen_from_behind(strand: Strand) -> bool:
+    return strand.name != VESSEL and not strand.name.endswith('_warp')
+
+
+def _tension_bar(figure: Figure, beside: Axes) -> None:
+    box = beside.get_position(original=True)
+    inch = 1.0 / figure.get_size_inches()[1]
+    axes = figure.add_axes((box.x0, box.y0, box.width, 0.14 * inch))
+    ramp = LinearSegmentedColormap.from_list('tension', RAMP.tolist())
+    bar = figure.colorbar(
+        ScalarMappable(Normalize(0.0, 1e-3 * FULL_SCALE), ramp),
+        cax=axes,
+        orientation='horizontal',
+        extend='max',
+    )
+    bar.set_label('tension / kN')
+    bar.outline.set_visible(False)
+    beside.set_position((box.x0, box.y0 + 0.8 * inch, box.width, box.height - 0.8 * inch))

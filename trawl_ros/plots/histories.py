@@ -1,0 +1,268 @@
+"""Every quantity over time: truth as thin dark lines, readings as dots, silence as bars."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.transforms import blended_transform_factory
+
+from trawl_ros.plots import style
+from trawl_ros.plots.records import Series, Tow
+from trawl_ros.simulation.truth import SIDES
+
+LONGEST_PERIODS, LEAST_SILENCE_S = 4.0, 10.0
+"""A sensor is silent when nothing has come for so many of its periods, and for so long (s)."""
+
+FAR_OUT = 3.0
+"""Readings are cut off at the edge where all of them would need so many times the height."""
+
+
+ORDINARY = (5.0, 95.0)
+"""Between these percentiles readings are taken for what the quantity does, not for outliers."""
+
+MANY = 1000
+"""Of so many dots each is drawn fainter."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A quantity of `Tow` with its label and the colours of readings and truth."""
+
+    name: str
+    label: str
+    colour: str
+    truth_colour: str
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves that share an axis: ``scale`` times SI is shown, never less than ``least`` of it."""
+
+    label: str
+    curves: tuple[Curve, ...]
+    least: float
+    scale: float = 1.0
+    down: bool = False
+
+
+def _sides(name: str) -> tuple[Curve, Curve]:
+    return (
+        Curve(f'port_{name}', 'port', style.PORT, style.PORT_TRUTH),
+        Curve(f'starboard_{name}', 'starboard', style.STARBOARD, style.STARBOARD_TRUTH),
+    )
+
+
+def _one(name: str, label: str = '') -> Curve:
+    return Curve(name, label, style.MEASURED, style.MEASURED_TRUTH)
+
+
+def _other(name: str, label: str) -> Curve:
+    return Curve(name, label, style.SECOND, style.SECOND_TRUTH)
+
+
+DEGREES = float(np.degrees(1.0))
+
+PANELS = (
+    Panel('warp length / m', _sides('length'), 2.0),
+    Panel('warp tension / kN', _sides('tension'), 5.0, scale=1e-3),
+    Panel('door depth / m', _sides('door_depth'), 2.0, down=True),
+    Panel('door spread / m', (_one('door_spread'),), 2.0),
+    Panel('door pitch, nose down / °', _sides('pitch'), 4.0, scale=DEGREES),
+    Panel('door roll, top to starboard / °', _sides('roll'), 4.0, scale=DEGREES),
+    Panel('net depth / m', (_one('net_depth'),), 2.0, down=True),
+    Panel('opening / m', (_one('opening_height', 'height'), _other('opening_width', 'width')), 4.0),
+    Panel(
+        'speed / (m/s)',
+        (_one('speed_water', 'through water'), _other('speed_ground', 'over ground')),
+        0.2,
+    ),
+    Panel('heading from north by east / °', (_one('heading'),), 4.0),
+)
+
+
+def drawn(tow: Tow) -> list[Panel]:
+    """The panels of which the bag holds anything."""
+    return [
+        panel
+        for panel in PANELS
+        if any(curve.name in tow.truth or curve.name in tow.measured for curve in panel.curves)
+    ]
+
+
+def left_out(tow: Tow) -> list[str]:
+    """A sentence for all that is missing in the histories, none where nothing is."""
+    sentences = []
+    shown = drawn(tow)
+    if missing := [_plain(panel) for panel in PANELS if panel not in shown]:
+        sentences.append(f'Not in the bag, so not drawn: {", ".join(missing)}.')
+    for kind, there in (('Not measured', tow.measured), ('Truth is missing', tow.truth)):
+        names = [
+            f'{_plain(panel)} ({curve.label})' if curve.label else _plain(panel)
+            for panel in shown
+            for curve in panel.curves
+            if curve.name not in there
+        ]
+        if there and names:
+            sentences.append(f'{kind}: {", ".join(names)}.')
+    if not tow.truth:
+        sentences.append('The bag holds no truth, only what was measured.')
+    return sentences
+
+
+def _plain(panel: Panel) -> str:
+    return panel.label.partition(' /')[0].partition(',')[0]
+
+
+def history_figure(tow: Tow) -> Figure:
+    """Draw all panels of which the bag holds anything, over the same minutes."""
+    panels = drawn(tow)
+    rows = (len(panels) + 1) // 2
+    figure = Figure(figsize=(12.0, 0.9 + 2.0 * rows), layout='constrained')
+    grid = figure.subplots(rows, 2, sharex=True, squeeze=False)
+    marks: dict[str, Line2D | Patch] = {}
+    if tow.truth:
+        marks['truth'] = Line2D([], [], color='#333333', linewidth=1.0)
+    for axes, panel in zip(grid.flat, panels, strict=False):
+        _draw(axes, panel, tow, marks)
+    for axes in grid.flat[len(panels) :]:
+        axes.remove()
+    for column in range(min(2, len(panels))):
+        last = grid[(len(panels) - 1 - column) // 2, column]
+        last.set_xlabel('time since the start / min')
+        last.tick_params(labelbottom=True)
+    grid[0, 0].set_xlim(0.0, max(tow.duration_s, 1.0) / 60.0)
+    figure.suptitle(tow.name, fontsize='large')
+    figure.legend(
+        handles=[*marks.values(), *_SIDES], labels=[*marks, *SIDES], loc='outside lower center',
+        ncols=len(marks) + len(_SIDES), frameon=False, fontsize='small',
+    )  # fmt: skip
+    return figure
+
+
+_GREY = '#666666'
+_SIDES = (Patch(color=style.PORT), Patch(color=style.STARBOARD))
+
+
+def _draw(axes: Axes, panel: Panel, tow: Tow, marks: dict[str, Line2D | Patch]) -> None:
+    """Draw one panel, and put into ``marks`` what is seen of readings in it."""
+    style.quiet(axes)
+    truth, measured = (
+        {curve: _shown(there[curve.name], panel) for curve in panel.curves if curve.name in there}
+        for there in (tow.truth, tow.measured)
+    )
+    low, high = _limits(list(truth.values()), list(measured.values()), panel.least)
+    axes.set_ylim((high, low) if panel.down else (low, high))
+    for number, (curve, series) in enumerate(measured.items()):
+        marks['measured'] = Line2D([], [], color=_GREY, ls='', marker='.')
+        if _dots(axes, series, curve.colour, (low, high)):
+            marks['measured, beyond the axis'] = Line2D(
+                [], [], color=_GREY, ls='', marker='^', ms=5
+            )
+        if _silences(axes, silences(series, tow.duration_s), curve.colour, number):
+            marks['bar at the foot: silent'] = Patch(color=_GREY, alpha=0.5)
+    for curve, series in truth.items():
+        times, values = _with_gaps(series)
+        axes.plot(times / 60.0, values, color=curve.truth_colour, linewidth=1.0, zorder=3)
+    _label(axes, panel)
+
+
+def _label(axes: Axes, panel: Panel) -> None:
+    """What is shown on the left above the panel, the curves' names in their colours beside it."""
+    what, _, unit = panel.label.partition(' / ')
+    text = axes.text(
+        0.0, 1.03, f'{what} / {unit}', ha='left', va='bottom', transform=axes.transAxes
+    )
+    for curve in panel.curves:
+        if curve.label not in ('', *SIDES):
+            text = axes.annotate(
+                curve.label, (1.0, 0.0), (10.0, 0.0), xycoords=text, textcoords='offset points',
+                color=curve.colour, fontsize='small', va='bottom',
+            )  # fmt: skip
+
+
+def _shown(series: Series, panel: Panel) -> Series:
+    if panel.curves[0].name == 'heading':
+        return Series(series.times, style.compass(series.values))
+    return Series(series.times, panel.scale * series.values)
+
+
+def _limits(
+    truth: Sequence[Series], measured: Sequence[Series], least: float
+) -> tuple[float, float]:
+    """Limits that hold all, unless a few readings are so far out that nothing else is seen."""
+    true, read = (
+        np.concatenate([[], *(series.values[np.isfinite(series.values)] for series in kind)])
+        for kind in (truth, measured)
+    )
+    every = np.concatenate([true, read])
+    if not len(every):
+        return 0.0, least
+    low, high = float(every.min()), float(every.max())
+    inner = np.concatenate([true, np.percentile(read, ORDINARY) if len(read) else read])
+    span = max(float(np.ptp(inner)), least)
+    if high - low > FAR_OUT * span:
+        low, high = float(inner.min()) - 0.3 * span, float(inner.max()) + 0.3 * span
+    short = max(least - (high - low), 0.0)
+    margin = 0.06 * (high - low + short)
+    return low - 0.5 * short - margin, high + 0.5 * short + margin
+
+
+def _dots(axes: Axes, series: Series, colour: str, limits: tuple[float, float]) -> bool:
+    """Draw readings; say whether some lie beyond the axis and are drawn at its edge."""
+    many = len(series.values)
+    size = float(np.clip(60.0 / np.sqrt(max(many, 1)), 1.2, 4.0))
+    dots: dict[str, Any] = {'color': colour, 'ls': '', 'zorder': 2, 'markeredgewidth': 0.0}
+    alpha = 0.5 if many < MANY else 0.3
+    axes.plot(series.times / 60.0, series.values, marker='o', ms=size, alpha=alpha, **dots)
+    low, high = limits
+    beyond = False
+    for out, edge in ((series.values > high, high), (series.values < low, low)):
+        if out.any():
+            beyond = True
+            marker = '^' if (edge == high) != axes.yaxis_inverted() else 'v'
+            times = series.times[out] / 60.0
+            axes.plot(
+                times, np.full(len(times), edge), marker=marker, ms=5.0, clip_on=False, **dots
+            )
+    return beyond
+
+
+def silences(series: Series, duration: float) -> list[tuple[float, float]]:
+    """When nothing came (s, from and to), NaN counting as nothing, before the end too."""
+    times = series.times[np.isfinite(series.values)]
+    if len(series.times) < 2 or not len(times):
+        return [(0.0, duration)] if not len(times) else []
+    period = float(np.median(np.diff(series.times)))
+    longest = max(LONGEST_PERIODS * period, LEAST_SILENCE_S)
+    edges = np.concatenate([[0.0], times, [duration]])
+    return [(float(a), float(b)) for a, b in pairwise(edges) if b - a > longest]
+
+
+def _silences(axes: Axes, spans: Sequence[tuple[float, float]], colour: str, number: int) -> bool:
+    """Draw bars at the panel's foot, one row per curve; say whether there are any."""
+    foot = blended_transform_factory(axes.transData, axes.transAxes)
+    for begin, end in spans:
+        axes.fill_between(
+            [begin / 60.0, end / 60.0], 0.035 * number, 0.035 * (number + 1) - 0.008,
+            transform=foot, color=colour, alpha=0.5, linewidth=0.0, zorder=1,
+        )  # fmt: skip
+    return bool(spans)
+
+
+def _with_gaps(series: Series) -> tuple[np.ndarray, np.ndarray]:
+    """Truth, broken where it was not recorded."""
+    if len(series.times) < 2:
+        return series.times, series.values
+    steps = np.diff(series.times)
+    longest = max(LONGEST_PERIODS * float(np.median(steps)), LEAST_SILENCE_S)
+    after = np.flatnonzero(steps > longest) + 1
+    return (
+        np.insert(series.times, after, series.times[after - 1]),
+        np.insert(series.values, after, np.nan),
+    )

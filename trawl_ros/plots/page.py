@@ -1,0 +1,40 @@
+"""All pictures of a tow on one page."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from trawl_ros import __version__
+from trawl_ros.plots import style
+from trawl_ros.plots.records import Tow
+from trawl_ros.reporting import templates
+
+PAGE = 'index.html'
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A file beside the page, what it shows, and the heading it stands under."""
+
+    file: str
+    caption: str
+    section: str
+
+
+def write_page(folder: Path, tow: Tow, pictures: Sequence[Picture], notes: Sequence[str]) -> None:
+    """Write ``index.html`` into a folder that has the pictures."""
+    sections: dict[str, list[Picture]] = {}
+    for picture in pictures:
+        sections.setdefault(picture.section, []).append(picture)
+    text = (
+        templates('trawl_ros.plots')
+        .get_template(f'{PAGE}.j2')
+        .render(
+            name=tow.name,
+            duration=style.clock(tow.duration_s),
+            sections=sections,
+            notes=notes,
+            version=__version__,
+        )
+    )
+    (folder / PAGE).write_text(text.rstrip() + '\n', encoding='utf-8')

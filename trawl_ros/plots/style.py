@@ -1,0 +1,34 @@
+"""Colours and axes that all pictures of a tow share."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+PORT, STARBOARD = '#d62728', '#2ca02c'
+"""Red and green, as the lights of a ship."""
+
+PORT_TRUTH, STARBOARD_TRUTH = '#5a0a0b', '#0b4410'
+MEASURED, SECOND = '#1f77b4', '#e08214'
+MEASURED_TRUTH, SECOND_TRUTH = '#0b2f4a', '#6b3c05'
+SURFACE, NETTING, FAINT = '#4a90c2', '#7f8c8d', '#9aa5ab'
+DPI = 130
+
+
+def quiet(axes: Axes) -> None:
+    """A faint grid and no frame on the right and above."""
+    axes.grid(color='#e3e6e8', linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[['top', 'right']].set_visible(False)
+    axes.tick_params(color='#8a9399')
+
+
+def clock(seconds: float) -> str:
+    """A time since the start: ``1:05`` is a minute and five seconds, ``2:00:00`` two hours."""
+    minutes, rest = divmod(round(float(seconds)), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f'{hours}:{minutes:02d}:{rest:02d}' if hours else f'{minutes}:{rest:02d}'
+
+
+def compass(yaw: np.ndarray) -> np.ndarray:
+    """ENU yaw (n,) in rad as degrees from north by east, continuous, the mean within a turn."""
+    degrees = 90.0 - np.degrees(yaw)
+    return degrees - 360.0 * np.floor(np.nanmean(degrees) / 360.0) if len(degrees) else degrees
