@@ -32,6 +32,8 @@ UNITS = {
     'min': 'minutes',
     'minutes': 'minutes',
     'hz': 'hertz',
+    'khz': 'kilohertz',
+    'db': 'decibels',
     'deg': 'degrees',
     'rad': 'radians',
     'deg_s': 'degrees per second',

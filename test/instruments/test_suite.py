@@ -18,6 +18,7 @@ from trawl_ros.instruments.samples import (
     PressureSample,
     RangeSample,
     Sample,
+    SchoolsSample,
     VelocitySample,
     WinchSample,
 )
@@ -80,7 +81,7 @@ def kind(sample: Sample) -> str:
             return sample.what
         case VelocitySample():
             return f'velocity {sample.over}'
-        case WinchSample() | HeadingSample() | FixSample():
+        case WinchSample() | HeadingSample() | FixSample() | SchoolsSample():
             return type(sample).__name__
 
 
@@ -100,6 +101,9 @@ def test_a_minute_at_sea_has_as_many_samples_as_the_rates_say() -> None:
         'velocity ground': 61,
         'FixSample': 61,
         'HeadingSample': 61,
+        'depth': 61,
+        'school': 61,
+        'SchoolsSample': 7,
     }
 
 
@@ -115,7 +119,7 @@ def test_a_group_alone_gives_what_the_whole_suite_gives() -> None:
         WinchInstruments(parameters.winch, draws),
         DoorInstruments(parameters.door, draws, surroundings=SEA),
         SonarInstruments(parameters.sonar, draws, surroundings=SEA),
-        VesselInstruments(parameters.vessel, draws),
+        VesselInstruments(parameters.vessel, draws, surroundings=SEA),
     )
     alone = [repr(s) for group in groups for s in observed(group, tow(30))]
     whole = [repr(s) for s in observed(suite(draws), tow(30))]

@@ -75,7 +75,7 @@ def test_a_tow_ends_where_a_bank_rises_into_the_gear(model: GearModel) -> None:
         for _ in range(200):
             simulation.advance()
 
-    with pytest.raises(SeabedTouched, match='the port (door|warp|lower bridle) touches'):
+    with pytest.raises(SeabedTouched, match=r'the port (door|warp|lower bridle) touches'):
         advance()
     assert 15.0 < simulation.now.stamp / 1e9 < 30.0
 

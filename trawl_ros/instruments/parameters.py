@@ -24,6 +24,7 @@ from trawl_ros.share import share_path
 BASE = 'base'
 
 Rate = Annotated[float, Field(gt=0, le=100)]
+SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
 
 
 class Timed(Record):
@@ -126,7 +127,7 @@ class SpreadParameters(RangeParameters):
     more than ``beam_half_angle_deg`` off.
     """
 
-    assumed_sound_speed_m_s: Annotated[float, Field(ge=1400, le=1600)] | None = None
+    assumed_sound_speed_m_s: SoundSpeed | None = None
     beam_half_angle_deg: Annotated[float, Field(gt=0, le=180)] = 180.0
 
 
@@ -146,15 +147,61 @@ class SonarParameters(Record):
     opening_width: RangeParameters
 
 
+class EchoSounderParameters(Record):
+    """The echo sounder under the keel: down to the seabed, and to the nearest fish in its beam.
+
+    Times of flight are turned into metres with ``assumed_sound_speed_m_s``; the beam is
+    ``beam_width_deg`` wide in all.
+    """
+
+    assumed_sound_speed_m_s: SoundSpeed
+    beam_width_deg: Annotated[float, Field(gt=0, le=60)]
+    depth: RangeParameters
+    school: RangeParameters
+
+
+class FishSonarParameters(Timed):
+    """The fish sonar: a sweep over ``sector_deg`` in all, half of it to either side of ahead.
+
+    The beam looks down by ``beam_tilt_deg`` and is ``beam_width_deg`` high. ``range``,
+    ``bearing`` and ``tilt`` are the errors with which a school is placed.
+
+    ``fish_target_strength_db`` is that of one fish; of schools whose echo is as strong as
+    ``half_seen_db`` (of a source of 0 dB) half are seen, and ``fading_db`` says how soon more of
+    them are as it grows: with one ``fading_db`` more 73 %, with three more 95 %.
+    """
+
+    assumed_sound_speed_m_s: SoundSpeed
+    frequency_khz: Annotated[float, Field(ge=10, le=500)]
+    min_range_m: NotNegative
+    max_range_m: Annotated[float, Field(gt=0, le=10_000)]
+    sector_deg: Annotated[float, Field(gt=0, le=360)]
+    beam_tilt_deg: Annotated[float, Field(ge=-10, le=90)]
+    beam_width_deg: Annotated[float, Field(gt=0, le=90)]
+    fish_target_strength_db: Annotated[float, Field(ge=-80, le=0)]
+    half_seen_db: Annotated[float, Field(ge=-300, le=0)]
+    fading_db: Annotated[float, Field(gt=0, le=30)]
+    range: LengthErrors
+    bearing: AngleErrors
+    tilt: AngleErrors
+
+
 class VesselParameters(Record):
-    """The ship's own sensors, and where on Earth ``map`` has its origin."""
+    """The ship's own sensors, and where on Earth ``map`` has its origin.
+
+    Her keel, with the echo sounder and the fish sonar under it, is ``draught_m`` below the
+    towing blocks.
+    """
 
     datum_lat_deg: Annotated[float, Field(ge=-89, le=89)]
     datum_lon_deg: Annotated[float, Field(ge=-180, le=180)]
+    draught_m: Annotated[float, Field(ge=0, le=30)]
     velocity_water: VelocityParameters
     velocity_ground: VelocityParameters
     fix: FixParameters
     heading: HeadingParameters
+    echo_sounder: EchoSounderParameters
+    fish_sonar: FishSonarParameters
 
 
 class InstrumentParameters(Record):

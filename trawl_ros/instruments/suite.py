@@ -46,7 +46,7 @@ class InstrumentSuite:
         self.winch = WinchInstruments(parameters.winch, draws)
         self.door = DoorInstruments(parameters.door, draws, surroundings=surroundings)
         self.sonar = SonarInstruments(parameters.sonar, draws, surroundings=surroundings)
-        self.vessel = VesselInstruments(parameters.vessel, draws)
+        self.vessel = VesselInstruments(parameters.vessel, draws, surroundings=surroundings)
 
         groups = (self.winch, self.door, self.sonar, self.vessel)
         sensors: list[Faulty] = []

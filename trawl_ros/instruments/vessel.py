@@ -1,9 +1,12 @@
-"""The ship's own sensors: speed log, GPS, compass."""
+"""The ship's own sensors: speed log, GPS, compass; sounder and sonar have files of their own."""
 
 import math
 
 import numpy as np
 
+from trawl_ros.instruments.echo_sounder import EchoSounder
+from trawl_ros.instruments.faults import Faulty
+from trawl_ros.instruments.fish_sonar import FishSonar
 from trawl_ros.instruments.geodesy import Datum, to_latitude_longitude
 from trawl_ros.instruments.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import (
@@ -13,6 +16,7 @@ from trawl_ros.instruments.parameters import (
     VesselParameters,
 )
 from trawl_ros.instruments.samples import FixSample, HeadingSample, Sample, VelocitySample
+from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.simulation.truth import Truth
 
 Moving = tuple[np.ndarray, float]
@@ -93,13 +97,25 @@ class Heading(Instrument[float, HeadingSample]):
 class VesselInstruments:
     """All that the ship herself measures, but for her winches."""
 
-    def __init__(self, parameters: VesselParameters, draws: Draws) -> None:
+    def __init__(
+        self, parameters: VesselParameters, draws: Draws, *, surroundings: Surroundings
+    ) -> None:
         datum = Datum(parameters.datum_lat_deg, parameters.datum_lon_deg)
         self.velocity_water = SpeedLog(parameters.velocity_water, draws)
         self.velocity_ground = GpsVelocity(parameters.velocity_ground, draws)
         self.fix = GpsFix(parameters.fix, datum, draws)
         self.heading = Heading(parameters.heading, draws)
-        self.instruments = (self.velocity_water, self.velocity_ground, self.fix, self.heading)
+        draught = parameters.draught_m
+        self.echo_sounder = EchoSounder(parameters.echo_sounder, draught, surroundings, draws)
+        self.fish_sonar = FishSonar(parameters.fish_sonar, draught, surroundings, draws)
+        self.instruments: tuple[Faulty, ...] = (
+            self.velocity_water,
+            self.velocity_ground,
+            self.fix,
+            self.heading,
+            *self.echo_sounder.instruments,
+            self.fish_sonar,
+        )
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due."""
@@ -109,4 +125,6 @@ class VesselInstruments:
         samples += self.velocity_ground.observe((vessel.velocity_ground, vessel.yaw_rate), stamp)
         samples += self.fix.observe(vessel.position, stamp)
         samples += self.heading.observe(vessel.heading, stamp)
+        samples += self.echo_sounder.observe(truth)
+        samples += self.fish_sonar.observe((vessel, truth.schools), stamp)
         return samples

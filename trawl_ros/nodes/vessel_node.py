@@ -1,4 +1,4 @@
-"""`vessel_node`: the ship's speed log, GPS and compass."""
+"""`vessel_node`: the ship's speed log, GPS, compass, echo sounder and fish sonar."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar
@@ -6,24 +6,30 @@ from typing import Any, ClassVar
 from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.vessel import VesselInstruments
-from trawl_ros.messages.from_messages import vessel_truth
+from trawl_ros.messages.from_messages import schools_truth, seabed_truth, vessel_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.parameters import Number, Parameters
 from trawl_ros.nodes.partial_truth import partial_truth
 from trawl_ros.nodes.runtime import run
 
 ODOMETRY, THROUGH_WATER = 'truth/vessel/odom', 'truth/vessel/velocity_water'
+SCHOOLS, SEABED = 'truth/schools', 'truth/seabed'
 
 
 class VesselNode(InstrumentNode):
-    """Reports ``vessel/{velocity_water,velocity_ground,heading,fix}``."""
+    """Reports ``vessel/{velocity_water,velocity_ground,heading,fix}``,
+    ``vessel/echo_sounder/{depth,school}`` and ``vessel/fish_sonar``.
+    """
 
-    TRUTH: ClassVar = (ODOMETRY, THROUGH_WATER)
+    TRUTH: ClassVar = (ODOMETRY, THROUGH_WATER, SCHOOLS, SEABED)
     SAMPLES: ClassVar = (
         'vessel/velocity_water',
         'vessel/velocity_ground',
         'vessel/fix',
         'vessel/heading',
+        'vessel/echo_sounder/depth',
+        'vessel/echo_sounder/school',
+        'vessel/fish_sonar',
     )
 
     def __init__(self, **kwargs: Any) -> None:
@@ -44,13 +50,22 @@ class VesselNode(InstrumentNode):
             self.parameter_changed,
         )  # fmt: skip
         placed = {'datum_lat_deg': datum['datum_lat'], 'datum_lon_deg': datum['datum_lon']}
-        self._instruments = VesselInstruments(record.model_copy(update=placed), setup.draws)
+        self._instruments = VesselInstruments(
+            record.model_copy(update=placed), setup.draws, surroundings=setup.surroundings
+        )
         return self._instruments.instruments
 
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns)."""
         vessel = vessel_truth(messages[ODOMETRY], messages[THROUGH_WATER])
-        return self._instruments.observe(partial_truth(stamp, vessel=vessel))
+        return self._instruments.observe(
+            partial_truth(
+                stamp,
+                vessel=vessel,
+                schools=schools_truth(messages[SCHOOLS]),
+                seabed=seabed_truth(messages[SEABED]),
+            )
+        )
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -1,0 +1,145 @@
+"""The echo sounder under the keel: depth of the seabed, and of fish above it."""
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.instruments.distance import within
+from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
+from trawl_ros.instruments.samples import RangeSample, Sample
+from trawl_ros.instruments.schools import inside
+from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.simulation.truth import SchoolTruth, Truth
+
+RINGS, RAYS_PER_RING = 4, 12
+
+
+@dataclass(frozen=True)
+class Below:
+    """What is under the ship: the ``keel`` (3,) in ``map``, the ``seabed``'s depth there (m below
+    the mean surface) and the schools of fish.
+    """
+
+    keel: np.ndarray
+    seabed: float
+    schools: tuple[SchoolTruth, ...]
+
+    @property
+    def clearance(self) -> float:
+        """From the keel down to the seabed, m."""
+        return self.seabed + float(self.keel[2])
+
+
+def cone(half_angle: float) -> np.ndarray:
+    """Give unit vectors (n, 3) that fill a cone about straight down, evenly from its axis out."""
+    tilts = np.repeat(np.arange(1, RINGS + 1) / RINGS * half_angle, RAYS_PER_RING)
+    around = np.tile(np.arange(RAYS_PER_RING) / RAYS_PER_RING * 2 * math.pi, RINGS)
+    rays = np.column_stack(
+        [np.sin(tilts) * np.cos(around), np.sin(tilts) * np.sin(around), -np.cos(tilts)]
+    )
+    return np.concatenate([[[0.0, 0.0, -1.0]], rays])
+
+
+class _Sounding(Instrument[Below, RangeSample]):
+    """A distance down from the keel, by the time that sound takes.
+
+    That time is turned into metres by the speed of sound that was set.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        parameters: RangeParameters,
+        assumed_sound_speed: float,
+        surroundings: Surroundings,
+        draws: Draws,
+    ) -> None:
+        errors = {'distance': parameters.model()}
+        super().__init__(f'vessel/echo_sounder/{what}', parameters.timing(), errors, draws)
+        self._what = what
+        self._limits = parameters.min_range_m, parameters.max_range_m
+        self._assumed = assumed_sound_speed
+        self._surroundings = surroundings
+
+    @abstractmethod
+    def _distance(self, part: Below) -> float:
+        """The true one, m; infinite where there is nothing."""
+
+    def _read(self, part: Below, stamp: int) -> RangeSample:
+        distance = self._distance(part)
+        if math.isfinite(distance):
+            keel = -float(part.keel[2])
+            mean = self._surroundings.mean_sound_speed(keel, keel + distance)
+            distance *= self._assumed / mean
+        low, high = self._limits
+        reading = within(self._measure('distance', distance, stamp), low, high)
+        return RangeSample(stamp, self._what, reading, self._stated_std('distance'), low, high)
+
+
+class DepthSounding(_Sounding):
+    """From the keel straight down to the seabed."""
+
+    def _distance(self, part: Below) -> float:
+        return part.clearance
+
+
+class SchoolSounding(_Sounding):
+    """From the keel to the nearest fish in the beam, above the seabed.
+
+    ``half_angle`` is that of the beam, rad.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        parameters: RangeParameters,
+        assumed_sound_speed: float,
+        surroundings: Surroundings,
+        draws: Draws,
+        *,
+        half_angle: float,
+    ) -> None:
+        super().__init__(what, parameters, assumed_sound_speed, surroundings, draws)
+        self._rays = cone(half_angle)
+
+    def _distance(self, part: Below) -> float:
+        nearest = math.inf
+        for school in part.schools:
+            near, far = inside(school, part.keel, self._rays)
+            ahead = np.isfinite(far) & (far > 0.0)
+            if ahead.any():
+                nearest = min(nearest, max(0.0, float(near[ahead].min())))
+        return nearest if nearest < part.clearance else math.inf
+
+
+class EchoSounder:
+    """Both readings of the sounder. ``draught`` (m) is that of the keel."""
+
+    def __init__(
+        self,
+        parameters: EchoSounderParameters,
+        draught: float,
+        surroundings: Surroundings,
+        draws: Draws,
+    ) -> None:
+        assumed = parameters.assumed_sound_speed_m_s
+        self.depth = DepthSounding('depth', parameters.depth, assumed, surroundings, draws)
+        self.school = SchoolSounding(
+            'school',
+            parameters.school,
+            assumed,
+            surroundings,
+            draws,
+            half_angle=math.radians(0.5 * parameters.beam_width_deg),
+        )
+        self.instruments = (self.depth, self.school)
+        self._keel = np.array([0.0, 0.0, -draught])
+
+    def observe(self, truth: Truth) -> list[Sample]:
+        """Give the samples that are due."""
+        keel = truth.vessel.position + self._keel
+        below = Below(keel, truth.seabed.under_ship, truth.schools)
+        return [*self.depth.observe(below, truth.stamp), *self.school.observe(below, truth.stamp)]

@@ -1,0 +1,120 @@
+"""The fish sonar of the ship: it sweeps a sector ahead and shows where schools are."""
+
+import math
+
+import numpy as np
+from scipy.special import expit
+
+from trawl_ros.instruments.draws import generator
+from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.parameters import FishSonarParameters
+from trawl_ros.instruments.samples import SchoolsSample
+from trawl_ros.instruments.schools import fish_in
+from trawl_ros.instruments.sonar.absorption import absorption
+from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.simulation.truth import SchoolTruth, VesselTruth
+
+Around = tuple[VesselTruth, tuple[SchoolTruth, ...]]
+"""The ship and the schools around her."""
+
+
+class FishSonar(Instrument[Around, SchoolsSample]):
+    """Sees ship and schools, `Around`; reports a sample per sweep, empty where nothing is seen.
+
+    A school can be seen when the middle of it is within range and sector and some of it in the
+    beam, which is tilted down. Whether it is seen is drawn for each school and sweep, by how
+    strong its echo is (`echo_level`): with a probability of 1 / (1 + exp((L₅₀ − L) / fading), one
+    half at the level L₅₀. What is seen has no name, and comes in the order of its range.
+
+    Parameters
+    ----------
+    parameters
+        From the instrument file.
+    draught
+        Depth of the sonar under the keel, m.
+    surroundings
+        The water, for absorption and speed of sound.
+    draws
+        Seed and changes of state.
+    """
+
+    def __init__(
+        self,
+        parameters: FishSonarParameters,
+        draught: float,
+        surroundings: Surroundings,
+        draws: Draws,
+    ) -> None:
+        errors = {
+            'range': parameters.range.model(),
+            'bearing': parameters.bearing.model(),
+            'tilt': parameters.tilt.model(),
+        }
+        self._seed = draws.seed
+        self._parameters = parameters
+        self._surroundings = surroundings
+        self._draught = draught
+        super().__init__('vessel/fish_sonar', parameters.timing(), errors, draws)
+
+    def echo_level(self, school: SchoolTruth, distance: float, depth: float) -> float:
+        """Level of a school's echo, dB, of a source of 0 dB.
+
+        TS + 10 log N − 40 log r − 2 α r: all N fish echo with the target strength TS, sound
+        spreads as on a sphere and is absorbed on both ways.
+        """
+        record, water = self._parameters, self._surroundings
+        loss = absorption(
+            1e3 * record.frequency_khz, water.temperature(depth), water.salinity, depth
+        )
+        strength = record.fish_target_strength_db + 10 * math.log10(fish_in(school))
+        return strength - 40 * math.log10(max(distance, 1.0)) - 2 * loss * distance
+
+    def _restart(self) -> None:
+        self._luck = generator(self._seed, f'{self.name}/detection')
+
+    def _read(self, part: Around, stamp: int) -> SchoolsSample:
+        vessel, schools = part
+        rows = [self._seen(vessel, school, stamp) for school in schools]
+        seen = np.array([row for row in rows if row is not None]).reshape(-1, 3)
+        # A quantity that is lost leaves nothing to show.
+        seen = seen[np.isfinite(seen).all(1)]
+        return SchoolsSample(stamp, seen[np.argsort(np.linalg.norm(seen, axis=1))])
+
+    def _seen(self, vessel: VesselTruth, school: SchoolTruth, stamp: int) -> np.ndarray | None:
+        """Where a school seems to be, in frame ``vessel``; None if it is not seen."""
+        record = self._parameters
+        sonar = np.array([0.0, 0.0, -self._draught])
+        east, north, up = school.position - vessel.position
+        cosine, sine = math.cos(vessel.heading), math.sin(vessel.heading)
+        x, y = cosine * east + sine * north, cosine * north - sine * east
+        z = float(up) + self._draught
+        level, distance = math.hypot(x, y), math.hypot(x, y, z)
+        bearing, tilt = math.atan2(y, x), math.atan2(-z, level)
+        depth = self._draught - float(vessel.position[2])
+        stretch = record.assumed_sound_speed_m_s / self._surroundings.mean_sound_speed(
+            depth, depth - z
+        )
+        # Drawn whether it is seen or not: no school changes what is drawn for another.
+        shown_range = self._measure('range', stretch * distance, stamp)
+        shown_bearing = self._measure('bearing', bearing, stamp)
+        shown_tilt = self._measure('tilt', tilt, stamp)
+        lucky = self._luck.random()
+        half_size = math.atan2(0.5 * float(school.size[2]), level)
+        half_beam = math.radians(0.5 * record.beam_width_deg)
+        if (
+            not record.min_range_m <= distance <= record.max_range_m
+            or abs(bearing) > math.radians(0.5 * record.sector_deg)
+            or abs(tilt - math.radians(record.beam_tilt_deg)) > half_beam + half_size
+        ):
+            return None
+        excess = self.echo_level(school, distance, depth) - record.half_seen_db
+        if lucky > expit(excess / record.fading_db):
+            return None
+        ahead = shown_range * math.cos(shown_tilt)
+        return sonar + np.array(
+            [
+                ahead * math.cos(shown_bearing),
+                ahead * math.sin(shown_bearing),
+                -shown_range * math.sin(shown_tilt),
+            ]
+        )
