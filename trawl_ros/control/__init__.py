@@ -1,0 +1,1 @@
+"""Controllers of winches and rudder: samples in, commands out; no ROS."""

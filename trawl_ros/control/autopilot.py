@@ -1,0 +1,225 @@
+"""The autopilot: steers a heading, a course over ground, a track, or toward a school of fish."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.control.bearings import LOST_S, Bearings, NavigationSample
+from trawl_ros.control.drift import Way
+from trawl_ros.control.track import Track
+from trawl_ros.instruments.geodesy import Datum
+
+GAIN_PER_S = 0.05
+"""Rate of turn per angle that is left: 0.3 deg/s at 6 degrees."""
+
+BRAKING = 0.5
+"""Which part of the greatest turn acceleration is used to end a turn."""
+
+RESPONSE_S = 15.0
+"""What a turn into a leg takes longer than at its full rate: to begin, and to end gently."""
+
+PASSED_M = 150.0
+"""A school as near as this is not aimed at any more: the ship goes on over it."""
+
+SAME_SCHOOL_M = 500.0
+"""A school seen this near to where one was aimed at is the same."""
+
+
+@dataclass(frozen=True)
+class AutopilotSettings:
+    """How an autopilot works.
+
+    ``max_turn`` is the fastest rate of turn (rad/s), which the gear must be able to follow;
+    ``turn_acceleration`` how fast the ship takes it up (rad/s²); ``look_ahead`` how far ahead on a
+    track is aimed (m).
+    """
+
+    max_turn: float = math.radians(0.3)
+    turn_acceleration: float = math.radians(0.05)
+    look_ahead: float = 300.0
+
+
+@dataclass(frozen=True)
+class HoldHeading:
+    """Steer a heading by compass: ENU yaw, rad."""
+
+    heading: float
+
+
+@dataclass(frozen=True)
+class HoldCourse:
+    """Steer a course over ground, whatever the current: ENU yaw, rad."""
+
+    course: float
+
+
+@dataclass(frozen=True)
+class FollowTrack:
+    """Make for the first of ``waypoints`` (n, 2) (east and north in ``map``, m), then along."""
+
+    waypoints: np.ndarray
+
+
+@dataclass(frozen=True)
+class ToSchool:
+    """Steer over the nearest school ahead that the fish sonar sees, and on from there."""
+
+
+Target = HoldHeading | HoldCourse | FollowTrack | ToSchool
+
+
+@dataclass(frozen=True)
+class AutopilotState:
+    """What an autopilot has to say at one instant.
+
+    Angles in rad, ENU yaw; NaN where something is not known or not meant: ``wanted`` heading,
+    ``course`` wanted over ground, ``across`` (m to port of the leg), ``left`` (m of it);
+    ``ended`` says that the last waypoint lies astern.
+    """
+
+    wanted: float = math.nan
+    course: float = math.nan
+    turn_rate: float = 0.0
+    leg: int = -1
+    across: float = math.nan
+    left: float = math.nan
+    ended: bool = False
+    problems: tuple[str, ...] = ()
+
+
+class Autopilot:
+    """Gives the rate of turn that leads the ship where she is to go.
+
+    Parameters
+    ----------
+    settings
+        How.
+    datum
+        Origin of ``map``, from which fixes are counted.
+
+    Attributes
+    ----------
+    state : AutopilotState
+        As of the last call of `turn_rate`.
+    """
+
+    def __init__(self, settings: AutopilotSettings, datum: Datum) -> None:
+        self.settings = settings
+        self.state = AutopilotState()
+        self._bearings = Bearings(datum)
+        self._target: Target | None = None
+        self._track: Track | None = None
+        self._aim: np.ndarray | None = None
+        self._course = math.nan
+        self._passed = False
+        self._rate = 0.0
+
+    def steer(self, target: Target) -> None:
+        """Go for something new."""
+        self._target = target
+        self._track = None
+        self._aim = None
+        self._course = math.nan
+        self._passed = False
+
+    def take(self, sample: NavigationSample) -> None:
+        """Take in what a sensor says."""
+        self._bearings.take(sample)
+
+    def turn_rate(self, stamp: int) -> float:
+        """Give the wanted rate of turn (rad/s, to port positive) at a stamp (ns)."""
+        heading = self._bearings.heading
+        age = self._bearings.age('heading', stamp)
+        if heading is None or age > LOST_S:
+            self._rate = 0.0
+            self.state = AutopilotState(problems=('heading lost: goes straight on',))
+            return 0.0
+        state = self._guide(stamp, heading)
+        # Between two samples the ship turns on.
+        left = math.remainder(state.wanted - heading - self._rate * age, 2 * math.pi)
+        self._rate = self._towards(left)
+        self.state = replace(state, turn_rate=self._rate)
+        return self._rate
+
+    def _towards(self, angle: float) -> float:
+        settings = self.settings
+        braking = math.sqrt(2 * BRAKING * settings.turn_acceleration * abs(angle))
+        return math.copysign(min(settings.max_turn, GAIN_PER_S * abs(angle), braking), angle)
+
+    def _guide(self, stamp: int, heading: float) -> AutopilotState:
+        if isinstance(self._target, HoldHeading):
+            return AutopilotState(wanted=self._target.heading)
+        if isinstance(self._target, HoldCourse):
+            return self._against_current(self._target.course, stamp)
+        position = self._bearings.position(stamp)
+        if position is None:
+            return self._without_place(stamp, heading)
+        if isinstance(self._target, FollowTrack):
+            return self._along(self._target.waypoints, position, stamp)
+        if isinstance(self._target, ToSchool):
+            return self._to_school(position, heading, stamp)
+        return AutopilotState(wanted=heading)
+
+    def _against_current(
+        self, course: float, stamp: int, problems: tuple[str, ...] = ()
+    ) -> AutopilotState:
+        """The heading on which the ship makes good a course."""
+        self._course = course
+        for what, name in (('ground', 'velocity over ground'), ('water', 'speed log')):
+            if self._bearings.age(what, stamp) > LOST_S:
+                problems += (f'{name} lost: the current is taken as it was',)
+        wanted = self._way.heading_on(course)
+        return AutopilotState(wanted=wanted, course=course, problems=problems)
+
+    @property
+    def _way(self) -> Way:
+        bearings = self._bearings
+        return Way(bearings.speed, bearings.current, self.settings.max_turn)
+
+    def _without_place(self, stamp: int, heading: float) -> AutopilotState:
+        course = heading if math.isnan(self._course) else self._course
+        return self._against_current(course, stamp, ('fix lost: holds the course',))
+
+    def _along(self, waypoints: np.ndarray, position: np.ndarray, stamp: int) -> AutopilotState:
+        settings = self.settings
+        if self._track is None:
+            self._track = Track(np.vstack([position, waypoints]), look_ahead=settings.look_ahead)
+        found = self._track.follow(position, self._way, RESPONSE_S)
+        state = self._against_current(found.course, stamp, self._fix_problems(stamp))
+        return replace(
+            state, leg=found.leg, across=found.across, left=found.left, ended=found.ended
+        )
+
+    def _to_school(self, position: np.ndarray, heading: float, stamp: int) -> AutopilotState:
+        aim = self._aim_at(position, heading)
+        if aim is None:
+            course = heading if math.isnan(self._course) else self._course
+            return self._against_current(course, stamp, ('no school ahead: holds the course',))
+        away = aim - position
+        distance = float(np.hypot(*away))
+        if distance > PASSED_M and not self._passed:
+            self._course = math.atan2(away[1], away[0])
+        else:
+            self._passed = True
+        state = self._against_current(self._course, stamp, self._fix_problems(stamp))
+        return replace(state, left=distance, ended=self._passed)
+
+    def _aim_at(self, position: np.ndarray, heading: float) -> np.ndarray | None:
+        """Where the school is that was chosen, or the nearest ahead if none is chosen yet."""
+        schools = self._bearings.schools
+        if self._aim is None:
+            away = schools - position
+            ahead = away @ np.array([math.cos(heading), math.sin(heading)]) > 0.0
+            schools, near = schools[ahead], position
+        else:
+            near = self._aim
+        if len(schools):
+            distances = np.hypot(*(schools - near).T)
+            if self._aim is None or distances.min() < SAME_SCHOOL_M:
+                self._aim = schools[distances.argmin()]
+        return self._aim
+
+    def _fix_problems(self, stamp: int) -> tuple[str, ...]:
+        lost = self._bearings.age('fix', stamp) > LOST_S
+        return ('fix lost: the place is reckoned',) if lost else ()

@@ -1,0 +1,47 @@
+"""How a current carries a ship off, and which heading makes up for it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+MOST_DRIFT = 0.8
+"""Greatest part of the ship's speed that is spent against the current."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """How a ship moves: ``speed`` through the water (m/s), ``current`` (2,) to the east and north
+    (m/s), and the rate (rad/s) at which she turns.
+    """
+
+    speed: float
+    current: np.ndarray
+    turn: float
+
+    def heading_on(self, course: float) -> float:
+        """The heading on which she makes good a course; both ENU yaw, rad."""
+        if self.speed <= 0.0:
+            return course
+        east, north = self.current
+        across = (north * math.cos(course) - east * math.sin(course)) / self.speed
+        return course - math.asin(min(max(across, -MOST_DRIFT), MOST_DRIFT))
+
+    def turned(self, before: float, after: float, response: float) -> np.ndarray:
+        """East and north (2,) over ground, m, that she comes while turning between two headings.
+
+        Parameters
+        ----------
+        before, after
+            Headings, ENU yaw, rad; she turns the shorter way.
+        response
+            How long she goes on straight before she turns, s.
+        """
+        angle = math.remainder(after - before, 2 * math.pi)
+        rate = math.copysign(self.turn, angle)
+        radius = self.speed / rate
+        arc = radius * np.array(
+            [math.sin(after) - math.sin(before), math.cos(before) - math.cos(after)]
+        )
+        straight = self.speed * response * np.array([math.cos(before), math.sin(before)])
+        return arc + straight + self.current * (angle / rate + response)

@@ -1,0 +1,31 @@
+"""A first-order low-pass of readings that do not come at even times."""
+
+import math
+
+
+class LowPass:
+    """Follows a reading with a time constant; the first reading is taken as it is.
+
+    Parameters
+    ----------
+    time_constant
+        In s.
+
+    Attributes
+    ----------
+    value : float
+        The smoothed reading, NaN before the first.
+    """
+
+    def __init__(self, time_constant: float) -> None:
+        self._time_constant = time_constant
+        self.value = math.nan
+        self._begun = False
+
+    def take(self, reading: float, dt: float) -> None:
+        """Take a reading, ``dt`` seconds after the one before."""
+        if not self._begun:
+            self.value, self._begun = reading, True
+            return
+        share = -math.expm1(-dt / self._time_constant)
+        self.value = self.value + share * (reading - self.value)
