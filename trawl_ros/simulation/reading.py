@@ -90,8 +90,8 @@ def read_truth(
             position=ship.position,
             heading=ship.heading,
             yaw_rate=ship.yaw_rate,
-            velocity_ground=ship.speed * ship.ahead + model.water.current(np.array(0.0)),
-            velocity_water=np.array([ship.speed, 0.0, 0.0]),
+            velocity_ground=ship.velocity + model.water.current(np.array(0.0)),
+            velocity_water=np.array([ship.speed, 0.0, ship.heave_rate]),
         ),
     )
 
