@@ -1,10 +1,12 @@
 """The ship among the markers: where the warps leave her, and as long as stated."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from trawl_ros.messages.markers import VESSEL_LENGTH, gear_markers
-from trawl_ros.simulation.truth import DoorTruth, GearPicture, Polyline
+from trawl_ros.simulation.truth import DoorTruth, GearPicture, Polyline, SchoolTruth
 
 DOOR = DoorTruth(
     position=np.array([-500.0, 30.0, -100.0]),
@@ -45,3 +47,18 @@ def test_the_hull_lies_ahead_of_the_blocks_along_the_heading():
 def test_without_both_warps_nobody_knows_where_the_ship_is():
     _, array = gear_markers(_picture('port_warp'))
     assert 'vessel' not in {marker.ns for marker in array.markers}
+
+
+def test_schools_are_ellipsoids_that_viewers_tell_apart():
+    fish = tuple(
+        SchoolTruth(np.array([north, 5.0, -90.0]), np.array([60.0, 40.0, 20.0]), 1.0)
+        for north in (100.0, 300.0)
+    )
+    _, array = gear_markers(replace(_picture(), schools=fish))
+    schools = [marker for marker in array.markers if marker.ns == 'schools']
+    assert [marker.id for marker in schools] == [0, 1]
+    second = schools[1]
+    assert second.type == second.SPHERE
+    assert (second.pose.position.x, second.pose.position.z) == (300.0, -90.0)
+    assert (second.scale.x, second.scale.y, second.scale.z) == (60.0, 40.0, 20.0)
+    assert 0.0 < second.color.a < 1.0

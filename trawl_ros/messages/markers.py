@@ -13,7 +13,7 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
-from trawl_ros.simulation.truth import SIDES, DoorTruth, GearPicture, Polyline
+from trawl_ros.simulation.truth import SIDES, DoorTruth, GearPicture, Polyline, SchoolTruth
 
 FULL_SCALE = 100e3
 """Tension (N) that is drawn in full red; fixed, so that colours compare between pictures."""
@@ -39,11 +39,12 @@ RAMP = np.array([[0.15, 0.35, 0.85], [0.10, 0.75, 0.55], [0.95, 0.80, 0.15], [0.
 """Red, green and blue (0 to 1) from slack to `FULL_SCALE`, at even distances."""
 
 _STEEL = ros.std_msgs__msg__ColorRGBA(0.45, 0.45, 0.50, 1.0)
+_FISH = ros.std_msgs__msg__ColorRGBA(0.95, 0.65, 0.40, 0.5)
 
 
 def gear_markers(picture: GearPicture) -> TopicMessage:
     """Draw the gear in ``map``: a line per rope, all netting in one marker, a box per door, and
-    the ship's waterline ahead of the towing blocks.
+    the ship's waterline ahead of the towing blocks; and an ellipsoid per school of fish.
 
     Lines that share a name become one marker, since a viewer takes two thousand points in its
     stride but not a thousand markers. ``picture.door_size`` is (length along the door's x,
@@ -59,6 +60,7 @@ def gear_markers(picture: GearPicture) -> TopicMessage:
     for side, door in zip(SIDES, picture.doors, strict=True):
         markers.append(_door(picture.stamp, side, door, picture.door_size))
     markers += _hull(picture.stamp, named)
+    markers += [_school(picture.stamp, k, school) for k, school in enumerate(picture.schools)]
     return 'truth/gear', ros.visualization_msgs__msg__MarkerArray(markers)
 
 
@@ -128,6 +130,19 @@ def _door(stamp: int, side: str, door: DoorTruth, size: tuple[float, float]) -> 
     )
 
 
+def _school(stamp: int, number: int, school: SchoolTruth) -> Any:
+    marker = _marker(
+        stamp,
+        'schools',
+        ros.visualization_msgs__msg__Marker.SPHERE,
+        scale=school.size,
+        colour=_FISH,
+        position=school.position,
+    )
+    marker.id = number
+    return marker
+
+
 def _hull(stamp: int, named: Mapping[str, Sequence[Polyline]]) -> list[Any]:
     """The waterline; nothing where there are not both warps, whose ends say where the ship is."""
     if not all(name in named for name in WINCH_NAMES):
@@ -157,7 +172,7 @@ def _marker(
     namespace: str,
     kind: int,
     *,
-    scale: tuple[float, float, float],
+    scale: Any,
     colour: ros.std_msgs__msg__ColorRGBA,
     points: Sequence[ros.geometry_msgs__msg__Point] = (),
     position: Any = (0.0, 0.0, 0.0),

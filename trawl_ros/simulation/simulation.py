@@ -213,6 +213,7 @@ class Simulation:
     def picture(self) -> GearPicture:
         """The present instant as it is drawn."""
         now = self.now
-        return read_picture(
+        picture = read_picture(
             self.model, now.stamp, now.motion.state, tow_of(self.model, now.ship, now.winches)
         )
+        return replace(picture, schools=self.sea.schools_at(self._seconds(now.stamp)))

@@ -132,9 +132,10 @@ class Polyline:
 
 @dataclass(frozen=True)
 class GearPicture:
-    """All that is to be drawn of the gear at ``stamp``."""
+    """All that is to be drawn of the gear at ``stamp``, and the schools of fish around it."""
 
     stamp: int
     lines: tuple[Polyline, ...]
     doors: tuple[DoorTruth, DoorTruth]
     door_size: tuple[float, float]
+    schools: tuple[SchoolTruth, ...] = ()
