@@ -32,6 +32,8 @@ DAMAGE = (
 Record = Schema | Channel | Message
 
 _STEP = 1 << 20
+_FRAME_START = 64
+"""Bytes of a compressed frame that hold its header."""
 
 
 class Damaged(ValueError):
@@ -88,10 +90,11 @@ def inflate(data: bytes) -> bytes:
     """
     try:
         plain = _read_up_to(_unpacker(data), MAX_CHUNK_BYTES + 1)
+        if len(plain) > MAX_CHUNK_BYTES:
+            raise Damaged(f'it becomes more than the {MAX_CHUNK_BYTES} bytes that are read')
+        _check_size(data, len(plain))
     except zstandard.ZstdError as reason:
         raise Damaged(str(reason)) from reason
-    if len(plain) > MAX_CHUNK_BYTES:
-        raise Damaged(f'it becomes more than the {MAX_CHUNK_BYTES} bytes that are read')
     return plain
 
 
@@ -103,15 +106,25 @@ def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
     Damaged
         If it is not zstd, or becomes larger than ``limit`` bytes.
     """
+    size = 0
     try:
         reader = _unpacker(packed)
         while part := reader.read(_STEP):
-            limit -= len(part)
-            if limit < 0:
+            size += len(part)
+            if size > limit:
                 raise Damaged('it becomes larger than the free space on the disk for it')
             plain.write(part)
+        packed.seek(0)
+        _check_size(packed.read(_FRAME_START), size)
     except zstandard.ZstdError as reason:
         raise Damaged(str(reason)) from reason
+
+
+def _check_size(start: bytes, size: int) -> None:
+    """Compare with what the frame says; its reader takes one that is cut short for the end."""
+    stated = zstandard.get_frame_parameters(start).content_size
+    if stated != zstandard.CONTENTSIZE_UNKNOWN and size < stated:
+        raise Damaged(f'it should become {stated} bytes and becomes {size}')
 
 
 def _unpacker(data: bytes | BinaryIO) -> zstandard.ZstdDecompressionReader:

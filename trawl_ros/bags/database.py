@@ -19,7 +19,9 @@ from trawl_ros.bags.qos import dump_profiles, parse_profiles
 from trawl_ros.errors import BagError
 
 _TABLES = ('messages', 'topics')
-_READ = 'SELECT topic_id, timestamp, data FROM messages WHERE length(data) <= ? ORDER BY timestamp'
+_READ = (
+    'SELECT topic_id, timestamp, data FROM messages WHERE length(data) <= ? ORDER BY timestamp, id'
+)
 
 
 class Database:
@@ -44,10 +46,10 @@ class Database:
         self.path = path
         self.chunk_compressions: set[str] = set()
         self.damaged_chunks = 0
+        self.distro = ''
         self._report = report
         self._topics: dict[int, tuple[str, str]] = {}
         self._definitions: dict[str, Definition] = {}
-        self._count: int | None = None
         try:
             with closing(self._connect()) as database:
                 self._learn(database)
@@ -130,6 +132,8 @@ class Database:
                 f'{self.path}: a database without table {" and ".join(missing)}; expected one of '
                 'rosbag2'
             )
+        if 'schema' in tables:
+            (self.distro,) = database.execute('SELECT ros_distro FROM schema').fetchone() or ('',)
         texts = dict[str, tuple[str, bytes]]()
         if 'message_definitions' in tables:
             for name, encoding, text in database.execute(

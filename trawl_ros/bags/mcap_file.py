@@ -88,6 +88,7 @@ class McapFile:
     """
 
     storage = 'mcap'
+    distro = ''
 
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         self.path = path

@@ -31,6 +31,7 @@ class StorageFile(Protocol):
     path: Path
     chunk_compressions: set[str]
     storage: str
+    distro: str
 
     @property
     def indexed(self) -> bool:
@@ -124,7 +125,7 @@ class Source:
         return BagFacts(
             storage=' and '.join(sorted({file.storage for file in self.files})),
             version=metadata.version if metadata else None,
-            distro=metadata.ros_distro if metadata else '',
+            distro=(metadata and metadata.ros_distro) or self.files[0].distro,
             compression=packed or ', '.join(f'{name} per chunk' for name in sorted(chunks - {''})),
             sizes={path.name: path.stat().st_size for path in self._paths},
         )
