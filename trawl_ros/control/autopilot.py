@@ -19,6 +19,9 @@ BRAKING = 0.5
 RESPONSE_S = 15.0
 """What a turn into a leg takes longer than at its full rate: to begin, and to end gently."""
 
+BEGUN_M = 100.0
+"""A ship this near to the first waypoint of a track begins with the leg from there."""
+
 PASSED_M = 150.0
 """A school as near as this is not aimed at any more: the ship goes on over it."""
 
@@ -182,9 +185,10 @@ class Autopilot:
         return self._against_current(course, stamp, ('fix lost: holds the course',))
 
     def _along(self, waypoints: np.ndarray, position: np.ndarray, stamp: int) -> AutopilotState:
-        settings = self.settings
         if self._track is None:
-            self._track = Track(np.vstack([position, waypoints]), look_ahead=settings.look_ahead)
+            begun = len(waypoints) > 1 and np.hypot(*(waypoints[0] - position)) < BEGUN_M
+            points = waypoints if begun else np.vstack([position, waypoints])
+            self._track = Track(points, look_ahead=self.settings.look_ahead)
         found = self._track.follow(position, self._way, RESPONSE_S)
         state = self._against_current(found.course, stamp, self._fix_problems(stamp))
         return replace(

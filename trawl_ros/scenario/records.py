@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.gear.records import CurrentAt, TemperatureAt
+from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.faults import FaultRecord
 from trawl_ros.scenario.sea import SeaRecord
 from trawl_ros.schema import Record
@@ -53,7 +54,8 @@ class StartRecord(Record):
 class StepRecord(Record):
     """A stage of a trial: for so many minutes, with new targets for what is named.
 
-    What is not named stays as it was, the rate of turn too.
+    What is not named stays as it was, the rate of turn too; a rate of turn that is named ends
+    what was steered before.
     """
 
     name: Name
@@ -63,10 +65,18 @@ class StepRecord(Record):
     starboard_warp_length_m: Length | None = None
     speed_m_s: Speed | None = None
     turn_deg_s: Annotated[float, Field(ge=-3, le=3)] | None = None
+    steer: SteerRecord | None = None
+    autotrawl: AutotrawlRecord | None = None
 
     @model_validator(mode='after')
     def _lengths(self) -> 'StepRecord':
         _check_lengths(self, needed=False)
+        return self
+
+    @model_validator(mode='after')
+    def _one_helm(self) -> 'StepRecord':
+        if self.steer is not None and self.turn_deg_s is not None:
+            raise ValueError('turn_deg_s: found beside steer, expected one of them')
         return self
 
 

@@ -5,14 +5,15 @@ Node and command line share this, so the same scenario gives the same data in bo
 
 import math
 
-from trawl_ros.errors import NoSteadyState, ScenarioError
+from trawl_ros.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.scenario.bridge import Bridge
 from trawl_ros.scenario.scenario import Scenario
 from trawl_ros.scenario.sea import build_sea
+from trawl_ros.scenario.steadiness import require_steady_states
 from trawl_ros.simulation.seabed import SeabedTouched
-from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
+from trawl_ros.simulation.simulation import NANOSECONDS, Simulation
 from trawl_ros.simulation.truth import Truth
-from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.stepper import StepFailed
 
 MOST_UNITS, UNITS_PER_S = 5, 20
@@ -58,7 +59,8 @@ class Trial:
     model : GearModel
         The plant that is towed.
     simulation : Simulation
-        The tow. Its command is the scenario's; it is set anew at each time step.
+        The tow. Its command is what the scenario plans or, where autopilot and autotrawl drive,
+        what they make of it; it is set anew at each time step.
     duration_s : float
         How long the trial takes, s.
 
@@ -94,6 +96,7 @@ class Trial:
         self._steps_per_truth = steps
         self._truths = 1 + math.floor(self.duration_s * scenario.record.truth_rate_hz + 1e-6)
         self._given = 0
+        self._bridge = Bridge(scenario)
 
     @property
     def time_s(self) -> float:
@@ -104,6 +107,7 @@ class Trial:
         """Back to the start: the same truth comes again."""
         self.simulation.reset()
         self._given = 0
+        self._bridge = Bridge(self.scenario)
 
     def step(self) -> Truth | None:
         """Tow on for one period of the truth.
@@ -123,10 +127,12 @@ class Trial:
             return None
         if self._given:
             for _ in range(self._steps_per_truth):
-                self.simulation.command = self.scenario.commands_at(self.time_s)
+                self.simulation.command = self._bridge.command(self.time_s)
                 self._advance()
         self._given += 1
-        return self.simulation.truth()
+        truth = self.simulation.truth()
+        self._bridge.observe(truth)
+        return truth
 
     def _advance(self) -> None:
         try:
@@ -143,49 +149,3 @@ class Trial:
             raise SeabedTouched(
                 f"{self.scenario.path}: step '{step.name}', after {self.time_s:.1f} s: {reason}"
             ) from reason
-
-
-def require_steady_states(scenario: Scenario, model: GearModel) -> None:
-    """Check that the gear can be towed as a scenario asks, before hours are spent on it.
-
-    Steps with a turn are left out: a turning ship has no steady state in `map`.
-
-    Raises
-    ------
-    NoSteadyState
-        Naming file and step, and why the gear has no usable steady state there.
-    """
-    heading = scenario.heading
-    asked = [('start', 0.0, scenario.start)]
-    for record, (_, command) in zip(scenario.record.steps, scenario.commands, strict=True):
-        asked.append((f"step '{record.name}'", 60.0 * record.minutes, command))
-    found: dict[tuple[Command, float], SteadyState] = {}
-    for name, duration, command in asked:
-        if command.turn_rate:
-            heading += command.turn_rate * duration
-        elif (command, heading) not in found:
-            try:
-                found[command, heading] = _steady(model, command, heading, found)
-            except NoSteadyState as reason:
-                raise NoSteadyState(
-                    f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed at '
-                    'which the gear tows steadily',
-                    reason.reason,
-                ) from reason
-
-
-def _steady(
-    model: GearModel,
-    command: Command,
-    heading: float,
-    found: dict[tuple[Command, float], SteadyState],
-) -> SteadyState:
-    """Solve warm from the last state on this heading, and cold where that leads nowhere."""
-    lengths = (command.port_length, command.starboard_length)
-    near = [state.equilibrium for (_, course), state in found.items() if course == heading]
-    if near:
-        try:
-            return steady_state(model, lengths, command.speed, heading=heading, start=near[-1])
-        except NoSteadyState:
-            pass
-    return steady_state(model, lengths, command.speed, heading=heading)

@@ -22,10 +22,21 @@ from trawl_ros.instruments.parameters import (
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.scenario.driving import NOBODY, AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
 from trawl_ros.scenario.surroundings import build_surroundings
 from trawl_ros.schema import load_yaml, validated
 from trawl_ros.simulation.simulation import Command
+
+
+@dataclass(frozen=True)
+class Driving:
+    """Who drives beside the plain commands: what is steered, if anything is, and how the winches
+    are worked.
+    """
+
+    steer: SteerRecord | None = None
+    autotrawl: AutotrawlRecord = NOBODY
 
 
 @dataclass(frozen=True)
@@ -59,6 +70,27 @@ class Scenario:
             begin += 60 * step.minutes
         return tuple(listed)
 
+    @cached_property
+    def drivings(self) -> tuple[Driving, ...]:
+        """Who drives in each step."""
+        driving = Driving()
+        listed = []
+        for step in self.record.steps:
+            steer = None if step.turn_deg_s is not None else step.steer or driving.steer
+            driving = Driving(steer, step.autotrawl or driving.autotrawl)
+            listed.append(driving)
+        return tuple(listed)
+
+    @property
+    def steered(self) -> bool:
+        """Whether an autopilot steers at any time."""
+        return any(driving.steer is not None for driving in self.drivings)
+
+    @property
+    def autotrawled(self) -> bool:
+        """Whether an autotrawl works the winches at any time."""
+        return any(driving.autotrawl.mode != 'off' for driving in self.drivings)
+
     @property
     def start(self) -> Command:
         """The steady tow before the first step."""
@@ -76,8 +108,8 @@ class Scenario:
     @property
     def state_changes_s(self) -> tuple[float, ...]:
         """When something new is asked for (s since the start), after the start itself."""
-        steps = self.commands
-        return tuple(begin for (_, before), (begin, after) in pairwise(steps) if after != before)
+        steps = [(*step, who) for step, who in zip(self.commands, self.drivings, strict=True)]
+        return tuple(after[0] for before, after in pairwise(steps) if after[1:] != before[1:])
 
     @property
     def draws(self) -> Draws:
@@ -101,6 +133,10 @@ class Scenario:
     def commands_at(self, time: float) -> Command:
         """Give what is asked for at a time (s since the start); after the end, the last."""
         return self.commands[self._number(time)][1]
+
+    def driving_at(self, time: float) -> Driving:
+        """Tell who drives at a time (s since the start); after the end, as at last."""
+        return self.drivings[self._number(time)]
 
     def _number(self, time: float) -> int:
         begins = [begin for begin, _ in self.commands]
@@ -178,8 +214,14 @@ def _after(command: Command, step: StepRecord) -> Command:
         command.port_length if port is None else port,
         command.starboard_length if starboard is None else starboard,
         command.speed if step.speed_m_s is None else step.speed_m_s,
-        command.turn_rate if step.turn_deg_s is None else math.radians(step.turn_deg_s),
+        _turn_rate(command, step),
     )
+
+
+def _turn_rate(command: Command, step: StepRecord) -> float:
+    if step.steer is not None:
+        return 0.0
+    return command.turn_rate if step.turn_deg_s is None else math.radians(step.turn_deg_s)
 
 
 def _lengths(record: StartRecord | StepRecord) -> tuple[float | None, float | None]:

@@ -1,0 +1,114 @@
+"""The bridge of a trial: autopilot and autotrawl, with the instruments that they go by."""
+
+import math
+from dataclasses import replace
+
+from trawl_ros.control.autopilot import Autopilot, AutopilotSettings
+from trawl_ros.control.autotrawl import Autotrawl
+from trawl_ros.instruments.fault_plan import FaultPlan
+from trawl_ros.instruments.faults import FaultPanel
+from trawl_ros.instruments.geodesy import Datum
+from trawl_ros.instruments.samples import (
+    FixSample,
+    HeadingSample,
+    SchoolsSample,
+    VelocitySample,
+    WinchSample,
+)
+from trawl_ros.instruments.vessel import VesselInstruments
+from trawl_ros.instruments.winch import WinchInstruments
+from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
+from trawl_ros.scenario.scenario import Scenario
+from trawl_ros.simulation.simulation import Command
+from trawl_ros.simulation.truth import Truth
+
+
+class Bridge:
+    """Turns the commands that a scenario plans into those that ship and winches are given.
+
+    Its instruments draw as those of the instrument nodes do, so it goes by the very readings
+    that these publish, faults and all.
+
+    Parameters
+    ----------
+    scenario
+        Whose steps say what is steered and how the winches are worked.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._scenario = scenario
+        made = scenario.instruments
+        self._winch = WinchInstruments(made.winch, scenario.draws)
+        self._vessel = VesselInstruments(
+            made.vessel, scenario.draws, surroundings=scenario.surroundings
+        )
+        sensors = (*self._winch.instruments, *self._vessel.instruments)
+        self._plan = FaultPlan(scenario.faults, FaultPanel(sensors))
+        self._datum = Datum(made.vessel.datum_lat_deg, made.vessel.datum_lon_deg)
+        self._autopilot = Autopilot(AutopilotSettings(), self._datum)
+        self._autotrawl: Autotrawl | None = None
+        self._steer: SteerRecord | None = None
+        self._work: AutotrawlRecord | None = None
+        self._given = scenario.start
+        self._turn_rate = 0.0
+
+    def observe(self, truth: Truth) -> None:
+        """Let the instruments look at an instant, and the controllers at what they say."""
+        self._plan.follow(truth.stamp)
+        if self._scenario.steered:
+            self._observe_ship(truth)
+        if self._scenario.autotrawled:
+            self._observe_winches(truth)
+
+    def command(self, time: float) -> Command:
+        """Give what ship and winches are asked for at a time (s since the start)."""
+        planned = self._scenario.commands_at(time)
+        driving = self._scenario.driving_at(time)
+        if driving.steer is not self._steer:
+            self._begin_to_steer(driving.steer)
+        if driving.autotrawl is not self._work:
+            self._begin_to_work(driving.autotrawl)
+        if self._steer is not None:
+            planned = replace(planned, turn_rate=self._turn_rate)
+        if self._autotrawl is not None:
+            self._autotrawl.set_lengths(planned.port_length, planned.starboard_length)
+            port, starboard = self._autotrawl.wanted
+            planned = replace(planned, port_length=port, starboard_length=starboard)
+        self._given = planned
+        return planned
+
+    def _begin_to_steer(self, record: SteerRecord | None) -> None:
+        self._steer = record
+        self._turn_rate = 0.0
+        if record is not None:
+            ship = self._scenario.plant.ship
+            self._autopilot.settings = record.settings(
+                math.radians(ship.max_turn_acceleration_deg_s2)
+            )
+            self._autopilot.steer(record.target(self._datum))
+
+    def _begin_to_work(self, record: AutotrawlRecord | None) -> None:
+        self._work = record
+        winch = self._scenario.plant.winch
+        settings = None
+        if record is not None:
+            settings = record.settings(winch.max_speed_m_s, winch.max_acceleration_m_s2)
+        if settings is None:
+            self._autotrawl = None
+        elif self._autotrawl is None:
+            lengths = self._given.port_length, self._given.starboard_length
+            self._autotrawl = Autotrawl(settings, lengths)
+        else:
+            self._autotrawl.change(settings)
+
+    def _observe_ship(self, truth: Truth) -> None:
+        for sample in self._vessel.observe(truth):
+            if isinstance(sample, HeadingSample | FixSample | VelocitySample | SchoolsSample):
+                self._autopilot.take(sample)
+        if self._steer is not None:
+            self._turn_rate = self._autopilot.turn_rate(truth.stamp)
+
+    def _observe_winches(self, truth: Truth) -> None:
+        for sample in self._winch.observe(truth):
+            if isinstance(sample, WinchSample) and self._autotrawl is not None:
+                self._autotrawl.update(sample)

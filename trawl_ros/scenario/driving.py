@@ -1,0 +1,137 @@
+"""Who drives ship and winches in a step of a trial: what the file may say of it."""
+
+import math
+from itertools import pairwise
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from trawl_ros.control.autopilot import (
+    AutopilotSettings,
+    FollowTrack,
+    HoldCourse,
+    HoldHeading,
+    Target,
+    ToSchool,
+)
+from trawl_ros.control.autotrawl import AutotrawlSettings
+from trawl_ros.instruments.geodesy import Datum, to_east_north
+from trawl_ros.schema import Record
+
+Degrees = Annotated[float, Field(ge=-360, le=360)]
+Metres = Annotated[float, Field(ge=-500_000, le=500_000)]
+Latitude = Annotated[float, Field(ge=-89, le=89)]
+Longitude = Annotated[float, Field(ge=-180, le=180)]
+Gain = Annotated[float, Field(ge=0, le=5)]
+
+_PILOT = AutopilotSettings()
+_TRAWL = AutotrawlSettings()
+
+
+class SteerRecord(Record):
+    """What the autopilot steers: one of the first five.
+
+    ``heading_deg`` by compass and ``course_deg`` over ground are ENU yaw (0 = east, to port
+    positive), as everywhere. A track makes for its first waypoint and follows the legs to the
+    last: ``track_m`` in east and north of ``map``, ``track_deg`` in latitude and longitude.
+    ``to_school`` steers over the nearest school that the fish sonar sees ahead.
+    """
+
+    heading_deg: Degrees | None = None
+    course_deg: Degrees | None = None
+    track_m: (
+        Annotated[tuple[tuple[Metres, Metres], ...], Field(min_length=1, max_length=1000)] | None
+    ) = None
+    track_deg: (
+        Annotated[tuple[tuple[Latitude, Longitude], ...], Field(min_length=1, max_length=1000)]
+        | None
+    ) = None
+    to_school: Literal[True] | None = None
+    max_turn_deg_s: Annotated[float, Field(ge=0.01, le=3)] = math.degrees(_PILOT.max_turn)
+    look_ahead_m: Annotated[float, Field(ge=20, le=5000)] = _PILOT.look_ahead
+
+    @model_validator(mode='after')
+    def _one_target(self) -> 'SteerRecord':
+        names = ('heading_deg', 'course_deg', 'track_m', 'track_deg', 'to_school')
+        given = [name for name in names if getattr(self, name) is not None]
+        if len(given) != 1:
+            found = ' and '.join(given) or 'none'
+            raise ValueError(f'found {found}, expected one of {", ".join(names)}')
+        return self
+
+    @model_validator(mode='after')
+    def _waypoints_differ(self) -> 'SteerRecord':
+        for name in ('track_m', 'track_deg'):
+            for number, (one, next_one) in enumerate(pairwise(getattr(self, name) or ())):
+                if one == next_one:
+                    raise ValueError(
+                        f'{name}: found waypoint {list(one)} twice in a row (number {number} and '
+                        f'{number + 1}), expected another place'
+                    )
+        return self
+
+    def target(self, datum: Datum) -> Target:
+        """Give what the autopilot is told; ``datum`` is the origin of ``map``."""
+        if self.heading_deg is not None:
+            return HoldHeading(math.radians(self.heading_deg))
+        if self.course_deg is not None:
+            return HoldCourse(math.radians(self.course_deg))
+        if self.track_m is not None:
+            return FollowTrack(np.array(self.track_m))
+        if self.track_deg is not None:
+            latitudes, longitudes = np.array(self.track_deg).T
+            return FollowTrack(np.column_stack(to_east_north(latitudes, longitudes, datum)))
+        return ToSchool()
+
+    def settings(self, turn_acceleration: float) -> AutopilotSettings:
+        """Give how it steers; ``turn_acceleration`` is the ship's, rad/s²."""
+        return AutopilotSettings(
+            max_turn=math.radians(self.max_turn_deg_s),
+            turn_acceleration=turn_acceleration,
+            look_ahead=self.look_ahead_m,
+        )
+
+
+class AutotrawlRecord(Record):
+    """How the autotrawl works the winches; ``off`` leaves them to the lengths of the steps.
+
+    ``lengths`` holds the steps' warp lengths by the counters. ``tension`` holds both warps at
+    equal tension and gives way to peaks above ``tension_kn`` (left out: above the mean of the
+    last minutes), while the mean of both counters stays at the steps' lengths.
+    """
+
+    mode: Literal['lengths', 'tension', 'off']
+    tension_kn: Annotated[float, Field(gt=0, le=2000)] | None = None
+    balance_gain_m_s: Gain = _TRAWL.balance_gain
+    give_gain_m_s: Gain = _TRAWL.give_gain
+    haul_gain_m_s: Gain = _TRAWL.haul_gain
+    max_give_m: Annotated[float, Field(ge=0, le=50)] = _TRAWL.max_give_m
+    max_difference_percent: Annotated[float, Field(ge=0, le=10)] = 100 * _TRAWL.max_difference
+
+    @model_validator(mode='after')
+    def _tension_where_it_is_held(self) -> 'AutotrawlRecord':
+        if self.tension_kn is not None and self.mode != 'tension':
+            raise ValueError(
+                f"tension_kn: found in mode '{self.mode}', expected it in mode 'tension' alone"
+            )
+        return self
+
+    def settings(self, max_speed: float, max_acceleration: float) -> AutotrawlSettings | None:
+        """Give how it works with winches of this speed (m/s) and acceleration; None for off."""
+        if self.mode == 'off':
+            return None
+        return AutotrawlSettings(
+            mode=self.mode,
+            tension=math.nan if self.tension_kn is None else 1e3 * self.tension_kn,
+            balance_gain=self.balance_gain_m_s,
+            give_gain=self.give_gain_m_s,
+            haul_gain=self.haul_gain_m_s,
+            max_give_m=self.max_give_m,
+            max_difference=0.01 * self.max_difference_percent,
+            max_speed=max_speed,
+            max_acceleration=max_acceleration,
+        )
+
+
+NOBODY = AutotrawlRecord(mode='off')

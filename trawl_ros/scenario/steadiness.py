@@ -1,0 +1,99 @@
+"""Whether a gear can be towed as a scenario asks, found out before hours are spent on it."""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from trawl_ros.control.autopilot import FollowTrack, HoldCourse, HoldHeading
+from trawl_ros.control.drift import Way
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.instruments.geodesy import Datum
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.scenario.driving import SteerRecord
+from trawl_ros.scenario.scenario import Scenario
+from trawl_ros.simulation.simulation import Command
+from trawl_ros.solver.equilibrium import SteadyState, steady_state
+
+Found = dict[tuple[Command, float], SteadyState]
+
+
+def require_steady_states(scenario: Scenario, model: GearModel) -> None:
+    """Check that the gear can be towed as a scenario asks.
+
+    A step that turns at a constant rate is left out: a turning ship has no steady state in
+    ``map``. Where an autopilot steers, the state is checked that is towed once she is on course:
+    on each leg of a track, with the drift that the current asks for. Where there is a current
+    and a step's heading cannot be known before, on the way to a track or to fish, it is left
+    out. An autotrawl that holds the tension brings unequal lengths to nearly equal ones, so it is
+    checked with their mean.
+
+    Raises
+    ------
+    NoSteadyState
+        Naming file and step, and why the gear has no usable steady state there.
+    """
+    found: Found = {}
+    for name, command, heading in _states(scenario, model):
+        if (command, heading) in found:
+            continue
+        try:
+            found[command, heading] = _steady(model, command, heading, found)
+        except NoSteadyState as reason:
+            raise NoSteadyState(
+                f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed at '
+                'which the gear tows steadily',
+                reason.reason,
+            ) from reason
+
+
+def _states(scenario: Scenario, model: GearModel) -> Iterator[tuple[str, Command, float]]:
+    """Each state of the trial that can be steady: its name, command and heading."""
+    still = not np.any(model.water.currents)
+    yield 'start', scenario.start, scenario.heading
+    heading: float | None = scenario.heading
+    steps = zip(scenario.record.steps, scenario.commands, scenario.drivings, strict=True)
+    for record, (_, command), driving in steps:
+        name = f"step '{record.name}'"
+        if driving.steer is not None:
+            headings = _settled(driving.steer, scenario, command.speed, model)
+            heading = headings[-1] if headings else None
+        elif command.turn_rate:
+            if heading is not None:
+                heading += command.turn_rate * 60.0 * record.minutes
+            continue
+        else:
+            headings = [] if heading is None else [heading]
+        if driving.autotrawl.mode == 'tension':
+            mean = 0.5 * (command.port_length + command.starboard_length)
+            command = Command(mean, mean, command.speed)
+        for settled in [scenario.heading] if still else headings:
+            yield name, command, settled
+
+
+def _settled(steer: SteerRecord, scenario: Scenario, speed: float, model: GearModel) -> list[float]:
+    """The headings on which a ship comes to rest that is steered so, as far as they are known."""
+    vessel = scenario.instruments.vessel
+    target = steer.target(Datum(vessel.datum_lat_deg, vessel.datum_lon_deg))
+    way = Way(speed, model.water.current(np.array(0.0))[:2], math.radians(steer.max_turn_deg_s))
+    if isinstance(target, HoldHeading):
+        return [target.heading]
+    if isinstance(target, HoldCourse):
+        return [way.heading_on(target.course)]
+    if isinstance(target, FollowTrack):
+        legs = [after - before for before, after in pairwise(target.waypoints)]
+        return [way.heading_on(math.atan2(north, east)) for east, north in legs]
+    return []
+
+
+def _steady(model: GearModel, command: Command, heading: float, found: Found) -> SteadyState:
+    """Solve warm from the last state on this heading, and cold where that leads nowhere."""
+    lengths = (command.port_length, command.starboard_length)
+    near = [state.equilibrium for (_, course), state in found.items() if course == heading]
+    if near:
+        try:
+            return steady_state(model, lengths, command.speed, heading=heading, start=near[-1])
+        except NoSteadyState:
+            pass
+    return steady_state(model, lengths, command.speed, heading=heading)
