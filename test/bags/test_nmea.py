@@ -202,7 +202,8 @@ def test_what_comes_before_the_first_date_is_left_out(run):
 
 
 def test_a_log_in_which_nothing_says_the_date_is_refused_unless_the_mapping_does(run):
-    with pytest.raises(LogError, match='no valid RMC or ZDA among 2 lines says the date'):
+    words = r'no valid RMC or ZDA among 2 lines says the date \(2: before the first time'
+    with pytest.raises(LogError, match=words):
         run([LOG[1], LOG[3]])
     mapping = changed('  time: sentences', '  date: 2026-08-01\n  time: sentences')
     _, found = run([LOG[1], LOG[3]], mapping=mapping)

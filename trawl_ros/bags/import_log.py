@@ -123,7 +123,7 @@ def write_samples(
     ordered = sorted(samples, key=lambda sample: sample.stamp)
     rows, left_out = told()
     if not ordered:
-        why = f' ({_listed(left_out)})' if left_out else ''
+        why = f' ({listed(left_out)})' if left_out else ''
         raise LogError(f'{path}: {rows} rows without any reading{why}; expected at least one')
     counts: Counter[str] = Counter()
     with BagWriter(bag_path, custom_data={'log': path.name}) as bag:
@@ -244,7 +244,8 @@ def _number(text: str) -> float | None:
         return None
 
 
-def _listed(left_out: Mapping[str, int]) -> str:
+def listed(left_out: Mapping[str, int]) -> str:
+    """Say in a line what was left out, and why."""
     return '; '.join(f'{count}: {reason}' for reason, count in left_out.items())
 
 

@@ -12,7 +12,7 @@ from pynmeagps import NMEAReader
 from pynmeagps.exceptions import NMEAMessageError, NMEAParseError, NMEATypeError
 from pynmeagps.nmeahelpers import calc_checksum
 
-from trawl_ros.bags.import_log import Imported, write_samples
+from trawl_ros.bags.import_log import Imported, listed, write_samples
 from trawl_ros.bags.log_clock import ClockReader
 from trawl_ros.bags.nmea_mapping import NmeaMapping, load_nmea_mapping
 from trawl_ros.bags.nmea_readings import NoReading, SampleAt, reading
@@ -110,8 +110,9 @@ class _Listening:
                 continue
             self._take(heard, sentence, stamp)
         if self._recorder is None and self.lines and not self._times.moments:
+            why = f' ({listed(self.left)})' if self.left else ''
             raise LogError(
-                f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date; '
+                f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date{why}; '
                 'expected one, or key date in the mapping, or time: recorder'
             )
         return [sample for topic, found in heard.items() for sample in self._chosen(topic, found)]
