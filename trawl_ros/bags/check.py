@@ -12,9 +12,9 @@ from statistics import median
 
 from rosbags.interfaces import Qos, QosDurability, QosReliability
 
+from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.bags.sources import BagFacts
 from trawl_ros.errors import BagError
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import (
@@ -46,58 +46,6 @@ GAP_FACTOR = 10.0
 LAG_BOUND_S = 5.0
 """A difference between log time and header stamp that is a finding: acoustic links take up to a
 few seconds, a clock that is off takes more."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One thing found: a word for scripts, the topic ('' for the bag), and a sentence."""
-
-    kind: str
-    topic: str
-    text: str
-
-
-@dataclass(frozen=True)
-class TopicCheck:
-    """What one topic of a bag looks like.
-
-    ``group`` is '' for a topic of somebody else. Rates are in Hz, log times in ns; ``lag_s`` is
-    the least and greatest log time after the header's stamp. What cannot be told is None.
-    """
-
-    topic: str
-    type: str
-    group: str
-    count: int
-    bytes: int
-    rate: float | None
-    usual_rate: float | None
-    longest_gap_s: float | None
-    gap_start: int | None
-    backward: int
-    duplicates: int
-    lag_s: tuple[float, float] | None
-    qos: str
-
-
-@dataclass(frozen=True)
-class BagCheck:
-    """All that was found out about a bag."""
-
-    path: Path
-    facts: BagFacts
-    count: int
-    start: int | None
-    end: int | None
-    damaged_chunks: int
-    topics: tuple[TopicCheck, ...]
-    missing: dict[str, tuple[str, ...]]
-    findings: tuple[Finding, ...]
-
-    @property
-    def sound(self) -> bool:
-        """Whether nothing was found."""
-        return not self.findings
 
 
 def check_bag(

@@ -14,8 +14,8 @@ from urllib.parse import quote
 from mcap.records import Message
 
 from trawl_ros.bags.chunks import MAX_CHUNK_BYTES
-from trawl_ros.bags.mcap_file import Definition, Stored
 from trawl_ros.bags.qos import dump_profiles, parse_profiles
+from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.errors import BagError
 
 _TABLES = ('messages', 'topics')

@@ -16,7 +16,7 @@ from rosbags.typesys import (
 )
 from rosbags.typesys.store import Typestore
 
-from trawl_ros.bags.mcap_file import Definition
+from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import DECODING_ERRORS, STORE
 

@@ -4,7 +4,7 @@ import struct
 from collections.abc import Callable
 
 from trawl_ros.bags.decoding import find_store
-from trawl_ros.bags.mcap_file import Definition
+from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError
 from trawl_ros.messages.stamps import SECOND
 

@@ -25,6 +25,7 @@ from trawl_ros.bags.chunks import (
     open_chunk,
     parse_records,
 )
+from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.bags.walk import RECORD_START, walk
 from trawl_ros.errors import BagError
 
@@ -39,31 +40,6 @@ class Piece:
     start: int
     offset: int
     length: int
-
-
-@dataclass(frozen=True)
-class Stored:
-    """A message as it lies in the file, with its topic and type."""
-
-    topic: str
-    type: str
-    message: Message
-
-
-@dataclass(frozen=True)
-class Definition:
-    """What a channel says of its messages: encodings, and the definition of the type.
-
-    ``qos`` is what publishers offered, as `bags.qos` reads it, ``type_hash`` the type's RIHS01;
-    each '' where the bag does not say.
-    """
-
-    type: str
-    message_encoding: str
-    schema_encoding: str
-    text: bytes
-    qos: str = ''
-    type_hash: str = ''
 
 
 class McapFile:

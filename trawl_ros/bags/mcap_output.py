@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from mcap.writer import CompressionType, Writer
 
-from trawl_ros.bags.mcap_file import Definition
+from trawl_ros.bags.stored import Definition
 
 CHUNK_BYTES = 1 << 20
 COMPRESSIONS = MappingProxyType(

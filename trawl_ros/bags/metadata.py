@@ -12,8 +12,8 @@ from typing import Any
 import yaml
 from pydantic import BaseModel, ConfigDict
 
-from trawl_ros.bags.mcap_file import Definition
 from trawl_ros.bags.qos import dump_profiles, parse_profiles
+from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError
 from trawl_ros.schema import validated
 

@@ -12,12 +12,12 @@ from typing import Any
 from rosbags.interfaces import Qos
 
 from trawl_ros.bags.decoding import Decoder, make_decoder
-from trawl_ros.bags.mcap_file import Definition
 from trawl_ros.bags.qos import parse_profiles
 from trawl_ros.bags.sources import BagFacts, open_source
+from trawl_ros.bags.stored import Definition
+from trawl_ros.bags.summary import BagSummary, count_topics
 from trawl_ros.errors import BagError, MessageError
 from trawl_ros.messages.cdr import DECODING_ERRORS
-from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 
@@ -40,37 +40,6 @@ class Received:
     type: str
     log_time: int
     message: Any
-
-
-@dataclass(frozen=True)
-class TopicSummary:
-    """How many messages of which type a topic has, of how many bytes, from when to when (ns)."""
-
-    topic: str
-    type: str
-    count: int
-    bytes: int
-    start: int
-    end: int
-
-    @property
-    def rate(self) -> float | None:
-        """Mean rate in Hz; None where one cannot be told."""
-        span = self.end - self.start
-        return (self.count - 1) * SECOND / span if span > 0 else None
-
-
-@dataclass(frozen=True)
-class BagSummary:
-    """What is in a bag; ``start`` and ``end`` are log times in ns, None without messages."""
-
-    path: Path
-    topics: tuple[TopicSummary, ...]
-    count: int
-    start: int | None
-    end: int | None
-    facts: BagFacts
-    problems: tuple[str, ...]
 
 
 class Bag:
@@ -223,25 +192,18 @@ class Bag:
 
     def summary(self) -> BagSummary:
         """Read through the whole bag and count what is there."""
-        found: dict[tuple[str, str], TopicSummary] = {}
-        for message in self.as_stored():
-            key, time, size = (message.topic, message.type), message.log_time, len(message.data)
-            past = found.get(key) or TopicSummary(*key, 0, 0, time, time)
-            found[key] = TopicSummary(
-                *key,
-                past.count + 1,
-                past.bytes + size,
-                min(past.start, time),
-                max(past.end, time),
-            )
-        if not found:
+        topics = count_topics(
+            (message.topic, message.type, message.log_time, len(message.data))
+            for message in self.as_stored()
+        )
+        if not topics:
             self._report(f'{self.path}: holds no message')
         return BagSummary(
             path=self.path,
-            topics=tuple(found[key] for key in sorted(found)),
-            count=sum(topic.count for topic in found.values()),
-            start=min((topic.start for topic in found.values()), default=None),
-            end=max((topic.end for topic in found.values()), default=None),
+            topics=topics,
+            count=sum(topic.count for topic in topics),
+            start=min((topic.start for topic in topics), default=None),
+            end=max((topic.end for topic in topics), default=None),
             facts=self.facts,
             problems=tuple(self.problems),
         )

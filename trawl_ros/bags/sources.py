@@ -12,8 +12,9 @@ from mcap.records import Message
 
 from trawl_ros.bags.chunks import Damaged, inflate, inflate_file
 from trawl_ros.bags.database import Database
-from trawl_ros.bags.mcap_file import Definition, McapFile, Stored
+from trawl_ros.bags.mcap_file import McapFile
 from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata
+from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.errors import BagError
 
 Report = Callable[[str], None]

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from trawl_ros.bags.mcap_file import Definition
 from trawl_ros.bags.mcap_output import COMPRESSIONS, McapOutput
 from trawl_ros.bags.metadata import FILE_NAME, FileEntry, TopicEntry, dump_metadata
 from trawl_ros.bags.qos import dump_profiles, project_profile
+from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError
 from trawl_ros.messages.cdr import STORE, definition, type_hash
 from trawl_ros.messages.topics import NAMESPACE, find_topic

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from rclpy.qos import QoSProfile
 
 from trawl_ros.bags.decoding import find_store
-from trawl_ros.bags.mcap_file import Definition
 from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError, MessageError
 from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.topics import CLOCK, find_topic
