@@ -19,6 +19,14 @@ description: A short tow with a change of everything
 gear: gear.yaml
 seed: 5
 heading_deg: 30.0
+sea:
+  heave: {height_m: 1.0, period_s: 8.0, growth_minutes: 0.25}
+  seabed: {profile: [{distance_m: 0.0, depth_m: 250.0}, {distance_m: 1000.0, depth_m: 260.0}]}
+  schools:
+    - {east_m: 20.0, north_m: 10.0, depth_m: 60.0, size_east_m: 60.0, size_north_m: 60.0,
+       size_up_m: 20.0, density_per_m3: 1.0}
+    - {east_m: 700.0, north_m: 350.0, depth_m: 60.0, size_east_m: 90.0, size_north_m: 60.0,
+       size_up_m: 20.0, density_per_m3: 2.0}
 start: {warp_length_m: 300.0, speed_m_s: 2.1}
 steps:
   - {name: hold, minutes: 0.1}
