@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -21,7 +22,19 @@ END_S = 10.0
 
 POLL_S = 0.02
 
+DOMAINS = (*range(20, 70), *range(215, 233))
+"""Neither ROS's own 0 nor those whose ports Linux also gives to outgoing connections."""
+
 Value = str | int | float | bool | list[str]
+
+
+def own_graph(logs: Path) -> dict[str, str]:
+    """Environment of a graph that nobody else is in: this machine only, a domain by chance."""
+    return {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_DOMAIN_ID': str(random.SystemRandom().choice(DOMAINS)),
+        'ROS_LOG_DIR': str(logs.resolve()),
+    }
 
 
 class NodeFailed(TrawlError):
@@ -88,6 +101,10 @@ class Processes:
             del self._running[node]
         self.check()
         return code == 0
+
+    def pids(self) -> dict[str, int]:
+        """Give the number of each process that has not been seen to end."""
+        return {node: process.pid for node, process in self._running.items()}
 
     def stop(self, *nodes: str) -> None:
         """End nodes as Ctrl-C does, all of them at once.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from threading import Lock, Thread
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 import rclpy
 from rclpy.context import Context
@@ -42,6 +42,9 @@ class Heard:
         """Give a value, '' if it was not heard yet."""
         with self.lock:
             return self.values.get((node, subsystem), {}).get(key, '')
+
+
+MonitorT = TypeVar('MonitorT', bound='Monitor')
 
 
 class Monitor:
@@ -98,7 +101,10 @@ class Monitor:
         response = answer.result()
         return response.success, response.message
 
-    def __enter__(self) -> 'Monitor':
+    def listen_to_more(self, node: TrawlNode) -> None:
+        """Let a monitor of more than diagnostics subscribe, before it is spun."""
+
+    def __enter__(self: MonitorT) -> MonitorT:
         self._before = {key: os.environ.get(key) for key in self._environment}
         os.environ.update(self._environment)
         self._context = Context()
@@ -107,6 +113,7 @@ class Monitor:
         # What it notices of clocks and types the nodes themselves have in their logs.
         self._node.get_logger().set_level(LoggingSeverity.ERROR)
         self._node.listen(DIAGNOSTICS, self._heard.take, CONSUMER)
+        self.listen_to_more(self._node)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         self._over = False

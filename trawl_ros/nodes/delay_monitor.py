@@ -1,0 +1,53 @@
+"""An ear on a running graph that knows how far each node is behind the truth."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from trawl_ros.messages.stamps import SECOND, from_time, stamp_of
+from trawl_ros.nodes.graph_checks import SYNC
+from trawl_ros.nodes.monitor import Monitor
+from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.sync import HEADER
+
+TRUTH = 'truth/winch'
+"""The topic whose stamps are the simulation's present."""
+
+
+class DelayMonitor(Monitor):
+    """Beside diagnostics it hears truth and what nodes report on ``sync/progress``.
+
+    Parameters
+    ----------
+    environment
+        What the nodes of that graph have in their environment, such as ``ROS_DOMAIN_ID``.
+    """
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        super().__init__(environment)
+        self._truth: int | None = None
+        self._done: dict[str, int] = {}
+
+    @property
+    def truth_s(self) -> float | None:
+        """Stamp of the newest truth, s; None before the first."""
+        truth = self._truth
+        return None if truth is None else truth / SECOND
+
+    def delays_s(self) -> dict[str, float]:
+        """By node, how much data time (s) lies between the newest truth and what it has done."""
+        truth = self._truth
+        if truth is None:
+            return {}
+        return {node: (truth - done) / SECOND for node, done in list(self._done.items())}
+
+    def listen_to_more(self, node: TrawlNode) -> None:
+        """Listen to truth and progress."""
+        node.listen(TRUTH, self._hear_truth, CONSUMER)
+        node.listen(SYNC, self._hear_progress, CONSUMER, HEADER)
+
+    def _hear_truth(self, message: Any) -> None:
+        self._truth = stamp_of(message)
+
+    def _hear_progress(self, message: Any) -> None:
+        self._done[message.frame_id] = from_time(message.stamp)

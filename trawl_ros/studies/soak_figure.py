@@ -1,0 +1,48 @@
+"""Memory, delay and pace over a long tow."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.studies.chain import CHAIN, CONSUMERS, Glance
+from trawl_ros.studies.soak_rows import MOST_GROWTH, WARM_SHARE, series
+
+PARTS = round(1.0 / WARM_SHARE)
+
+
+def soak_figure(glances: Sequence[Glance], hours: float) -> Figure:
+    """Draw what the nodes of the chain took while they towed for some hours.
+
+    Memory stands beside its mean after warm-up, which the legend gives.
+    """
+    figure = Figure(figsize=(8.0, 8.0), layout='constrained')
+    memory, delay, pace = figure.subplots(3, 1, sharex=True)
+    for number, node in enumerate(CHAIN):
+        times, values = series(glances, lambda g: g.memory_mb, node)
+        mean = float(np.mean(values[len(values) // PARTS :])) if values else np.nan
+        label = f'{node}, {mean:.0f} MB'
+        share = [100.0 * (value / mean - 1.0) for value in values]
+        memory.plot(times, share, color=f'C{number}', label=label, linewidth=1.2)
+        if node in CONSUMERS:
+            times, values = series(glances, lambda g: g.delay_s, node)
+            delay.plot(times, values, '.', color=f'C{number}', markersize=2.5)
+    memory.set_ylabel('resident memory,\n% above its mean')
+    low, high = memory.get_ylim()
+    memory.set_ylim(min(low, -MOST_GROWTH), max(high, MOST_GROWTH))
+    memory.legend(ncols=3, fontsize='small', loc='lower right')
+    delay.set_ylabel('behind the truth,\ns at sea')
+    delay.set_ylim(bottom=0.0)
+    at_sea = np.array([g.data_s for g in glances])
+    walls = np.array([g.wall_s for g in glances])
+    if len(glances) > 1:
+        middle = 0.5 * (at_sea[1:] + at_sea[:-1]) / 3600.0
+        pace.plot(middle, np.diff(at_sea) / np.diff(walls), color='0.3', linewidth=0.8)
+    pace.set_ylabel('times real time')
+    pace.set_ylim(bottom=0.0)
+    pace.set_xlabel('time at sea, h')
+    for axes in (memory, delay, pace):
+        axes.axvspan(0.0, WARM_SHARE * hours, color='0.93', zorder=0)
+        axes.grid(color='0.9', linewidth=0.5)
+        axes.spines[['top', 'right']].set_visible(False)
+    return figure
