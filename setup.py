@@ -86,6 +86,7 @@ setup(
         (f'share/{PACKAGE}', ['package.xml']),
         *tree('config'),
         *tree('bags'),
+        *tree('launch'),
     ],
     install_requires=[
         'click>=8.1,<9',

@@ -219,6 +219,7 @@ def known() -> SimpleNamespace:
         SILENT=SILENT,
         MOUTH=MOUTH,
         truth_at=truth_at,
+        picture_of=picture_of,
         sweep=sweep,
         write=write_tow,
     )

@@ -1,20 +1,25 @@
 """The gear is drawn where it is, from the best that the bag has."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from trawl_ros.gear.load import load_gear
+from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.topics import DOOR_FRAMES
 from trawl_ros.model.water import Water
-from trawl_ros.plots.gear import gear_figure
-from trawl_ros.plots.moments import read_moments
+from trawl_ros.plots.gear import extent, gear_figure
+from trawl_ros.plots.moments import GEAR, Moment, read_moments
 from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.records import SCHOOLS
 from trawl_ros.plots.shapes import (
     FROM_MARKERS,
     FROM_READINGS,
     FROM_TRUTH,
     gear_shape,
 )
+from trawl_ros.simulation.truth import SchoolTruth
 
 
 @pytest.fixture(scope='module')
@@ -104,3 +109,20 @@ def test_port_is_red_and_starboard_green(readings_only, kaifuha):
     assert red > green
     red, green, _ = colours['starboard_warp']
     assert green > red
+
+
+def test_fish_are_drawn_where_they_are_and_do_not_widen_the_views(bag, known, kaifuha):
+    tow = read_tow(bag, Water().depth, 'trawl')
+    (moment,) = read_moments(bag, tow, [60.0], 'trawl')
+    without = extent([gear_shape(moment, tow, kaifuha)])
+    truth = known.truth_at(60.0)
+    heading = truth.vessel.heading
+    behind = truth.vessel.position - 350.0 * np.array([np.cos(heading), np.sin(heading), 0.0])
+    near = SchoolTruth(behind + [0.0, 0.0, -70.0], np.array([40.0, 20.0, 10.0]), 1.0)
+    far = SchoolTruth(behind + [9e3, 0.0, -70.0], np.array([40.0, 20.0, 10.0]), 1.0)
+    picture = replace(known.picture_of(truth), schools=(near, far))
+    shape = gear_shape(Moment(60.0, {GEAR: gear_markers(picture)[1]}), tow, kaifuha)
+    fish = [strand.pieces.reshape(-1, 3) for strand in shape.strands if strand.name == SCHOOLS]
+    np.testing.assert_allclose(fish[0].mean(axis=0), [350.0, 0.0, -70.0], atol=0.5)
+    assert np.ptp(fish[0][:, 2]) == pytest.approx(10.0)
+    np.testing.assert_allclose(extent([shape]), without, atol=1e-6)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from trawl_ros.messages.markers import FULL_SCALE, RAMP
 from trawl_ros.messages.topics import DOOR_FRAMES, VESSEL
 from trawl_ros.plots import style
-from trawl_ros.plots.records import GearShape, Strand
+from trawl_ros.plots.records import SCHOOLS, GearShape, Strand
 
 BOLD = ('_warp', '_bridle', 'headrope', 'footrope', 'mouth', *DOOR_FRAMES.values())
 """Ends of the names of what is drawn bold."""
@@ -92,12 +92,12 @@ def lay_out(whole: Extent, *, width: float, right: float) -> Views:
 
 
 def extent(shapes: Sequence[GearShape], *, rear: bool = False) -> Extent:
-    """What views have to show; the one from behind has neither ship nor warps."""
+    """What views have to show, fish only if they are near; from behind neither ship nor warps."""
     points = [
         strand.pieces.reshape(-1, 3)
         for shape in shapes
         for strand in shape.strands
-        if not rear or _seen_from_behind(strand)
+        if strand.name != SCHOOLS and (not rear or _seen_from_behind(strand))
     ]
     # The surface belongs to what is seen from the side, the ship to what is seen from above.
     every = np.concatenate([*points, *([] if rear else [np.zeros((1, 3))])])

@@ -8,6 +8,9 @@ import numpy as np
 from trawl_ros.instruments.samples import SonarImageSample, SonarScanSample
 from trawl_ros.messages.stamps import SECOND
 
+SCHOOLS = 'schools'
+"""Name of what is drawn of fish."""
+
 
 @dataclass(frozen=True)
 class Series:

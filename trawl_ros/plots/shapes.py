@@ -12,7 +12,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.topics import VESSEL, WINCH_NAMES
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, corners
-from trawl_ros.plots.records import GearShape, Strand, Tow
+from trawl_ros.plots.records import SCHOOLS, GearShape, Strand, Tow
 from trawl_ros.plots.style import NETTING, PORT, STARBOARD
 from trawl_ros.simulation.truth import SIDES
 
@@ -21,6 +21,9 @@ FROM_TRUTH = 'truth of doors and mouth; warps and bridles drawn straight'
 FROM_READINGS = 'as measured; warps drawn straight, the mouth one bridle behind the doors'
 
 COLOURS = dict(zip(SIDES, (PORT, STARBOARD), strict=True))
+RING = 36
+"""Pieces of a section through a school of fish."""
+
 READING_AWAY_S = 30.0
 """A reading is good for a picture that is not further away."""
 
@@ -48,7 +51,7 @@ def _from_markers(moment: Moment, tow: Tow) -> GearShape | None:
     heading = tow.best('heading')
     yaw = math.nan if heading is None else heading.at(moment.time)
     if not math.isfinite(yaw):
-        pulled = [strand.pieces for strand in strands if strand.name != VESSEL]
+        pulled = [strand.pieces for strand in strands if strand.name not in (VESSEL, SCHOOLS)]
         middle = np.concatenate([pieces.reshape(-1, 3) for pieces in pulled]).mean(axis=0)
         yaw = math.atan2(*(origin - middle)[1::-1])
     return GearShape(
@@ -60,7 +63,7 @@ def _from_markers(moment: Moment, tow: Tow) -> GearShape | None:
 
 
 def _strands_of(marker: Any) -> list[Strand]:
-    """A marker as straight pieces: lines as they are, a door's plate as its outline."""
+    """A marker as straight pieces: lines as they are, plates and ellipsoids as outlines."""
     points = np.array([[p.x, p.y, p.z] for p in marker.points]).reshape(-1, 3)
     if marker.type == marker.LINE_STRIP:
         pieces = np.stack([points[:-1], points[1:]], axis=1)
@@ -73,6 +76,8 @@ def _strands_of(marker: Any) -> list[Strand]:
             Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix(),
             (marker.scale.x, marker.scale.z),
         )
+    elif marker.type == marker.SPHERE:
+        pieces = _rings(marker)
     else:
         return []
     per_piece = marker.colors[::2] if len(marker.colors) else [marker.color] * len(pieces)
@@ -85,6 +90,22 @@ def _plate(middle: np.ndarray, axes: np.ndarray, size: tuple[float, float]) -> n
     along, up = 0.5 * size[0] * axes[:, 0], 0.5 * size[1] * axes[:, 2]
     ring = middle + np.array([along + up, along - up, -along - up, -along + up, along + up])
     return np.stack([ring[:-1], ring[1:]], axis=1)
+
+
+def _rings(marker: Any) -> np.ndarray:
+    """An ellipsoid with axes along those of ``map`` as its three sections, (n, 2, 3)."""
+    place, size = marker.pose.position, marker.scale
+    turn = np.linspace(0.0, 2.0 * np.pi, RING + 1)
+    circle = np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn])
+    return np.concatenate(
+        [
+            _chain(
+                np.array([place.x, place.y, place.z])
+                + 0.5 * np.array([size.x, size.y, size.z]) * np.roll(circle, axis, axis=1)
+            )
+            for axis in range(3)
+        ]
+    )
 
 
 def _true_door(tow: Tow, side: str, time: float) -> tuple[np.ndarray, np.ndarray] | None:
