@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from trawl_ros.instruments.distance import RangeInstrument
 from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, pitch_and_roll
 from trawl_ros.instruments.error_records import (
     ForceErrors,
@@ -27,7 +28,6 @@ from trawl_ros.instruments.parameters import (
 from trawl_ros.instruments.pressure import PressureInstrument
 from trawl_ros.instruments.sampling import SECOND
 from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.instruments.trawl_sonar import SonarOpening, SonarPressure
 from trawl_ros.instruments.vessel import GpsFix, GpsVelocity, Heading, SpeedLog
 from trawl_ros.instruments.winch import WinchInstrument
 from trawl_ros.model.water import Water
@@ -83,7 +83,8 @@ def test_door_pressure_is_absolute_and_follows_the_density_of_the_water() -> Non
 
 
 def test_a_pressure_sensor_out_of_the_water_reads_the_air() -> None:
-    sensor = SonarPressure(PressureParameters(rate_hz=1.0), Water().pressure, DRAWS)
+    parameters = PressureParameters(rate_hz=1.0)
+    sensor = PressureInstrument('sonar/pressure', 'sonar', parameters, Water().pressure, DRAWS)
     (above,) = sensor.observe(-3.0, 0)
     (unknown,) = sensor.observe(math.nan, SECOND)
     assert above.pressure == 101_325.0
@@ -123,7 +124,8 @@ def test_spread_is_the_distance_between_the_doors() -> None:
 
 
 def test_a_distance_out_of_range_is_infinite() -> None:
-    sensor = SonarOpening('opening_height', RangeParameters(rate_hz=1.0, **LIMITS), DRAWS)
+    parameters = RangeParameters(rate_hz=1.0, **LIMITS)
+    sensor = RangeInstrument('sonar/bottom', 'bottom', parameters, DRAWS)
     readings = [r for k, d in enumerate((4.0, 5.0, 401.0)) for r in sensor.observe(d, k * SECOND)]
     assert [r.distance for r in readings] == [-math.inf, 5.0, math.inf]
 

@@ -13,12 +13,9 @@ from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
 from trawl_ros.instruments.samples import (
     AttitudeSample,
-    FixSample,
-    HeadingSample,
     PressureSample,
     RangeSample,
     Sample,
-    SchoolsSample,
     VelocitySample,
     WinchSample,
 )
@@ -81,7 +78,7 @@ def kind(sample: Sample) -> str:
             return sample.what
         case VelocitySample():
             return f'velocity {sample.over}'
-        case WinchSample() | HeadingSample() | FixSample() | SchoolsSample():
+        case _:
             return type(sample).__name__
 
 
@@ -95,8 +92,12 @@ def test_a_minute_at_sea_has_as_many_samples_as_the_rates_say() -> None:
         'attitude starboard': 31,
         'spread': 31,
         'pressure sonar': 61,
-        'opening_height': 7,
-        'opening_width': 7,
+        'bottom': 61,
+        'SonarImageSample': 6,
+        'SonarScanSample': 6,
+        'SonarPointsSample': 6,
+        'opening_height': 6,
+        'opening_width': 6,
         'velocity water': 61,
         'velocity ground': 61,
         'FixSample': 61,
@@ -107,10 +108,12 @@ def test_a_minute_at_sea_has_as_many_samples_as_the_rates_say() -> None:
     }
 
 
-def test_all_samples_carry_the_stamp_of_their_truth() -> None:
+def test_all_samples_carry_the_stamp_of_their_truth_and_a_sweep_that_of_its_first_ping() -> None:
     boat = suite()
-    for truth in tow(5, start=17):
-        assert {sample.stamp for sample in boat.observe(truth)} <= {truth.stamp}
+    for truth in tow(25, start=17):
+        for sample in boat.observe(truth):
+            swept = kind(sample).startswith(('Sonar', 'opening'))
+            assert sample.stamp == truth.stamp - (10 * SECOND if swept else 0)
 
 
 def test_a_group_alone_gives_what_the_whole_suite_gives() -> None:

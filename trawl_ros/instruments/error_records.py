@@ -13,6 +13,7 @@ from trawl_ros.schema import Record
 NotNegative = Annotated[float, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
+SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
 
 
 class Errors(Record):
@@ -189,3 +190,20 @@ class TurnErrors(Errors):
     lowest_deg_s: float = -math.inf
     highest_deg_s: float = math.inf
     stated_std_deg_s: NotNegative | None = None
+
+
+class LevelErrors(Errors):
+    """Errors in decibels."""
+
+    unit: ClassVar[str] = 'db'
+
+    noise_db: NotNegative = 0.0
+    correlated_db: NotNegative = 0.0
+    bias_per_state_db: NotNegative = 0.0
+    resolution_db: NotNegative = 0.0
+    offset_db: float = 0.0
+    drift_db_per_hour: float = 0.0
+    outlier_db: NotNegative = 0.0
+    lowest_db: float = -math.inf
+    highest_db: float = math.inf
+    stated_std_db: NotNegative | None = None

@@ -11,12 +11,11 @@ from trawl_ros.instruments.bursts import HOUR, NO_BURSTS, BurstModel, Bursts
 from trawl_ros.instruments.channel import Channel, ErrorModel
 from trawl_ros.instruments.draws import generator
 from trawl_ros.instruments.faults import OF_INSTRUMENTS, Fault
-from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.sampling import SECOND, TOLERANCE, Sampler
 from trawl_ros.instruments.timing import Timing
 
 PartT = TypeVar('PartT')
-SampleT = TypeVar('SampleT', bound=Sample)
+SampleT = TypeVar('SampleT')
 
 DROPOUT_S = 10.0
 """Mean length of the bursts of a fault 'dropouts'."""

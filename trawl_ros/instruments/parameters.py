@@ -6,61 +6,22 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from trawl_ros.errors import InstrumentError, TrawlError
-from trawl_ros.instruments.bursts import BurstModel
 from trawl_ros.instruments.error_records import (
     AngleErrors,
     ForceErrors,
     LengthErrors,
     NotNegative,
     PressureErrors,
-    Seconds,
+    SoundSpeed,
     SpeedErrors,
     TurnErrors,
 )
-from trawl_ros.instruments.timing import Timing
+from trawl_ros.instruments.sonar.records import SweepRecord
+from trawl_ros.instruments.timing_records import Sent, Timed
 from trawl_ros.schema import Record, load_yaml, validated
 from trawl_ros.share import share_path
 
 BASE = 'base'
-
-Rate = Annotated[float, Field(gt=0, le=100)]
-SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
-
-
-class Timed(Record):
-    """When an instrument samples and sends.
-
-    ``rate_hz`` is that of its samples; ``jitter_s`` the standard deviation with which they are
-    off the beat, ``latency_s`` the time until they are sent, ``start_up_s`` the time after
-    switching on before the first. Sending fails ``dropouts_per_hour`` times, for ``dropout_s`` in
-    the mean.
-    """
-
-    rate_hz: Rate
-    jitter_s: Seconds = 0.0
-    latency_s: Seconds = 0.0
-    start_up_s: Seconds = 0.0
-    dropouts_per_hour: NotNegative = 0.0
-    dropout_s: Seconds = 0.0
-
-    @model_validator(mode='after')
-    def _dropouts_have_a_length(self) -> 'Timed':
-        if (self.dropouts_per_hour > 0) != (self.dropout_s > 0):
-            raise ValueError(
-                f'dropouts_per_hour: found {self.dropouts_per_hour:g} with dropout_s '
-                f'{self.dropout_s:g}, expected both or neither'
-            )
-        return self
-
-    def timing(self) -> Timing:
-        """Give the same as instruments take it."""
-        return Timing(
-            self.rate_hz,
-            self.jitter_s,
-            self.latency_s,
-            self.start_up_s,
-            BurstModel(self.dropouts_per_hour, self.dropout_s),
-        )
 
 
 class WinchParameters(Timed):
@@ -88,20 +49,24 @@ class AttitudeParameters(AngleErrors, Timed):
     """An inclinometer; pitch and roll err alike and independently."""
 
 
-class RangeParameters(LengthErrors, Timed):
+class LimitedLength(LengthErrors):
     """A distance; outside its limits the reading is infinite (REP-117)."""
 
     min_range_m: NotNegative
     max_range_m: Annotated[float, Field(gt=0, le=10_000)]
 
     @model_validator(mode='after')
-    def _limits_in_order(self) -> 'RangeParameters':
+    def _limits_in_order(self) -> 'LimitedLength':
         if self.min_range_m >= self.max_range_m:
             raise ValueError(
                 f'max_range_m: found {self.max_range_m}, expected more than min_range_m, '
                 f'which is {self.min_range_m}'
             )
         return self
+
+
+class RangeParameters(LimitedLength, Timed):
+    """A sensor of a distance."""
 
 
 class VelocityParameters(Timed):
@@ -139,12 +104,45 @@ class DoorParameters(Record):
     spread: SpreadParameters
 
 
+class SweepParameters(SweepRecord, Timed):
+    """The trawl sonar's sweeps: ``rate_hz`` of them per second, one begins as another ends."""
+
+    @model_validator(mode='after')
+    def _time_to_listen(self) -> 'SweepParameters':
+        needed = self.beams * self.listening_s * self.rate_hz
+        if needed > 1 + 1e-9:
+            raise ValueError(
+                f'rate_hz: found {self.rate_hz:g}, expected {self.rate_hz / needed:.3g} at most: '
+                f'{self.beams} pings of {self.listening_s:.3g} s each, until echoes are back from '
+                'max_range_m'
+            )
+        return self
+
+
+class OpeningParameters(LimitedLength, Sent):
+    """An opening as it is read off each image: errors beside those that the image brings.
+
+    ``stated_std_m`` is what is said of the reading's error, all in all.
+    """
+
+
+class BottomParameters(RangeParameters):
+    """The sounder that looks down from the headrope.
+
+    Times of flight are turned into metres with ``assumed_sound_speed_m_s``.
+    """
+
+    assumed_sound_speed_m_s: SoundSpeed
+
+
 class SonarParameters(Record):
-    """The trawl sonar on the headrope; its openings come once per sweep."""
+    """The trawl sonar on the headrope, with what else is in its housing."""
 
     pressure: PressureParameters
-    opening_height: RangeParameters
-    opening_width: RangeParameters
+    sweep: SweepParameters
+    opening_height: OpeningParameters
+    opening_width: OpeningParameters
+    bottom: BottomParameters
 
 
 class EchoSounderParameters(Record):

@@ -1,32 +1,194 @@
-"""The trawl sonar on the headrope: its pressure sensor, and the openings read off it."""
+"""The trawl sonar on the headrope: its image, what is read off it, and what is in its housing."""
 
-from trawl_ros.instruments.distance import RangeInstrument
-from trawl_ros.instruments.instrument import Draws
-from trawl_ros.instruments.parameters import PressureParameters, RangeParameters, SonarParameters
+import math
+
+import numpy as np
+
+from trawl_ros.instruments.bursts import BurstModel, Bursts
+from trawl_ros.instruments.distance import RangeInstrument, within
+from trawl_ros.instruments.draws import generator
+from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.parameters import (
+    BottomParameters,
+    OpeningParameters,
+    SonarParameters,
+    SweepParameters,
+)
 from trawl_ros.instruments.pressure import PressureInstrument
-from trawl_ros.instruments.samples import Sample
-from trawl_ros.instruments.surroundings import PressureAt, Surroundings
-from trawl_ros.simulation.truth import Truth
+from trawl_ros.instruments.samples import (
+    RangeSample,
+    Sample,
+    SonarImageSample,
+    SonarPointsSample,
+    SonarScanSample,
+)
+from trawl_ros.instruments.sampling import SECOND, TOLERANCE
+from trawl_ros.instruments.sonar.detection import first_echoes
+from trawl_ros.instruments.sonar.echoes import Ping
+from trawl_ros.instruments.sonar.reading import read_openings
+from trawl_ros.instruments.sonar.sweep import Luck, Sweep, image_of
+from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.simulation.truth import NetTruth, Truth
 
 
-class SonarPressure(PressureInstrument):
-    """Pressure at the headrope's centre. Sees the depth there (m)."""
+class TrawlSonar(Instrument[Truth, Sweep]):
+    """The scanning sonar. Sees the net, schools and seabed; reports a sweep when it is complete.
 
-    def __init__(
-        self, parameters: PressureParameters, pressure_at: PressureAt, draws: Draws
-    ) -> None:
-        super().__init__('sonar/pressure', 'sonar', parameters, pressure_at, draws)
+    Its beams ping one after the other all through the sweep, and each meets what passes through
+    the sonar's plane at its own time. A sweep ends when the next one begins; one that is cut
+    short has rows that stay black.
 
+    Its quantities are ``gain``, dB too much, and ``angle``, by which the beams look more to port
+    than they say. With either frozen the screen hangs and shows the image before.
 
-class SonarOpening(RangeInstrument):
-    """An opening of the net as the sonar's operator reads it off, once per sweep.
-
-    Sees the true opening (m): the reading is not made from an image of the echoes.
-    ``what`` is 'opening_height' or 'opening_width'.
+    Parameters
+    ----------
+    parameters
+        From the instrument file.
+    surroundings
+        The water, for the speed of sound and its absorption.
+    draws
+        Seed and changes of state.
     """
 
-    def __init__(self, what: str, parameters: RangeParameters, draws: Draws) -> None:
-        super().__init__(f'sonar/{what}', what, parameters, draws)
+    def __init__(
+        self, parameters: SweepParameters, surroundings: Surroundings, draws: Draws
+    ) -> None:
+        errors = {'gain': parameters.gain.model(), 'angle': parameters.angle.model()}
+        super().__init__('sonar/image', parameters.timing(), errors, draws)
+        self._parameters = parameters
+        self._surroundings = surroundings
+        self._seed = draws.seed
+        self._grid = parameters.grid()
+        self.sweep_s = 1.0 / parameters.rate_hz
+        self._restart()
+
+    def observe(self, part: Truth, stamp: int) -> list[Sweep]:
+        """Look at the truth; pings since the last one meet what is there now."""
+        self._ping(part, stamp)
+        sweeps = super().observe(part, stamp)
+        self._ping(part, stamp)
+        return sweeps
+
+    def _restart(self) -> None:
+        luck = (
+            generator(self._seed, f'{self.name}/{kind}') for kind in ('fish', 'speckle', 'dead')
+        )
+        self._luck = Luck(*luck)
+        record = self._parameters
+        freezes = BurstModel(record.freezes_per_hour, record.freeze_s)
+        self._hangs = Bursts(freezes, generator(self._seed, f'{self.name}/freezes'))
+        self._pings: list[Ping] = []
+        self._begin: int | None = None
+        self._gain = self._off = 0.0
+        self._shown: np.ndarray | None = None
+
+    def _read(self, part: Truth, stamp: int) -> Sweep | None:
+        sweep = self._complete()
+        self._begin, self._pings = stamp, []
+        self._gain = self._measure('gain', 0.0, stamp)
+        self._off = self._measure('angle', 0.0, stamp)
+        return sweep
+
+    def _ping(self, part: Truth, stamp: int) -> None:
+        if self._begin is None:
+            return
+        interval = self.sweep_s / self._grid.beams
+        due = 1 + math.floor((stamp + TOLERANCE - self._begin) / SECOND / interval)
+        for row in range(len(self._pings), min(due, self._grid.beams)):
+            angle = float(self._grid.angles[row]) + self._off
+            self._pings.append(_ping(part, angle if math.isfinite(angle) else 0.0))
+
+    def _complete(self) -> Sweep | None:
+        """The image of the pings made so far."""
+        if self._begin is None or not self._pings:
+            return None
+        image = image_of(
+            self._pings,
+            self._begin,
+            self._parameters,
+            self.sweep_s / self._grid.beams,
+            # A head that has lost its angle puts nothing anywhere.
+            self._gain if math.isfinite(self._off) else math.nan,
+            self._surroundings,
+            self._luck,
+        )
+        # Asked first, so that its spells go on whatever faults there are.
+        hangs = self._hangs.on(self._begin) or self._is_frozen()
+        if hangs and self._shown is not None:
+            image = self._shown
+        self._shown = image
+        return Sweep(self._begin, image, self._grid, tuple(self._pings))
+
+    def _is_frozen(self) -> bool:
+        channels = self._channels.values()
+        return any(fault.kind == 'frozen' for channel in channels for fault in channel.faults)
+
+
+def _ping(truth: Truth, angle: float) -> Ping:
+    net = truth.net
+    altitude = truth.seabed.under_headrope - net.headrope_depth
+    return Ping(
+        angle=angle,
+        position=net.sonar_position,
+        axes=_axes(net),
+        section=net.section,
+        schools=truth.schools,
+        altitude=altitude if altitude > 0 else math.inf,
+    )
+
+
+def _axes(net: NetTruth) -> np.ndarray:
+    """Axes x, y, z of frame ``sonar`` in ``map`` as columns."""
+    x, y, z, w = net.sonar_orientation
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
+    """An opening of the net as it is read off an image.
+
+    Sees the stamp (ns) of the image and the opening (m), NaN where it cannot be read, or None
+    when there is no new image. ``what`` is 'opening_height' or 'opening_width'.
+    """
+
+    def __init__(self, what: str, parameters: OpeningParameters, draws: Draws) -> None:
+        errors = {'distance': parameters.model()}
+        super().__init__(f'sonar/{what}', parameters.timing(), errors, draws)
+        self._what = what
+        self._limits = parameters.min_range_m, parameters.max_range_m
+
+    def _read(self, part: tuple[int, float] | None, stamp: int) -> RangeSample | None:
+        if part is None:
+            return None
+        seen, opening = part
+        low, high = self._limits
+        distance = within(self._measure('distance', opening, seen), low, high)
+        return RangeSample(seen, self._what, distance, self._stated_std('distance'), low, high)
+
+
+class SonarBottom(RangeInstrument):
+    """The sounder that looks down from the headrope. Sees the seabed below it (m)."""
+
+    def __init__(
+        self, parameters: BottomParameters, surroundings: Surroundings, draws: Draws
+    ) -> None:
+        super().__init__('sonar/bottom', 'bottom', parameters, draws)
+        self._assumed = parameters.assumed_sound_speed_m_s
+        self._surroundings = surroundings
+
+    def look(self, truth: Truth) -> list[RangeSample]:
+        """Look at the truth as `observe` does, through the water there is."""
+        depth, seabed = truth.net.headrope_depth, truth.seabed.under_headrope
+        below = seabed - depth
+        if math.isfinite(below):
+            below *= self._assumed / self._surroundings.mean_sound_speed(depth, seabed)
+        return self.observe(below, truth.stamp)
 
 
 class SonarInstruments:
@@ -35,16 +197,44 @@ class SonarInstruments:
     def __init__(
         self, parameters: SonarParameters, draws: Draws, *, surroundings: Surroundings
     ) -> None:
-        self.pressure = SonarPressure(parameters.pressure, surroundings.pressure_at, draws)
+        self.pressure = PressureInstrument(
+            'sonar/pressure', 'sonar', parameters.pressure, surroundings.pressure_at, draws
+        )
+        self.sonar = TrawlSonar(parameters.sweep, surroundings, draws)
         self.height = SonarOpening('opening_height', parameters.opening_height, draws)
         self.width = SonarOpening('opening_width', parameters.opening_width, draws)
-        self.instruments = (self.pressure, self.height, self.width)
+        self.bottom = SonarBottom(parameters.bottom, surroundings, draws)
+        self.instruments = (self.pressure, self.sonar, self.height, self.width, self.bottom)
 
     def observe(self, truth: Truth) -> list[Sample]:
         """Give the samples that are due."""
-        net, stamp = truth.net, truth.stamp
+        stamp = truth.stamp
         samples: list[Sample] = []
-        samples += self.pressure.observe(net.headrope_depth, stamp)
-        samples += self.height.observe(net.vertical_opening, stamp)
-        samples += self.width.observe(net.horizontal_opening, stamp)
+        samples += self.pressure.observe(truth.net.headrope_depth, stamp)
+        samples += self.bottom.look(truth)
+        height = width = None
+        for sweep in self.sonar.observe(truth, stamp):
+            samples += self._pictures(sweep)
+            openings = read_openings(sweep.image, sweep.grid)
+            height, width = (sweep.stamp, openings.height), (sweep.stamp, openings.width)
+        samples += self.height.observe(height, stamp)
+        samples += self.width.observe(width, stamp)
         return samples
+
+    def _pictures(self, sweep: Sweep) -> list[Sample]:
+        grid = sweep.grid
+        ranges, intensities = first_echoes(sweep.image, grid)
+        return [
+            SonarImageSample(sweep.stamp, sweep.image),
+            SonarScanSample(
+                sweep.stamp,
+                ranges,
+                intensities,
+                grid.angle_min,
+                grid.angle_increment,
+                grid.min_range,
+                grid.max_range,
+                self.sonar.sweep_s,
+            ),
+            SonarPointsSample(sweep.stamp, sweep.points()),
+        ]

@@ -1,4 +1,4 @@
-"""`trawl_sonar_node`: depth of the headrope and the openings that its sonar shows."""
+"""`trawl_sonar_node`: the trawl sonar's image, what is read off it, and its housing's sensors."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar
@@ -6,19 +6,28 @@ from typing import Any, ClassVar
 from trawl_ros.instruments.faults import Faulty
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
-from trawl_ros.messages.from_messages import net_truth
+from trawl_ros.messages.from_messages import net_truth, schools_truth, seabed_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.partial_truth import partial_truth
 from trawl_ros.nodes.runtime import run
 
-OPENING, POSE = 'truth/net/opening', 'truth/sonar/pose'
+OPENING, POSE, SECTION = 'truth/net/opening', 'truth/sonar/pose', 'truth/sonar/section'
+SCHOOLS, SEABED = 'truth/schools', 'truth/seabed'
 
 
 class TrawlSonarNode(InstrumentNode):
-    """Reports ``sonar/pressure``, ``sonar/opening_height`` and ``sonar/opening_width``."""
+    """Reports image, scan and points per sweep, the openings read off, pressure and bottom."""
 
-    TRUTH: ClassVar = (OPENING, POSE)
-    SAMPLES: ClassVar = ('sonar/pressure', 'sonar/opening_height', 'sonar/opening_width')
+    TRUTH: ClassVar = (OPENING, POSE, SECTION, SCHOOLS, SEABED)
+    SAMPLES: ClassVar = (
+        'sonar/pressure',
+        'sonar/bottom',
+        'sonar/image',
+        'sonar/scan',
+        'sonar/points',
+        'sonar/opening_height',
+        'sonar/opening_width',
+    )
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('trawl_sonar_node', **kwargs)
@@ -32,8 +41,13 @@ class TrawlSonarNode(InstrumentNode):
 
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
         """Give the samples due at a stamp (ns)."""
-        net = net_truth(messages[OPENING], messages[POSE])
-        return self._instruments.observe(partial_truth(stamp, net=net))
+        truth = partial_truth(
+            stamp,
+            net=net_truth(messages[OPENING], messages[POSE], section=messages[SECTION]),
+            schools=schools_truth(messages[SCHOOLS]),
+            seabed=seabed_truth(messages[SEABED]),
+        )
+        return self._instruments.observe(truth)
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -9,6 +9,7 @@ from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.numerics import transpose
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
+from trawl_ros.simulation.section import section_of, sonar_axes
 from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.simulation.truth import (
     DoorTruth,
@@ -54,23 +55,13 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
     return door(0), door(1)
 
 
-def _sonar_orientation(model: GearModel, state: State) -> np.ndarray:
-    """Frame ``sonar``: z forward along the mouth's normal, x down in the mouth, y port."""
-    layout = model.layout
-    head, foot = layout.headrope, layout.footrope
-    port = state.nodes[head[0]] - state.nodes[head[-1]]
-    down = state.nodes[foot[len(foot) // 2]] - state.nodes[head[len(head) // 2]]
-    down = down - (down @ port) / (port @ port) * port
-    x, y = down / np.linalg.norm(down), port / np.linalg.norm(port)
-    return Rotation.from_matrix(np.column_stack([x, y, np.cross(x, y)])).as_quat(canonical=True)
-
-
 def read_truth(
     model: GearModel, stamp: int, ship: Ship, winches: tuple[Winch, Winch], state: State, tow: Tow
 ) -> Truth:
     """Everything instruments may look at."""
     seen = observe(model, state, tow)
     head, foot = model.layout.headrope, model.layout.footrope
+    sonar = sonar_axes(model, state)
     return Truth(
         stamp=stamp,
         doors=_doors(model, state),
@@ -84,7 +75,8 @@ def read_truth(
             vertical_opening=float(seen.vertical_opening),
             headrope_depth=float(seen.net_depth),
             sonar_position=state.nodes[head[len(head) // 2]],
-            sonar_orientation=_sonar_orientation(model, state),
+            sonar_orientation=Rotation.from_matrix(sonar).as_quat(canonical=True),
+            section=section_of(model, state, sonar),
         ),
         vessel=VesselTruth(
             position=ship.position,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.instruments.schools import inside
 from trawl_ros.instruments.sonar.image import Grid
 from trawl_ros.simulation.truth import SchoolTruth
 
@@ -161,8 +162,7 @@ def _seabed(
     row, column = np.nonzero(slope * grid.max_range > stretch * altitude[:, None])
     slope = slope[row, column]
     distance = altitude[row] / slope
-    # A patch r dφ wide as seen from the sonar has this length along the seabed, over its slope;
-    # one of these slopes is that of Lambert's law that is thereby spent.
+    # What is r dφ wide as seen from the sonar is longer along the seabed, over its slope.
     area = distance * step * distance * beam.thickness / slope
     strength = strengths.seabed * slope**2 * area * beam.two_way(angle[column] - axis[row])
     return _gathered(row, stretch * distance, strength, grid)
@@ -185,22 +185,11 @@ def _fish(
     for row, ping in enumerate(pings):
         way = ping.axes[:, 0] * np.cos(ping.angle) + ping.axes[:, 1] * np.sin(ping.angle)
         for school in ping.schools:
-            near, far = _inside(school, ping.position, way)
+            near, far = inside(school, ping.position, way[None])
             within = (ranges >= near) & (ranges <= far)
             expected[row, within] += school.density * volume[within]
     fish = generator.poisson(expected)
     return strengths.fish * (beam.two_way(_turned(axis[:, None] - axis)) @ fish)
-
-
-def _inside(school: SchoolTruth, position: np.ndarray, way: np.ndarray) -> tuple[float, float]:
-    """Between which distances (m) along ``way`` a school lies; (inf, inf) where it does not."""
-    start = 2 * (position - school.position) / school.size
-    move = 2 * way / school.size
-    a, b, c = move @ move, start @ move, start @ start - 1
-    root = b * b - a * c
-    if root <= 0:
-        return np.inf, np.inf
-    return float((-b - np.sqrt(root)) / a), float((-b + np.sqrt(root)) / a)
 
 
 def _turned(angle: np.ndarray) -> np.ndarray:

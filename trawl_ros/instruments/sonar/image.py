@@ -4,14 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+BRIGHTEST = 255
+
 
 @dataclass(frozen=True)
 class Grid:
-    """Which beam and which range a row and a column of the image stand for.
+    """What rows, columns and values of an image stand for.
 
     ``beams`` rows: row i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame
     ``sonar``: 0 down, positive to port). ``cells`` columns: column j holds what comes from
     (j + ½) ``max_range`` / ``cells`` (m). Nothing is heard from nearer than ``min_range`` (m).
+    Brightness rises with the level: from 0 to 255 by ``span`` dB.
     """
 
     beams: int
@@ -20,6 +23,7 @@ class Grid:
     angle_increment: float
     min_range: float
     max_range: float
+    span: float
 
     @property
     def angles(self) -> np.ndarray:

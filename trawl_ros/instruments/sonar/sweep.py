@@ -1,0 +1,118 @@
+"""One sweep: pings made while the gear moves, put together to an image."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.instruments.sampling import SECOND
+from trawl_ros.instruments.sonar.absorption import absorption
+from trawl_ros.instruments.sonar.detection import clear_echoes
+from trawl_ros.instruments.sonar.echoes import Ping, Sounding, echoes
+from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
+from trawl_ros.instruments.sonar.records import SweepRecord
+from trawl_ros.instruments.sonar.screen import heard, interfering, speckled
+from trawl_ros.instruments.surroundings import Surroundings
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep that is complete.
+
+    ``stamp`` (ns) is that of its first ping; ``image`` (beams, cells) uint8; ``pings`` those that
+    were made, one per row from the first on.
+    """
+
+    stamp: int
+    image: np.ndarray
+    grid: Grid
+    pings: tuple[Ping, ...]
+
+    def points(self) -> np.ndarray:
+        """Clear echoes in ``map`` with their brightness, (n, 4).
+
+        Each lies where the beam of its row was thought to look from the pose at its ping.
+        """
+        rows, columns = clear_echoes(self.image, self.grid)
+        made = rows < len(self.pings)
+        rows, columns = rows[made], columns[made]
+        angles, away = self.grid.angles[rows], self.grid.ranges[columns]
+        axes = np.array([ping.axes for ping in self.pings])[rows]
+        start = np.array([ping.position for ping in self.pings])[rows]
+        down, port = away * np.cos(angles), away * np.sin(angles)
+        places = start + down[:, None] * axes[:, :, 0] + port[:, None] * axes[:, :, 1]
+        return np.column_stack([places, self.image[rows, columns]])
+
+
+@dataclass(frozen=True)
+class Luck:
+    """Generators of what is drawn for an image, each for one kind of chance."""
+
+    fish: np.random.Generator
+    speckle: np.random.Generator
+    dead: np.random.Generator
+
+
+def image_of(
+    pings: Sequence[Ping],
+    stamp: int,
+    record: SweepRecord,
+    interval_s: float,
+    gain: float,
+    surroundings: Surroundings,
+    luck: Luck,
+) -> np.ndarray:
+    """Make the image of a sweep.
+
+    Parameters
+    ----------
+    pings
+        One per beam, from the first on; rows of pings that were not made stay black.
+    stamp
+        Of the first, ns.
+    record
+        The sonar.
+    interval_s
+        From ping to ping, s.
+    gain
+        By how much (dB) the receiver amplifies too much; NaN where it is dead.
+    surroundings
+        The water.
+    luck
+        Where chance is drawn from.
+
+    Returns
+    -------
+    array
+        Shape (beams, cells), uint8.
+    """
+    grid, receiver = record.grid(), record.receiver()
+    # All is drawn whether it shows or not: a fault changes no image after its end.
+    dead = luck.dead.random(grid.beams) < record.dead_ping_share
+    depth = max(0.0, -float(pings[0].position[2]))
+    speed = surroundings.sound_speed(depth)
+    sounding = Sounding(
+        stretch=record.assumed_sound_speed_m_s / speed,
+        pulse=0.5 * record.assumed_sound_speed_m_s * record.pulse_ms / 1e3,
+    )
+    met = echoes(pings, grid, record.beam(speed), record.strengths(), sounding, luck.fish)
+    loss = absorption(
+        1e3 * record.frequency_khz,
+        surroundings.temperature(depth),
+        surroundings.salinity,
+        depth,
+    )
+    mean = heard(met, grid, receiver, loss, sounding.stretch)
+    other = record.other_sonar()
+    if other is not None:
+        times = stamp / SECOND + interval_s * np.arange(grid.beams)
+        mean += interfering(times, grid, receiver, other, record.assumed_sound_speed_m_s)
+    level = speckled(mean, luck.speckle)
+    image = np.zeros((grid.beams, grid.cells), dtype=np.uint8)
+    if np.isfinite(gain):
+        image[:] = receiver.brightness(level, gain)
+        # The sonar's own pulse, while it goes out.
+        image[:, grid.ranges < grid.min_range] = BRIGHTEST
+    image[dead] = 0
+    image[len(pings) :] = 0
+    return image
