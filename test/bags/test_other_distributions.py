@@ -6,6 +6,7 @@ from contextlib import closing
 import pytest
 import yaml
 import zstandard
+from click.testing import CliRunner
 from mcap.writer import Writer
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
@@ -16,6 +17,7 @@ from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.qos import dump_profiles, project_profile
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.samples import SampleStream
+from trawl_ros.cli.main import trawl
 from trawl_ros.errors import BagError
 from trawl_ros.instruments.samples import PressureSample, RangeSample, WinchSample
 from trawl_ros.messages.cdr import STORE
@@ -180,6 +182,10 @@ def check(path, *, stated_noise):
     summary = summarise(path)
     assert summary.count == len(SAMPLES)
     assert summary.problems == ()
+    told = CliRunner().invoke(trawl, ['bag', 'info', str(path)])
+    assert told.exit_code == 0
+    assert f'{path}: {len(SAMPLES)} messages in 0.1 min' in told.stdout
+    assert told.stderr == ''
     return summary
 
 
@@ -309,7 +315,7 @@ def test_what_a_killed_recorder_left_in_the_log_beside_the_database_is_read(tmp_
 
 def test_a_database_cut_short_gives_what_is_readable_or_is_named(tmp_path):
     path = tmp_path / 'long.db3'
-    entries = [entry for _ in range(200) for entry in encoded(Stores.ROS2_HUMBLE)]
+    entries = list(encoded(Stores.ROS2_HUMBLE)) * 200
     write_database(path, entries)
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) * 99 // 100])
@@ -323,7 +329,7 @@ def test_a_database_cut_short_gives_what_is_readable_or_is_named(tmp_path):
 
 def test_a_damaged_page_of_a_database_is_said(tmp_path):
     path = tmp_path / 'long.db3'
-    entries = [entry for _ in range(300) for entry in encoded(Stores.ROS2_HUMBLE)]
+    entries = list(encoded(Stores.ROS2_HUMBLE)) * 300
     write_database(path, entries)
     whole = bytearray(path.read_bytes())
     for start in range(len(whole) // 2, len(whole) // 2 + 40 * 4096, 4096):
