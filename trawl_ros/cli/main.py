@@ -21,8 +21,8 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'benchmark': ('benchmark', 'Measure how fast things are, beside other tools.'),
         'study': ('study', 'Run the whole chain for long, and report what that shows.'),
         'scenarios': ('scenarios', 'List the scenarios that come with the package.'),
-        'import-log': ('import_log', 'Turn a CSV log from sea into a bag.'),
-        'bag': ('bag', 'Look into bags.'),
+        'import-log': ('import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
+        'bag': ('bag', 'Look into bags, check, repair and export them.'),
         'plot': ('plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
     }
 )
