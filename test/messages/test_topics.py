@@ -13,7 +13,7 @@ from trawl_ros.messages.topics import (
 
 
 def test_no_name_stands_twice():
-    assert len(TOPICS) == len(TRUTH) + len(INSTRUMENTS) + len(ESTIMATES) + len(COMMANDS) + 1
+    assert len(TOPICS) == len(TRUTH) + len(INSTRUMENTS) + len(ESTIMATES) + len(COMMANDS) + 2
 
 
 def test_types_are_known():

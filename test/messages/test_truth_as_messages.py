@@ -20,6 +20,7 @@ from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.topics import TOPICS, TRUTH
+from trawl_ros.messages.transforms import transforms_message
 from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
 from trawl_ros.simulation.truth import (
     DoorTruth,
@@ -232,3 +233,21 @@ def test_tension_runs_from_blue_to_red():
     assert slack.b > slack.r
     assert full.r > full.b
     assert beyond == full
+
+
+def test_transforms_say_the_same_as_the_poses(received):
+    topic, message = transforms_message(TRUTH_RECORD)
+    back = deserialize(serialize(message), TOPICS[topic].type)
+    found = {entry.child_frame_id: entry for entry in back.transforms}
+    assert set(found) == {'vessel', 'sonar', 'door_port', 'door_starboard'}
+    for frame, pose in {
+        'vessel': received['truth/vessel/odom'].pose.pose,
+        'door_port': received['truth/door/port/odom'].pose.pose,
+        'door_starboard': received['truth/door/starboard/odom'].pose.pose,
+        'sonar': received['truth/sonar/pose'].pose,
+    }.items():
+        entry = found[frame]
+        assert (entry.header.frame_id, stamp_of(entry)) == ('map', STAMP)
+        moved, turned = entry.transform.translation, entry.transform.rotation
+        assert (moved.x, moved.y, moved.z) == (pose.position.x, pose.position.y, pose.position.z)
+        assert turned == pose.orientation

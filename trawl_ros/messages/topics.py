@@ -371,7 +371,13 @@ CLOCK = Topic(
     '/clock', 'rosgraph_msgs/msg/Clock', '', None, 'Simulated time, when publish_clock is set.'
 )
 
-TOPICS = {topic.name: topic for topic in (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS, CLOCK)}
+TRANSFORMS = Topic(
+    '/tf', 'tf2_msgs/msg/TFMessage', '', 10.0, 'Frames in map, where tf2_msgs is installed.'
+)
+
+TOPICS = {
+    topic.name: topic for topic in (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS, CLOCK, TRANSFORMS)
+}
 
 
 def absolute(name: str, namespace: str = NAMESPACE) -> str:

@@ -6,6 +6,15 @@ from typing import Any
 from trawl_ros.errors import MessageError
 
 
+def installed(type_name: str) -> bool:
+    """Tell whether the package of a type is there."""
+    try:
+        message_class(type_name)
+    except MessageError:
+        return False
+    return True
+
+
 def message_class(type_name: str) -> Any:
     """Find the class of a type such as ``sensor_msgs/msg/JointState``.
 

@@ -14,9 +14,11 @@ from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import CLOCK, TRUTH
+from trawl_ros.messages.topics import CLOCK, TRANSFORMS, TRUTH
+from trawl_ros.messages.transforms import transforms_message
 from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.nodes.message_classes import installed
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.pacer import Pacer
 from trawl_ros.nodes.parameters import Flag, Names, Number, Text
@@ -81,6 +83,10 @@ class SimNode(TrawlNode):
             self.advertise(CLOCK.name)
         for topic in TRUTH:
             self.advertise(topic.name)
+        # The package index has no tf2_msgs; a full installation has.
+        self._transforms = installed(TRANSFORMS.type)
+        if self._transforms:
+            self.advertise(TRANSFORMS.name)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['time_scale'])
         self._tow, self._period = self._prepare()
@@ -226,6 +232,8 @@ class SimNode(TrawlNode):
             self.send(*clock_message(stamp))
         for topic, message in truth_messages(replace(truth, stamp=stamp)):
             self.send(topic, message)
+        if self._transforms:
+            self.send(*transforms_message(replace(truth, stamp=stamp)))
         self._publish_gear(truth.stamp / SECOND, stamp)
         self._latest = stamp
         self._consumers.sent(stamp)
