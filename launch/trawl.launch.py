@@ -20,6 +20,9 @@ NAMESPACE = 'trawl'
 INSTRUMENTS = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
 RECORDER = 'bag_recorder'
 
+ENDING_S = '20'
+"""A node may take so long to say its last words on a busy machine; launch would give it 5 s."""
+
 ARGUMENTS = (
     ('scenario', '', 'Scenario file or name; without one the ship tows straight on.'),
     ('gear', 'kaifuha', 'Gear file or name, where no scenario brings its own.'),
@@ -71,4 +74,6 @@ def _node(executable: str, parameters: dict[str, Any]) -> Node:
         namespace=NAMESPACE,
         parameters=[parameters],
         output='screen',
+        sigterm_timeout=ENDING_S,
+        sigkill_timeout=ENDING_S,
     )
