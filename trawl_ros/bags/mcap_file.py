@@ -29,7 +29,9 @@ from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.bags.walk import RECORD_START, walk
 from trawl_ros.errors import BagError
 
-_CHUNK_TIMES = struct.Struct('<QQ')
+_CHUNK_HEAD = struct.Struct('<QQQII')
+"""First and last time, size, checksum, and length of the compression's name behind it."""
+_COMPRESSION_BYTES = 16
 _MESSAGE_TIME = struct.Struct('<HIQ')
 
 
@@ -78,7 +80,7 @@ class McapFile:
         self.complete = False
         """Whether the file ends as a finished one does."""
         self.chunk_compressions: set[str] = set()
-        """How chunks are compressed, as far as the index says it ('' for not at all)."""
+        """How chunks are compressed ('' for not at all)."""
         with self._open() as stream:
             self._size = stream.seek(0, 2)
             self._check_start(stream)
@@ -215,8 +217,9 @@ class McapFile:
         pieces = []
         for opcode, offset, length in self._walk(stream):
             stream.seek(offset + RECORD_START.size)
-            if opcode == Opcode.CHUNK and length >= RECORD_START.size + _CHUNK_TIMES.size:
-                start, _ = _CHUNK_TIMES.unpack(stream.read(_CHUNK_TIMES.size))
+            if opcode == Opcode.CHUNK and length >= RECORD_START.size + _CHUNK_HEAD.size:
+                start, *_, name = _CHUNK_HEAD.unpack(stream.read(_CHUNK_HEAD.size))
+                compression = stream.read(min(name, _COMPRESSION_BYTES))
                 piece = Piece(start, offset, length)
             elif opcode == Opcode.MESSAGE and length >= RECORD_START.size + _MESSAGE_TIME.size:
                 _, _, start = _MESSAGE_TIME.unpack(stream.read(_MESSAGE_TIME.size))
@@ -231,6 +234,7 @@ class McapFile:
                 if isinstance(record, Schema | Channel):
                     self._learn(record)
             if opcode == Opcode.CHUNK and records is not None:
+                self.chunk_compressions.add(compression.decode('ascii', 'replace'))
                 pieces.append(piece)
         return pieces
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.filesize import decimal
 from rich.markup import escape
 
 from trawl_ros.bags.check import GROUPS, describe_qos
@@ -36,7 +37,7 @@ def kind(facts: BagFacts) -> str:
         f'metadata version {facts.version}' if facts.version is not None else 'no metadata',
         f'ROS {facts.distro or UNKNOWN}',
         facts.compression or 'not compressed',
-        f'{sum(facts.sizes.values()) / 1e6:.3g} MB in {", ".join(facts.sizes)}',
+        f'{decimal(sum(facts.sizes.values()))} in {", ".join(facts.sizes)}',
     ]
     return ', '.join(parts)
 
