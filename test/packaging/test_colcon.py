@@ -16,6 +16,8 @@ EXECUTABLES = {
     'door_sensor_node',
     'trawl_sonar_node',
     'vessel_node',
+    'autotrawl_node',
+    'autopilot_node',
     'identification_node',
     'bag_recorder',
     'bag_player',

@@ -28,6 +28,8 @@ NODES = (
     'door_sensor_node',
     'trawl_sonar_node',
     'vessel_node',
+    'autotrawl_node',
+    'autopilot_node',
     'identification_node',
     'bag_recorder',
     'bag_player',

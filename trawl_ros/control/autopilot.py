@@ -25,6 +25,9 @@ BEGUN_M = 100.0
 PASSED_M = 150.0
 """A school as near as this is not aimed at any more: the ship goes on over it."""
 
+SEEN_SHARE = 0.4
+"""How much of what a sweep shows is believed: the fish sonar's bearing wavers by degrees."""
+
 SAME_SCHOOL_M = 500.0
 """A school seen this near to where one was aimed at is the same."""
 
@@ -114,6 +117,7 @@ class Autopilot:
         self._target: Target | None = None
         self._track: Track | None = None
         self._aim: np.ndarray | None = None
+        self._seen: np.ndarray | None = None
         self._course = math.nan
         self._passed = False
         self._rate = 0.0
@@ -220,8 +224,12 @@ class Autopilot:
             near = self._aim
         if len(schools):
             distances = np.hypot(*(schools - near).T)
-            if self._aim is None or distances.min() < SAME_SCHOOL_M:
-                self._aim = schools[distances.argmin()]
+            nearest = schools[distances.argmin()]
+            if self._aim is None:
+                self._aim = nearest
+            elif distances.min() < SAME_SCHOOL_M and self._bearings.schools is not self._seen:
+                self._aim = self._aim + SEEN_SHARE * (nearest - self._aim)
+            self._seen = self._bearings.schools
         return self._aim
 
     def _fix_problems(self, stamp: int) -> tuple[str, ...]:
