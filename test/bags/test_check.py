@@ -115,6 +115,18 @@ def test_log_times_far_from_the_stamps_are_found(tmp_path, shift_s, kinds):
     assert check_bag(path).topics[0].lag_s == (shift_s, shift_s)
 
 
+def test_a_sweep_of_the_sonar_is_logged_when_it_is_done_and_stamped_when_it_began(tmp_path):
+    for lag_s, kinds in ((10, []), (16, ['stamp']), (-6, ['stamp'])):
+        sweeps = [
+            RangeSample(START + 10 * n * SECOND, 'opening_height', 60.0, 0.5, 1.0, 200.0)
+            for n in range(20)
+        ]
+        path = write(
+            tmp_path / str(lag_s), sweeps, log=lambda n, stamp, s=lag_s: stamp + s * SECOND
+        )
+        assert [kind for kind, _ in found(path)] == kinds
+
+
 def write_mcap(path, topic, type_name, entries, qos, **options):
     with path.open('wb') as stream:
         writer = Writer(stream, **options)

@@ -147,6 +147,14 @@ def test_images_are_left_out_and_said(tmp_path):
     assert rows(done.file)[0]['width'] == '3'
 
 
+def test_an_empty_blob_is_nothing_to_leave_out(tmp_path):
+    image = ros.sensor_msgs__msg__Image(
+        header(STAMP, 'sonar'), 0, 0, 'mono8', 0, 0, np.zeros(0, dtype=np.uint8)
+    )
+    topics, _ = exported(tmp_path, ('sonar/image', image))
+    assert topics['sonar/image'].left_out == {}
+
+
 def test_a_topic_of_which_nothing_is_left_gets_no_file(tmp_path):
     topics, _ = exported(tmp_path, ('/lab/outline', polygon(9).polygon), array_limit=8)
     assert topics['/lab/outline'].file is None

@@ -16,7 +16,7 @@ from trawl_ros.errors import BagError, MessageError
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import NAMESPACE, absolute, find_topic
 
-ARRAY_LIMIT = 64
+ARRAY_LIMIT = 128
 """Elements up to which an array is spread over columns, unless another number is asked for."""
 
 DICTIONARY = 'columns.csv'

@@ -120,7 +120,8 @@ class Layout:
             yield Column(place, name, path, steps)
 
     def _refusal(self, value: Any) -> str:
-        if isinstance(value, np.ndarray) and value.dtype.itemsize == 1 and value.dtype != bool:
+        blob = isinstance(value, np.ndarray) and value.dtype.itemsize == 1 and value.dtype != bool
+        if blob and len(value):
             return 'is an image or another blob of bytes'
         if len(value) > self.limit:
             return f'has {len(value)} elements, more than {self.limit}'

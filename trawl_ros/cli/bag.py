@@ -75,7 +75,7 @@ def check(
     checksum; metadata that disagree with the content; and on the project's topics a wrong type,
     best effort or volatile QoS where more is due, a rate a dozen times off the usual one, pauses
     of more than ten median intervals, stamps that run backward or repeat, stamps more than 5 s
-    from the log time, and what --require names and is not there.
+    from the log time (and a sweep, for the sonar's), and what --require names and is not there.
     """
     done = check_bag(bag, namespace=namespace, required=require)
     if as_json:
