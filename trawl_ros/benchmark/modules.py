@@ -17,6 +17,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'fit': 'One fit of twelve coefficients to fifteen states',
         'growth': 'Growth with the number of net nodes',
         'start': 'Cold start of the nodes',
+        'recording': 'Recording the full chain',
     }
 )
 """Modules of `trawl_ros.benchmark`, each with ``measure(small) -> Findings``, → their titles."""

@@ -1,0 +1,136 @@
+"""What the recorder gets of all that is published at the rates of the full chain, and its cost."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from trawl_ros.bags.reader import Bag
+from trawl_ros.benchmark.findings import Findings
+from trawl_ros.benchmark.row import Row
+from trawl_ros.cli.processes import NodeFailed, Processes, own_graph
+
+RATES_HZ = (500.0, 1000.0)
+"""The first is what is asked for."""
+
+SECONDS = 60.0
+SMALL_SECONDS = 1.0
+PATIENCE_S = 30.0
+RECORDER = 'bag_recorder'
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Messages by full topic name as published and as in the bag, and what it took.
+
+    ``behind_s`` is wall time by which the publisher fell behind for good, ``cpu_s`` the
+    recorder's, its start included.
+    """
+
+    published: Mapping[str, int]
+    recorded: Mapping[str, int]
+    behind_s: float
+    cpu_s: float
+
+    @property
+    def lost(self) -> int:
+        """How many messages are not in the bag."""
+        return sum((Counter(self.published) - Counter(self.recorded)).values())
+
+
+def record(folder: Path, rate: float, seconds: float) -> Recorded:
+    """Publish all topics in one process and record them in another.
+
+    Parameters
+    ----------
+    folder
+        Takes the bag and what the processes say.
+    rate
+        Messages per second in total.
+    seconds
+        How long.
+
+    Raises
+    ------
+    NodeFailed
+        If one of them does.
+    """
+    bag = folder / 'bag'
+    environment = own_graph(folder / 'log')
+    publishing = [
+        sys.executable, '-m', 'trawl_ros.benchmark.full_chain', '--ros-args',
+        '-p', f'rate:={rate}', '-p', f'seconds:={seconds}', '-p', f'wait_for:=[{RECORDER}]',
+    ]  # fmt: skip
+    with Processes(folder / 'output', environment) as processes:
+        processes.start(RECORDER, output=str(bag))
+        try:
+            done = subprocess.run(
+                publishing,
+                env={**os.environ, **environment},
+                capture_output=True,
+                text=True,
+                timeout=seconds + PATIENCE_S,
+                check=False,
+            )
+        except subprocess.TimeoutExpired as reason:
+            processes.check()
+            raise NodeFailed(f'full_chain: not done after {reason.timeout:g} s') from None
+        if done.returncode:
+            raise NodeFailed(f'full_chain: ended with code {done.returncode}: {done.stderr}')
+        cpu_s = _cpu_s(processes.pids()[RECORDER])
+        processes.stop(RECORDER)
+    told = json.loads(done.stdout)
+    recorded = Counter(message.topic for message in Bag(bag).as_stored())
+    return Recorded(told['published'], recorded, told['behind_s'], cpu_s)
+
+
+def measure(small: bool) -> Findings:
+    """Record at each rate and count."""
+    what = f'messages lost at {RATES_HZ[0]:g} messages/s of all topics'
+    if find_spec('rclpy') is None:
+        note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'
+        return Findings((Row(what, math.nan, '', 0.0, 'at_most', note),))
+    seconds = SMALL_SECONDS if small else SECONDS
+    rows = []
+    for rate in RATES_HZ[:1] if small else RATES_HZ:
+        with tempfile.TemporaryDirectory() as name:
+            found = record(Path(name), rate, seconds)
+        count = sum(found.published.values())
+        note = f'of {count} on {len(found.published)} topics in {seconds:g} s'
+        if found.behind_s:
+            note += f'; the publisher itself fell {found.behind_s:.1f} s behind'
+        asked = rate == RATES_HZ[0]
+        rows.append(
+            Row(what, found.lost, '', 0.0, 'at_most', note)
+            if asked
+            else Row(f'messages lost at {rate:g} messages/s', found.lost, '', note=note)
+        )
+        rows.append(
+            Row(
+                f'recorder at {rate:g} messages/s, of one core',
+                100.0 * found.cpu_s / seconds,
+                '%',
+                note='CPU time by wall time of the recording, its start included',
+            )
+        )
+    return Findings(
+        tuple(rows),
+        text='One process publishes all topics of the project with messages as large as on a '
+        'tow, paced, and counts; bag_recorder in another writes them with its defaults. What is '
+        'in the bag is then counted against that.',
+    )
+
+
+def _cpu_s(pid: int) -> float:
+    """CPU time (s) of a process so far."""
+    # What stands behind the name, which may have spaces, begins with the third field.
+    fields = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()
+    user, system = int(fields[11]), int(fields[12])
+    return (user + system) / os.sysconf('SC_CLK_TCK')
