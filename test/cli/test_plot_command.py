@@ -41,7 +41,7 @@ def test_readings_alone_are_drawn_and_the_page_says_so(run, steady_tow, tmp_path
     for sentence in (
         'The bag holds no truth, only what was measured.',
         'the gear at 0:30 (as measured; warps drawn straight',
-        'No sonar/image near these times.',
+        'No sonar/image that could be drawn near 0:30.',
         'track is unknown',
     ):
         assert sentence in page

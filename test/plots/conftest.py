@@ -4,6 +4,7 @@ The ship turns to port through west in a current to the east; the doors sink by 
 """
 
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -181,11 +182,18 @@ def write_tow(
     parts: Collection[str] = ('truth', 'markers', 'instruments', 'sonar'),
     *,
     log_lag_s: float = 0.0,
+    section: bool = True,
+    growing: float = 0.0,
 ) -> Path:
-    """Record it: everything once a second, a sweep every ten."""
+    """Record it: everything once a second, a sweep every ten.
+
+    Without ``section`` it has no points; with ``growing`` they go down by so much (m/s).
+    """
     with BagWriter(path) as bag:
         for second in range(DURATION_S + 1):
             truth = truth_at(second)
+            through = truth.net.section[: None if section else 0] + [growing * second, 0.0, 0.0]
+            truth = replace(truth, net=replace(truth.net, section=through))
             messages = truth_messages(truth) if 'truth' in parts else []
             if 'markers' in parts:
                 messages.append(gear_markers(picture_of(truth)))

@@ -7,15 +7,21 @@ from PIL import Image
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.plots.film import MOST_FRAMES, Frame, frame_times, write_film
-from trawl_ros.plots.moments import read_moments, sonar_picture
+from trawl_ros.plots.moments import GEAR, read_moments
 from trawl_ros.plots.shapes import gear_shape
+from trawl_ros.plots.sweeps import read_sweeps
 
 
 @pytest.fixture(scope='module')
 def frames(bag, tow):
     gear = load_gear('kaifuha')
-    moments = read_moments(bag, tow, [10.0, 60.0, 110.0], 'trawl')
-    return [Frame(gear_shape(moment, tow, gear), sonar_picture(moment, tow)) for moment in moments]
+    times = [10.0, 60.0, 110.0]
+    pictures, _ = read_sweeps(bag, tow, times, 'trawl')
+    moments = read_moments(bag, tow, times, 'trawl', [GEAR])
+    return [
+        Frame(gear_shape(moment, tow, gear), picture)
+        for moment, picture in zip(moments, pictures, strict=True)
+    ]
 
 
 def test_each_frame_differs_from_the_one_before(frames, tmp_path):

@@ -6,8 +6,11 @@ import pytest
 from trawl_ros.errors import MessageError
 from trawl_ros.instruments.samples import SonarImageSample, SonarScanSample
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.plots.moments import IMAGE, MOUTH, POSE, SCAN, Moment, read_moments, sonar_picture
+from trawl_ros.model.water import Water
+from trawl_ros.plots.moments import IMAGE, MOST_AWAY_S, SCAN, Moment
+from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.sonar import seen, sonar_figure
+from trawl_ros.plots.sweeps import read_sweeps, sweep_of
 
 REACH = 100.0
 PIXELS = 200
@@ -67,8 +70,8 @@ def test_beams_may_turn_the_other_way():
 
 
 def test_echoes_of_the_mouth_lie_on_truth_and_the_reading_between_them(bag, tow, known):
-    (moment,) = read_moments(bag, tow, [33.0], 'trawl')
-    picture = sonar_picture(moment, tow)
+    (picture,), problems = read_sweeps(bag, tow, [33.0], 'trawl')
+    assert problems == []
     assert picture.time == 30.0
     assert (picture.height, picture.width) == (known.HEIGHT, known.WIDTH)
     assert not picture.closed
@@ -87,19 +90,40 @@ def test_echoes_of_the_mouth_lie_on_truth_and_the_reading_between_them(bag, tow,
     ]
 
 
-def test_the_mouths_corners_stand_in_where_no_section_is_known(bag, tow, known):
-    (moment,) = read_moments(bag, tow, [33.0], 'trawl', [IMAGE, SCAN, MOUTH, POSE])
-    picture = sonar_picture(moment, tow)
+def test_the_mouths_corners_stand_in_where_no_section_is_known(known, tmp_path):
+    path = known.write(tmp_path / 'bag', ['truth', 'sonar'], section=False)
+    tow = read_tow(path, Water().depth, 'trawl')
+    (picture,), _ = read_sweeps(path, tow, [33.0], 'trawl')
     assert picture.closed
     around = known.MOUTH[[1, 0, 5, 4, 3, 2]]
     np.testing.assert_allclose(picture.mouth, around, atol=1e-3)
 
 
+def test_truth_is_that_of_the_middle_of_the_sweep(known, tmp_path):
+    # The mouth grows by 0.1 m/s here, and a sweep takes 4 s.
+    path = known.write(tmp_path / 'bag', ['truth', 'sonar'], growing=0.1)
+    tow = read_tow(path, Water().depth, 'trawl')
+    for time, begun in ((31.0, 30.0), (69.0, 70.0)):
+        (picture,), _ = read_sweeps(path, tow, [time], 'trawl')
+        assert picture.time == begun
+        grown = picture.mouth[:, 0].max() - known.MOUTH[:, 0].max()
+        assert grown == pytest.approx(0.1 * (begun + 2.0), abs=1e-3)
+
+
 def test_without_a_scan_nobody_knows_where_the_beams_look(tow, known):
     image, scan = (sample_message(sample)[1] for sample in known.sweep(known.START, known.MOUTH))
     _, other = (sample_message(s)[1] for s in known.sweep(known.START + 1, known.MOUTH))
-    assert sonar_picture(Moment(0.0, {IMAGE: image, SCAN: scan}), tow) is not None
+    assert sweep_of(Moment(0.0, {IMAGE: image, SCAN: scan}), tow) is not None
     for messages in ({IMAGE: image}, {IMAGE: image, SCAN: other}):
         with pytest.raises(MessageError, match=r'the sweep of 0\.0 s has no sonar/scan'):
-            sonar_picture(Moment(0.0, messages), tow)
-    assert sonar_picture(Moment(0.0, {SCAN: scan}), tow) is None
+            sweep_of(Moment(0.0, messages), tow)
+    assert sweep_of(Moment(0.0, {SCAN: scan}), tow) is None
+
+
+def test_sweeps_that_are_far_away_are_not_shown(known, tmp_path, monkeypatch):
+    path = known.write(tmp_path / 'bag', ['sonar'])
+    tow = read_tow(path, Water().depth, 'trawl')
+    monkeypatch.setitem(MOST_AWAY_S, IMAGE, 3.0)
+    pictures, problems = read_sweeps(path, tow, [20.0, 25.0, 31.0], 'trawl')
+    assert [picture and picture.time for picture in pictures] == [20.0, None, 30.0]
+    assert problems == []

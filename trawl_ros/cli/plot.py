@@ -11,7 +11,7 @@ from rich.console import Console
 from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import TimeProgress, error_console
-from trawl_ros.errors import MessageError, TrawlError
+from trawl_ros.errors import TrawlError
 from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -20,13 +20,14 @@ from trawl_ros.model.gear_model import build_water
 from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure, left_out
-from trawl_ros.plots.moments import IMAGE, Moment, read_moments, sonar_picture
+from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments
 from trawl_ros.plots.page import PAGE, Picture, write_page
 from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.records import SonarPicture, Tow
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.plots.sonar import sonar_figure
 from trawl_ros.plots.style import DPI, clock
+from trawl_ros.plots.sweeps import read_sweeps
 from trawl_ros.plots.track import track_figure
 
 EARLY_MIDDLE_LATE = (0.05, 0.5, 0.95)
@@ -137,11 +138,9 @@ class _Album:
 
     def moments(self, times: Sequence[float]) -> None:
         """Draw the gear, and what the sonar showed, at some times."""
-        sweeps = 0
-        for moment in self._read(times):
-            shape, picture = gear_shape(moment, self._tow, self._gear), self._sonar(moment)
-            at = clock(moment.time)
-            stem = f'{moment.time:05.0f}s'
+        for moment, picture in self._read(times):
+            shape = gear_shape(moment, self._tow, self._gear)
+            at, stem = clock(moment.time), f'{moment.time:05.0f}s'
             if shape is None:
                 self._note(f'At {at} too little of the gear is known to draw it.')
             else:
@@ -149,27 +148,25 @@ class _Album:
                     gear_figure(shape, self._tow.name), f'gear_{stem}.png',
                     f'the gear at {at} ({shape.source})', 'The gear',
                 )  # fmt: skip
-            if picture is not None:
-                sweeps += 1
+            if picture is None:
+                self._note(f'No {IMAGE} that could be drawn near {at}.')
+            else:
                 self._add(
                     sonar_figure(picture, self._tow.name), f'sonar_{stem}.png',
                     f'the sweep from {clock(picture.time)} on', "The sonar's picture",
                 )  # fmt: skip
-        if not sweeps:
-            self._note(f'No {IMAGE} near these times.')
 
     def film(self, console: Console) -> bool:
         """Draw the film; say whether it was interrupted and ends early."""
-        times = film.frame_times(self._tow)
         with (
             TimeProgress('filming', self._tow.duration_s, console) as progress,
             Interruption() as interruption,
         ):
             frames = []
-            for moment in self._read(times):
+            for moment, picture in self._read(film.frame_times(self._tow)):
                 shape = gear_shape(moment, self._tow, self._gear)
                 if shape is not None:
-                    frames.append(film.Frame(shape, self._sonar(moment)))
+                    frames.append(film.Frame(shape, picture))
                 if interruption.requested:
                     return True
             if not frames:
@@ -185,15 +182,12 @@ class _Album:
             self.pictures.append(Picture('film.gif', caption, 'Film'))
             return interruption.requested
 
-    def _read(self, times: Sequence[float]) -> Iterator[Moment]:
-        return read_moments(self._bag, self._tow, times, self._namespace)
-
-    def _sonar(self, moment: Moment) -> SonarPicture | None:
-        try:
-            return sonar_picture(moment, self._tow)
-        except MessageError as reason:
-            self._note(str(reason))
-            return None
+    def _read(self, times: Sequence[float]) -> Iterator[tuple[Moment, SonarPicture | None]]:
+        sweeps, problems = read_sweeps(self._bag, self._tow, times, self._namespace)
+        for problem in problems:
+            self._note(problem)
+        moments = read_moments(self._bag, self._tow, times, self._namespace, [GEAR, MOUTH])
+        return zip(moments, sweeps, strict=True)
 
     def _add(self, figure: Figure, file: str, caption: str, section: str) -> None:
         figure.savefig(self._folder / file, dpi=DPI)

@@ -71,9 +71,9 @@ def draw(axes: Axes, picture: SonarPicture) -> list[Artist]:
             '-' if picture.closed else 'o',
             color=TRUTH,
             linewidth=0.8,
-            markersize=3.0,
+            markersize=2.4,
             fillstyle='none',
-            markeredgewidth=0.7,
+            markeredgewidth=0.6,
             label='truth: the mouth' if picture.closed else 'truth: ropes in this plane',
         )
     return drawn + _dimensions(axes, picture.height, picture.width)

@@ -1,0 +1,116 @@
+"""Sweeps of the trawl sonar at chosen times, with what was true while they went on."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from trawl_ros.errors import MessageError
+from trawl_ros.instruments.samples import SonarImageSample, SonarScanSample
+from trawl_ros.messages.from_messages import to_sample
+from trawl_ros.messages.point_clouds import read_point_cloud
+from trawl_ros.plots.moments import (
+    IMAGE,
+    MOUTH,
+    POSE,
+    SCAN,
+    SECTION,
+    Moment,
+    corners,
+    read_moments,
+)
+from trawl_ros.plots.records import SonarPicture, Tow
+
+Sweep = tuple[SonarImageSample, SonarScanSample]
+
+READING_AWAY_S = 60.0
+"""A reading of the opening belongs to a sweep that is not further away."""
+
+
+def read_sweeps(
+    path: Path, tow: Tow, times: Sequence[float], namespace: str
+) -> tuple[list[SonarPicture | None], list[str]]:
+    """Find the sweep that came in nearest to each of the times (s, rising).
+
+    Returns
+    -------
+    list
+        A picture per time; None where no sweep is near, or nobody knows where its beams look.
+    list
+        A sentence for each sweep of the latter kind.
+    """
+    sweeps: list[Sweep | None] = []
+    problems: list[str] = []
+    for moment in read_moments(path, tow, times, namespace, [IMAGE, SCAN]):
+        try:
+            sweeps.append(sweep_of(moment, tow))
+        except MessageError as reason:
+            sweeps.append(None)
+            problems.append(str(reason))
+    if not any(sweeps):
+        return [None for _ in times], problems
+    # Truth from the middle of the sweep, so that neither its first nor its last beams are far off.
+    middles = [
+        time if sweep is None else tow.time(sweep[0].stamp) + 0.5 * sweep[1].sweep_s
+        for time, sweep in zip(times, sweeps, strict=True)
+    ]
+    order = np.argsort(middles, kind='stable')
+    there = read_moments(path, tow, [middles[k] for k in order], namespace, [SECTION, MOUTH, POSE])
+    pictures: list[SonarPicture | None] = [None for _ in times]
+    for k, moment in zip(order, there, strict=True):
+        sweep = sweeps[k]
+        if sweep is not None:
+            pictures[k] = _picture(sweep, moment, tow)
+    return pictures, problems
+
+
+def sweep_of(moment: Moment, tow: Tow) -> Sweep | None:
+    """The image with the scan that belongs to it; None without an image.
+
+    Raises
+    ------
+    MessageError
+        If no scan says at which angles the image's beams look.
+    """
+    if IMAGE not in moment.messages:
+        return None
+    image = to_sample(IMAGE, moment.messages[IMAGE])
+    assert isinstance(image, SonarImageSample)
+    scan = to_sample(SCAN, moment.messages[SCAN]) if SCAN in moment.messages else None
+    if (
+        not isinstance(scan, SonarScanSample)
+        or scan.stamp != image.stamp
+        or len(scan.ranges) != len(image.image)
+    ):
+        raise MessageError(
+            f'{IMAGE}: the sweep of {tow.time(image.stamp):.1f} s has no {SCAN} of the same stamp '
+            'and number of beams, which would say at which angles they look'
+        )
+    return image, scan
+
+
+def _picture(sweep: Sweep, moment: Moment, tow: Tow) -> SonarPicture:
+    image, scan = sweep
+    time = tow.time(image.stamp)
+    height, width = (
+        tow.measured[name].near(time, READING_AWAY_S) if name in tow.measured else math.nan
+        for name in ('opening_height', 'opening_width')
+    )
+    mouth, closed = _mouth(moment)
+    return SonarPicture(time, image, scan, height, width, mouth, closed)
+
+
+def _mouth(moment: Moment) -> tuple[np.ndarray, bool]:
+    """Truth in the sonar's plane (n, 2): what passes through it, or the ropes turned into it."""
+    if SECTION in moment.messages:
+        through = read_point_cloud(SECTION, moment.messages[SECTION], ('x', 'y'))
+        if len(through):
+            return through, False
+    if MOUTH in moment.messages and POSE in moment.messages:
+        pose = moment.messages[POSE].pose
+        turn, place = pose.orientation, pose.position
+        axes = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix()
+        return (corners(moment) - [place.x, place.y, place.z]) @ axes[:, :2], True
+    return np.zeros((0, 2)), False
