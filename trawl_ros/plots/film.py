@@ -1,7 +1,7 @@
 """The tow as a short film: the gear from above and from the side, and the sonar's picture."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -85,5 +85,6 @@ def _draw(views: gear.Views, frame: Frame, *, with_sonar: bool) -> list[Artist]:
     if not with_sonar:
         drawn += gear.draw(frame.shape, views.right, gear.BEHIND)
     elif frame.picture is not None:
-        drawn += sonar.draw(views.right, frame.picture)
+        # At this size the marks of truth would hide the echoes.
+        drawn += sonar.draw(views.right, replace(frame.picture, mouth=frame.picture.mouth[:0]))
     return drawn
