@@ -5,6 +5,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 
 from trawl_ros.bags.import_log import import_log
 from trawl_ros.bags.reader import Bag
@@ -150,6 +151,14 @@ def test_rows_without_a_reading_give_no_message(run):
 def test_rows_out_of_order_come_in_order_of_time(run):
     _, found = run()
     stamps = [sample.stamp for sample in found['winch/joint_states']]
+    assert stamps == sorted(stamps)
+
+
+def test_also_in_the_file_readings_stand_in_the_order_of_time(run, tmp_path):
+    run()
+    with (tmp_path / 'bag' / 'bag_0.mcap').open('rb') as stream:
+        stored = make_reader(stream).iter_messages(log_time_order=False)
+        stamps = [message.log_time for _, _, message in stored]
     assert stamps == sorted(stamps)
 
 
