@@ -4,6 +4,7 @@ import os
 from collections import Counter
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
@@ -129,13 +130,17 @@ def same(found, expected):
         [value for sample in listed for value in numbers(vars(sample).values())]
         for listed in (found, expected)
     ]
-    return len(found) == len(expected) and flat[0] == pytest.approx(flat[1], rel=1e-6, abs=1e-9)
+    return len(found) == len(expected) and flat[0] == pytest.approx(
+        flat[1], rel=1e-6, abs=1e-9, nan_ok=True
+    )
 
 
 def numbers(values):
     for value in values:
         if isinstance(value, (int, float)):
             yield value
+        elif isinstance(value, np.ndarray):
+            yield from value.ravel().tolist()
         elif not isinstance(value, str):
             yield from numbers(value)
 
