@@ -90,9 +90,18 @@ class Tow:
         latest = self.lookout.stamps['sim_node']
         mark = latest[-1] / SECOND if latest else 0.0
         for node, before in sources.items():
-            self.graph.until(lambda: len(self.lookout.stamps[node]) > before + 1)  # noqa: B023
+            self.until(lambda: len(self.lookout.stamps[node]) > before + 1)  # noqa: B023
         for listener in LISTENERS:
-            self.graph.until(lambda: self.lookout.come_to(listener) > mark)  # noqa: B023
+            self.until(lambda: self.lookout.come_to(listener) > mark)  # noqa: B023
+
+    def until(self, condition):
+        """Wait for something while all processes run."""
+
+        def is_so():
+            self.processes.check()
+            return condition()
+
+        self.graph.until(is_so)
 
 
 @pytest.fixture(scope='module')

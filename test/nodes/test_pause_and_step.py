@@ -1,6 +1,8 @@
 """A tow is paused, towed on step by step, and resumed; set back, all begin anew."""
 
+import re
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -20,6 +22,8 @@ from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 pytestmark = pytest.mark.ros
 
 DOMAIN = 102
+TIME_SCALE = 5.0
+DOCUMENT = Path(__file__).parents[2] / 'docs/diagnostics.md'
 INSTRUMENTS = (WinchNode, DoorSensorNode, TrawlSonarNode, VesselNode)
 
 
@@ -67,10 +71,16 @@ def simulation(graph, crew, gear_path):
         gear=str(gear_path),
         warp_length_m=300,
         speed_m_s=2.1,
-        time_scale=10.0,
+        time_scale=TIME_SCALE,
     )
     graph.until(lambda: crew.latest > 1.0)
     return node
+
+
+def all_heard(graph, crew, simulation):
+    """Wait until all truth has arrived that is under way; give its time (s)."""
+    graph.until(lambda: crew.latest * SECOND == simulation._latest)
+    return crew.latest
 
 
 # In the order of one watch at sea: the tests share the simulation, which is slow to begin.
@@ -80,8 +90,7 @@ def test_paused_nothing_moves_and_resumed_it_goes_on_without_a_gap(graph, crew, 
     answer = graph.call(crew, 'pause')
     assert answer.success
     assert answer.message.startswith('the tow is paused at ')
-    graph.rest(0.2)
-    at = crew.latest
+    at = all_heard(graph, crew, simulation)
     graph.rest(0.5)
     assert crew.latest == at
     graph.until(lambda: crew.statuses_heard['/trawl/sim_node: tow'].message == 'paused', 3.0)
@@ -96,8 +105,8 @@ def test_a_step_is_one_truth(graph, crew, simulation):
     assert not refusal.success
     assert refusal.message == 'the tow is not paused; expected a call of pause before'
     graph.call(crew, 'pause')
-    graph.rest(0.2)
-    number, at = len(crew.truth), crew.latest
+    at = all_heard(graph, crew, simulation)
+    number = len(crew.truth)
     for _ in range(3):
         assert graph.call(crew, 'step').success
     graph.until(lambda: len(crew.truth) == number + 3)
@@ -112,8 +121,31 @@ def test_real_time_factors_are_reported_by_all_who_go_by_stamps(graph, crew, sim
     graph.rest(2.5)
     for name in names:
         values = crew.statuses_heard[f'/trawl/{name}: clock'].values
-        assert float(values['real-time factor']) == pytest.approx(10.0, rel=0.3), name
+        # A busy machine falls behind, so only the order is held to it.
+        assert 0.3 * TIME_SCALE < float(values['real-time factor']) < 1.3 * TIME_SCALE, name
     assert 'real-time factor' not in crew.statuses_heard['/trawl/crew: clock'].values
+
+
+def test_what_the_document_promises_is_reported(graph, crew, simulation):
+    for status, node in (('messages', 'winch_node'), ('clock', 'winch_node'),
+                         ('tow', 'sim_node'), ('instruments', 'winch_node')):  # fmt: skip
+        reported = crew.statuses_heard[f'/trawl/{node}: {status}'].values
+        promised = documented(status)
+        assert promised, status
+        assert promised - {'step'} <= set(reported), status
+
+
+def documented(subsystem):
+    """Keys that stand for themselves in the rows of a subsystem, and those that follow it."""
+    keys, within = set(), False
+    for line in DOCUMENT.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip('|').split(' | ')]
+        if line.startswith('|') and cells[0].strip('| '):
+            within = f'`{subsystem}`' in cells[:2]
+        if within and line.startswith('|'):
+            keys |= {key for key in re.findall('`([^`]+)`', '|'.join(cells[1:]))
+                     if not re.search('[<…_/]', key)}  # fmt: skip
+    return keys - {subsystem}
 
 
 def test_after_a_reset_instruments_begin_anew_and_read_the_same_again(graph, crew, simulation):

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 import psutil
@@ -30,7 +31,7 @@ class Glance:
 
     ``data_s`` is the stamp of the newest truth and ``wall_s`` wall time since the first truth.
     By node: ``memory_mb`` is resident memory, ``cpu_s`` the processor time since its start,
-    ``delay_s`` the largest data time since the glance before by which it was behind the truth.
+    ``delay_s`` the mean data time since the glance before by which it was behind the truth.
     """
 
     data_s: float
@@ -83,7 +84,7 @@ def watch_chain(
     """
     watched = {node: psutil.Process(pid) for node, pid in processes.pids().items()}
     glances: list[Glance] = []
-    delays: dict[str, float] = {}
+    delays: dict[str, list[float]] = {}
     began: float | None = None
     while not stop() and not processes.finished('sim_node'):
         time.sleep(LOOK_S)
@@ -91,10 +92,11 @@ def watch_chain(
             continue
         began = time.monotonic() if began is None else began
         for node, delay in monitor.delays_s().items():
-            delays[node] = max(delay, delays.get(node, 0.0))
+            delays.setdefault(node, []).append(delay)
         told(data_s)
         if not glances or data_s >= glances[-1].data_s + every_s:
-            seen = _glance(watched, data_s, time.monotonic() - began, delays)
+            means = {node: fmean(found) for node, found in delays.items()}
+            seen = _glance(watched, data_s, time.monotonic() - began, means)
             if seen is not None:
                 glances.append(seen)
             delays = {}

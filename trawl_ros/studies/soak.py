@@ -20,7 +20,7 @@ GLANCES = 500
 SETTLE_S = 10.0
 """Wall time at the start of the run in real time that is not counted."""
 
-MOST_BAG_MB_PER_HOUR = 150.0
+MOST_BAG_MB_PER_HOUR = 250.0
 """Room that the bag of a tow may need; it is gone again afterwards."""
 
 Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]

@@ -38,6 +38,7 @@ def soak_rows(soak: Soak) -> list[Row]:
         rows += [_memory(node, warm) for node in CHAIN]
         rows += [_delay_growth(node, warm, 1.0 / soak.plan.truth_rate_hz) for node in CONSUMERS]
         rows += [_delay(node, warm) for node in CONSUMERS]
+        rows += [_effort(node, warm) for node in CHAIN]
         rows += [_pace(warm), _bag(soak, towed)]
     counted = [g for g in soak.real if g.wall_s >= SETTLE_S]
     if len(counted) > 1:
@@ -73,10 +74,21 @@ def _delay(node: str, glances: Sequence[Glance]) -> Row:
     seen = [g.delay_s[node] for g in glances if node in g.delay_s]
     note = (
         'time at sea between the newest truth and what the node has dealt with, as the study '
-        'hears of both; mean, least and most of the largest between two glances'
+        'hears of both; mean, and least and most of means between two glances'
     )
     mean, least, most = (float(f(seen)) if seen else np.nan for f in (np.mean, min, max))
     return Row(f'{node}: delay', mean, least, most, 's', note=note)
+
+
+def _effort(node: str, glances: Sequence[Glance]) -> Row:
+    def of(piece: Sequence[Glance]) -> float:
+        hours = (piece[-1].data_s - piece[0].data_s) / 3600.0
+        return (piece[-1].cpu_s[node] - piece[0].cpu_s[node]) / hours
+
+    pieces = [of(piece) for piece in _pieces(glances)]
+    note = f'least and most of {len(pieces)} pieces of the tow'
+    return Row(f'{node}: processor time', of(glances), min(pieces), max(pieces),
+               's per hour at sea', note=note)  # fmt: skip
 
 
 def _pace(glances: Sequence[Glance]) -> Row:
