@@ -32,6 +32,7 @@ class Crew(TrawlNode):
         self.winches = []
         self.speeds = []
         self.reports = {}
+        self.reported_at = {}
         for topic in ('command/winch', 'command/vessel'):
             self.advertise(topic)
         self.advertise(SYNC, HEADER)
@@ -42,6 +43,7 @@ class Crew(TrawlNode):
     def _hear(self, message):
         for status in read_statuses(message):
             self.reports[status.name] = status
+            self.reported_at[status.name] = stamp_of(message)
 
     def has_come_to(self, stamp):
         self.send(SYNC, header(stamp, 'crew'))
@@ -170,6 +172,13 @@ def test_reset_starts_the_same_tow_again(graph, simulation, crew):
     graph.until(lambda: crew.latest >= LEAD_S - 1e-9)
     graph.rest(0.3)
     assert crew.latest == pytest.approx(LEAD_S), 'progress from before the reset gave credit'
+
+
+def test_diagnostics_carry_the_time_that_the_simulation_publishes(graph, simulation, crew):
+    crew.reported_at.clear()
+    graph.until(lambda: any('sim_node' in name for name in crew.reported_at))
+    (at,) = {stamp for name, stamp in crew.reported_at.items() if 'sim_node' in name}
+    assert at <= crew.latest * SECOND + SECOND
 
 
 def test_a_change_at_run_time_has_effect(graph, simulation, crew):

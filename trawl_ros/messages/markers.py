@@ -15,7 +15,7 @@ from trawl_ros.messages.stamps import header
 from trawl_ros.messages.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
 from trawl_ros.simulation.truth import SIDES, DoorTruth, GearPicture, Polyline, SchoolTruth
 
-FULL_SCALE = 100e3
+FULL_SCALE = 200e3
 """Tension (N) that is drawn in full red; fixed, so that colours compare between pictures."""
 
 LINE_WIDTH = 0.3

@@ -56,6 +56,9 @@ class BagPlayer(TrawlNode):
                'behind.', live=True),
     )  # fmt: skip
 
+    _clock_published = False
+    _latest = 0
+
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('bag_player', **kwargs)
         self._check_parameters()
@@ -77,6 +80,10 @@ class BagPlayer(TrawlNode):
         for act in (self._pause, self._resume, self._toggle_paused, self._play_next):
             self.offer(f'~/{act.__name__.strip("_")}', act)
         self.every(TICK_S, self._tick)
+
+    def now(self) -> int:
+        """Give the time that this node publishes on /clock, or that of its own clock, ns."""
+        return self._latest if self._clock_published else super().now()
 
     def objection(self, name: str, value: Any) -> str | None:
         """Say why a live parameter cannot take a value just now; None if it can."""

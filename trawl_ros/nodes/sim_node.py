@@ -73,6 +73,9 @@ class SimNode(TrawlNode):
                'behind.', live=True),
     )  # fmt: skip
 
+    _clock_published = False
+    _latest = 0
+
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('sim_node', **kwargs)
         self._scenario = self._load_scenario()
@@ -98,6 +101,10 @@ class SimNode(TrawlNode):
         for service in (self._reset, self._pause, self._resume, self._step):
             self.offer(service.__name__.strip('_'), service)
         self._ticker = self.every(self._tick_s(), self._tick)
+
+    def now(self) -> int:
+        """Give the time that this node publishes on /clock, or that of its own clock, ns."""
+        return self._latest if self._clock_published else super().now()
 
     def objection(self, name: str, value: Any) -> str | None:
         """Say why a live parameter cannot take a value just now; None if it can."""
