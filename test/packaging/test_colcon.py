@@ -92,7 +92,8 @@ def test_the_share_look_up_finds_the_installed_data_and_not_the_checkout(workspa
 
 def test_all_data_are_installed_in_their_sub_folders(workspace):
     def data(share: Path) -> set[Path]:
-        return {file for file in files_below(share) if file.parts[0] in ('config', 'bags', 'launch')}
+        folders = ('config', 'bags', 'launch')
+        return {file for file in files_below(share) if file.parts[0] in folders}
 
     wanted = data(workspace.folder / 'src' / 'trawl_ros')
     assert Path('config/gear/kaifuha.yaml') in wanted

@@ -157,7 +157,7 @@ def test_instruments_may_be_overridden_in_place(tmp_path: Path) -> None:
         ('seed: 7', 'seed: -1', 'seed: found -1'),
         ('seed: 7', 'seed: true', 'seed: found true, expected a whole number'),
         ('seed: 7', 'truth_rate_hz: 3', 'truth_rate_hz: found 3, expected 10 divided by a whole'),
-        ('seed: 7', 'record: [video]', "record[0]: found 'video', expected 'instruments', 'pictures' or 'truth'"),
+        ('seed: 7', 'record: [video]', "record[0]: found 'video', expected 'instruments', 'pic"),
         ('seed: 7', 'coefficients: {a7: 1}', 'coefficients.a7: unknown key, expected a1'),
         ('seed: 7', 'coefficients: {a1: .inf}', 'coefficients.a1: found inf, expected a finite'),
         ('seed: 7', 'refine: {net: 0}', 'refine.net: found 0'),
