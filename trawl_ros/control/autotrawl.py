@@ -41,8 +41,9 @@ FREEZE_CHANGES, FREEZE_TRAVEL_M = 20, 1.0
 wanted lengths have gone up and down by so much."""
 
 COUNTER_S, COUNTER_SPEED, COUNTER_DEAD_BAND_M = 30.0, 0.1, 0.2
-SETTLING_S = 10.0
-"""A winch stands still so long after its set length."""
+SETTLING_S, CALM_S = 10.0, 60.0
+"""How long after its set length a winch stands still, and the tension is no more that of hauling
+or veering, to which nothing is to be given."""
 
 COUNTER_SHARE = 0.05
 """A counter is believed within this share of the length; its part is bounded by it."""
@@ -97,7 +98,7 @@ class AutotrawlSettings:
 
     mode: Mode = 'tension'
     tension: float = math.nan
-    balance_gain: float = 0.4
+    balance_gain: float = 0.5
     balance_dead_band: float = 0.004
     give_gain: float = 2.0
     haul_gain: float = 2.0
@@ -235,7 +236,9 @@ class Autotrawl:
             self._changes[side] += cell.take(cell_reading, sample.stamp, followed)
             if math.isfinite(cell.value):
                 self._smooth[side].take(cell.value, dt)
-                self._means[side].take(cell.value, dt)
+                if self._at_rest_s < CALM_S:
+                    self._means[side] = LowPass(MEAN_S)
+                self._means[side].take(self._smooth[side].value, dt)
 
     def _approach_set_lengths(self, dt: float) -> None:
         most = self.settings.max_speed * dt
@@ -283,7 +286,7 @@ class Autotrawl:
             tension = self._cells[side].value
             scale = share * self._set[side] / GIVE_LENGTH_M
             wanted = -self._given[side] / settings.haul_back_s
-            if math.isfinite(tension):
+            if math.isfinite(tension) and self._at_rest_s >= CALM_S:
                 held = settings.tension if settings.tension > 0.0 else self._means[side].value
                 excess = _beyond(tension / held - 1.0, settings.give_dead_band)
                 gain = settings.give_gain if excess > 0.0 else settings.haul_gain

@@ -40,6 +40,7 @@ class Watch:
         self._recent: deque[float] = deque(maxlen=3)
         self._heard: int | None = None
         self._followed_at_change = 0.0
+        self._frozen = False
 
     def take(self, reading: float, stamp: int, followed: float) -> bool:
         """Take a reading.
@@ -73,6 +74,9 @@ class Watch:
             self._followed_at_change = followed
         self._recent.append(reading)
         if abs(followed - self._followed_at_change) > self._frozen_after:
+            self._frozen = True
+        self._frozen = self._frozen and not changed
+        if self._frozen:
             self._give_up('frozen')
         else:
             self.problem = ''
