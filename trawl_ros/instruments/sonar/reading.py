@@ -169,4 +169,4 @@ def _seabed(image: np.ndarray, level: np.ndarray, grid: Grid) -> np.ndarray:
     fall = np.cos(grid.angles) - slope * np.sin(grid.angles)
     along = np.where(fall > 0.05, depth / np.maximum(fall, 0.05), math.inf)
     # A beam hears what its neighbours look at, too.
-    return minimum_filter1d(along, 5, mode='nearest') - 1.0
+    return minimum_filter1d(along, 7, mode='nearest') - 1.0
