@@ -1,7 +1,7 @@
 """The chain for an hour at sea: memory stays, nothing falls behind, and all fits on one core.
 
 The hour is towed with a coarse net and truth every two seconds, which takes a minute; the day of
-`docs/studies/soak.md` has the gear as it is, and truth four times as often.
+`docs/studies/soak.md` has truth four times as often.
 """
 
 import pytest

@@ -5,12 +5,31 @@ from shutil import copyfile
 
 import yaml
 
+from trawl_ros.gear.load import load_gear
+
 TRUTH_HZ = 2.0
 LEG_MINUTES = 30.0
 LEGS = (
     {'name': 'hold', 'warp_length_m': 400.0, 'speed_m_s': 2.0},
     {'name': 'haul', 'warp_length_m': 380.0, 'speed_m_s': 2.05},
 )
+
+
+COARSEST = 12
+"""Meshes around the mouth of the coarsest net there is."""
+
+
+def write_coarse_gear(folder: Path, gear: str) -> str:
+    """Write a gear with its netting as coarse as it may be, and give the file's path.
+
+    It is towed several times faster; but for the markers, messages are as many and as large.
+    """
+    record = load_gear(gear)
+    netting = record.netting.model_copy(update={'around': COARSEST})
+    data = record.model_copy(update={'netting': netting}).model_dump(mode='json')
+    path = folder / 'coarse.yaml'
+    path.write_text(yaml.safe_dump(data, sort_keys=False))
+    return str(path)
 
 
 def write_long_tow(folder: Path, gear: str, hours: float, truth_rate_hz: float = TRUTH_HZ) -> Path:

@@ -12,7 +12,7 @@ from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.errors import TrawlError
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.studies.chain import Glance, start_chain, watch_chain
-from trawl_ros.studies.long_tow import TRUTH_HZ, write_long_tow
+from trawl_ros.studies.long_tow import TRUTH_HZ, write_coarse_gear, write_long_tow
 
 GLANCES = 500
 """How often a tow is looked at, however long it is."""
@@ -31,12 +31,14 @@ class Plan:
     """How long the chain runs: at sea as fast as it goes (hours), and in real time (s).
 
     ``truth_rate_hz`` is how often there is truth at sea; in real time it is the usual rate.
+    ``coarse`` says that the gear of the long tow has a coarse net.
     """
 
     hours: float
     gear: str
     real_time_s: float
     truth_rate_hz: float = TRUTH_HZ
+    coarse: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,9 +80,8 @@ def run_soak(plan: Plan, folder: Path, shown: Shown, stop: Callable[[], bool]) -
         )
     with TemporaryDirectory(dir=folder) as name:
         scratch = Path(name)
-        fast = _run(
-            plan.gear, plan.hours, plan.truth_rate_hz, 0.0, scratch, folder / 'log', shown, stop
-        )
+        gear = write_coarse_gear(scratch, plan.gear) if plan.coarse else plan.gear
+        fast = _run(gear, plan.hours, plan.truth_rate_hz, 0.0, scratch, folder / 'log', shown, stop)
         files = list((scratch / 'bag').iterdir())
         bag_mb = sum(file.stat().st_size for file in files) / 1e6
     real: list[Glance] = []
