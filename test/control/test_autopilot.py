@@ -137,6 +137,16 @@ def test_a_track_of_two_legs_is_followed_in_a_cross_current(gear):
     assert voyage.states[-1].ended
 
 
+@pytest.mark.parametrize('max_turn', [0.12, 0.3])
+def test_a_ship_that_turns_slowly_begins_in_time(gear, max_turn):
+    corner = np.array([3500.0, 0.0])
+    settings = AutopilotSettings(max_turn=math.radians(max_turn))
+    voyage = Voyage(gear, current=np.array([0.05, 0.35, 0.0]), settings=settings)
+    voyage.pilot.steer(FollowTrack(np.array([corner, [3500.0, 4000.0]])))
+    places, _ = voyage.go(40)
+    assert (places[:, 0] - corner[0]).max() < 25.0
+
+
 def test_after_the_end_of_a_track_the_course_is_held(gear):
     voyage = Voyage(gear)
     voyage.pilot.steer(FollowTrack(np.array([[400.0, 0.0]])))

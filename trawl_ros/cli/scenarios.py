@@ -1,5 +1,7 @@
 """``trawl scenarios``."""
 
+from typing import Literal
+
 import click
 from rich.console import Console
 from rich.table import Table
@@ -9,15 +11,19 @@ from trawl_ros.scenario.records import ScenarioRecord
 from trawl_ros.schema import load_yaml, validated
 from trawl_ros.share import share_path
 
+WIDTH = 140
+
 
 @click.command('scenarios')
 def command() -> None:
     """List the scenarios that come with the package, each with what it is for."""
     table = Table(box=None, pad_edge=False)
     for heading in ('name', 'minutes', 'description'):
-        table.add_column(heading, justify='right' if heading == 'minutes' else 'left')
+        side: Literal['left', 'right'] = 'right' if heading == 'minutes' else 'left'
+        table.add_column(heading, justify=side, no_wrap=True)
     for path in sorted(share_path('config', 'scenarios').glob('*.yaml')):
         record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)
         minutes = sum(step.minutes for step in record.steps)
         table.add_row(path.stem, f'{minutes:g}', record.description)
-    Console().print(table)
+    # One line each, whatever the width of the terminal.
+    Console(width=WIDTH, highlight=False).print(table, soft_wrap=True)

@@ -92,7 +92,9 @@ class Track:
             along, across = self._place(position)
         left = float(self._lengths[self._leg] - along)
         self._ended = self._ended or (self._leg == last and left <= 0.0)
-        course = self._courses[self._leg] - math.atan2(across, self._look_ahead)
+        # Nearer than this a ship that turns slowly would not begin her turn at its full rate.
+        ahead = max(self._look_ahead, 0.5 * way.speed / way.turn)
+        course = self._courses[self._leg] - math.atan2(across, ahead)
         return OnTrack(self._leg, across, left, math.remainder(course, 2 * math.pi), self._ended)
 
     def _place(self, position: np.ndarray) -> tuple[float, float]:
