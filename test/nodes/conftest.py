@@ -30,7 +30,8 @@ sea:
 start: {warp_length_m: 300.0, speed_m_s: 2.1}
 steps:
   - {name: hold, minutes: 0.1}
-  - {name: veer, minutes: 0.3, warp_length_m: 305.0, speed_m_s: 2.15}
+  - {name: veer, minutes: 0.3, warp_length_m: 305.0, speed_m_s: 2.15, steer: {heading_deg: 33.0},
+     autotrawl: {mode: lengths}}
 """
 
 
