@@ -101,7 +101,7 @@ class AutotrawlSettings:
     balance_gain: float = 0.5
     balance_dead_band: float = 0.004
     give_gain: float = 2.0
-    haul_gain: float = 2.0
+    haul_gain: float = 1.0
     give_dead_band: float = 0.02
     haul_back_s: float = 60.0
     max_give_m: float = 4.0
