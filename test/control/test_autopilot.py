@@ -36,7 +36,7 @@ class Voyage:
 
     gear: GearRecord
     current: np.ndarray = field(default_factory=lambda: STILL)
-    settings: AutopilotSettings = field(default_factory=AutopilotSettings)
+    settings: AutopilotSettings = AutopilotSettings(max_turn=math.radians(0.3))
     heading: float = 0.0
     lost: tuple[str, ...] = ()
     school: np.ndarray | None = None

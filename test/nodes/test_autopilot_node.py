@@ -130,7 +130,7 @@ def test_ship_and_winches_are_driven_through_the_graph(graph, lookout, gear_path
 
 
 def test_parameters_change_what_is_steered(graph, lookout, pilot):
-    node = pilot(mode='heading', heading_deg=90.0, speed_m_s=2.0)
+    node = pilot(mode='heading', heading_deg=90.0, speed_m_s=2.0, max_turn_deg_s=0.3)
     speed, turn = answered(graph, lookout, 1, 0.0)
     assert (speed, turn) == (2.0, pytest.approx(math.radians(0.3)))
     assert change(node, heading_deg=-90.0, max_turn_deg_s=0.1, speed_m_s=2.3).successful

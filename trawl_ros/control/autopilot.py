@@ -11,7 +11,7 @@ from trawl_ros.control.track import Track
 from trawl_ros.instruments.geodesy import Datum
 
 GAIN_PER_S = 0.05
-"""Rate of turn per angle that is left: 0.3 deg/s at 6 degrees."""
+"""Rate of turn per angle that is left: 0.15 deg/s at 3 degrees."""
 
 BRAKING = 0.5
 """Which part of the greatest turn acceleration is used to end a turn."""
@@ -36,12 +36,13 @@ SAME_SCHOOL_M = 500.0
 class AutopilotSettings:
     """How an autopilot works.
 
-    ``max_turn`` is the fastest rate of turn (rad/s), which the gear must be able to follow;
+    ``max_turn`` is the fastest rate of turn (rad/s), which the gear must be able to follow: in a
+    faster turn it loses speed, so that its doors lose their lift and it sinks;
     ``turn_acceleration`` how fast the ship takes it up (rad/s²); ``look_ahead`` how far ahead on a
     track is aimed (m).
     """
 
-    max_turn: float = math.radians(0.3)
+    max_turn: float = math.radians(0.15)
     turn_acceleration: float = math.radians(0.05)
     look_ahead: float = 300.0
 
