@@ -60,7 +60,8 @@ class WindowOptions:
         Identical successive readings, at least, that make a sensor frozen, if they are also
         half of its readings or more.
     reorder_s
-        Lateness (s) up to which readings may come in any order.
+        Lateness (s) up to which readings may come in any order; what is read off a sweep of the
+        sonar comes when that ends, some 10 s after its stamp.
     patience_s
         A window is decided without a channel that lags the winch by more than this (s).
     """
@@ -80,7 +81,7 @@ class WindowOptions:
     outlier_limit: float = 6.0
     outlier_fraction: float = 0.2
     frozen_count: int = 10
-    reorder_s: float = 2.0
+    reorder_s: float = 12.0
     patience_s: float = 60.0
 
     def __post_init__(self) -> None:

@@ -234,10 +234,11 @@ class SonarStudy:
         )
         simulation.command = Command(warp, warp, speed)
         truths = [simulation.truth()]
-        for _ in range(round(HAUL_S * TRUTH_HZ)):
+        rate = self._parameters.sweep.rate_hz
+        per_haul = min(math.floor(HAUL_S * rate), self._sweeps)
+        for _ in range(math.ceil(per_haul / rate * TRUTH_HZ)):
             simulation.advance()
             truths.append(simulation.truth())
-        per_haul = math.floor(HAUL_S * self._parameters.sweep.rate_hz)
         for _ in range(math.ceil(self._sweeps / per_haul)):
             yield iter(truths)
 

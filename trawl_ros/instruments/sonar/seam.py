@@ -31,17 +31,20 @@ def follow(level: np.ndarray) -> np.ndarray:
     rows, cells = worth.shape
     steps = np.arange(-REACH, REACH + 1)
     cost = BEND * np.abs(steps)
-    total = worth[0]
+    total = np.full(cells + 2 * REACH, -np.inf)
+    inner = slice(REACH, REACH + cells)
+    # A view: it shows the totals of each cell's neighbours as they are at the time.
+    around = np.lib.stride_tricks.sliding_window_view(total, len(steps))
+    total[inner] = worth[0]
     came_from = np.zeros((rows, cells), dtype=int)
     everywhere = np.arange(cells)
     for row in range(1, rows):
-        padded = np.pad(total, REACH, constant_values=-np.inf)
-        reached = np.lib.stride_tricks.sliding_window_view(padded, len(steps)) - cost
+        reached = around - cost
         step = np.argmax(reached, axis=1)
         came_from[row] = everywhere + steps[step]
-        total = worth[row] + reached[everywhere, step]
+        total[inner] = worth[row] + reached[everywhere, step]
     line = np.empty(rows, dtype=int)
-    line[-1] = np.argmax(total)
+    line[-1] = np.argmax(total[inner])
     for row in range(rows - 1, 0, -1):
         line[row - 1] = came_from[row, line[row]]
     return line

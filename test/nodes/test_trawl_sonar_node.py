@@ -1,0 +1,128 @@
+"""`trawl_sonar_node` gives what its instruments give, from all the truth it listens to."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.gear.load import load_gear  # noqa: E402
+from trawl_ros.instruments.instrument import Draws  # noqa: E402
+from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
+from trawl_ros.instruments.trawl_sonar import SonarInstruments  # noqa: E402
+from trawl_ros.messages.cdr import serialize  # noqa: E402
+from trawl_ros.messages.commands import fault_command  # noqa: E402
+from trawl_ros.messages.from_messages import to_sample  # noqa: E402
+from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.to_messages import sample_message  # noqa: E402
+from trawl_ros.messages.truth_to_messages import truth_messages  # noqa: E402
+from trawl_ros.model.gear_model import GearModel  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
+from trawl_ros.scenario.surroundings import build_surroundings  # noqa: E402
+from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
+from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth, Truth  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 221
+SEED = 6
+
+
+@pytest.fixture(scope='module')
+def truths(model: GearModel) -> list[Truth]:
+    """A net that goes ahead for 25 s, over a seabed and through a school."""
+    start = Simulation(model, Command(300.0, 300.0, 2.1)).truth()
+    school = SchoolTruth(
+        start.net.sonar_position + [20.1, 3.3, -30.7], np.array([60.3, 20.2, 15.1]), 0.31
+    )
+    seabed = SeabedTruth(math.inf, start.net.headrope_depth + 85.0)
+    found = []
+    for k in range(51):
+        way = np.array([2.1 * k / 2, 0.0, 0.0])
+        net = replace(start.net, sonar_position=start.net.sonar_position + way)
+        found.append(
+            replace(start, stamp=k * SECOND // 2, net=net, schools=(school,), seabed=seabed)
+        )
+    return found
+
+
+class Deck(TrawlNode):
+    """Says what is true, and collects what the sonar makes of it."""
+
+    def __init__(self, **kwargs):
+        super().__init__('deck', **kwargs)
+        self.heard = {topic: [] for topic in TrawlSonarNode.SAMPLES}
+        for topic in (*TrawlSonarNode.TRUTH, 'command/fault'):
+            self.advertise(topic)
+        for topic, messages in self.heard.items():
+            self.listen(topic, messages.append, CONSUMER)
+
+    def tell(self, truth):
+        for topic, message in truth_messages(truth):
+            if topic in TrawlSonarNode.TRUTH:
+                self.send(topic, message)
+
+    def connected(self):
+        return all(self.count_subscribers(f'/trawl/{t}') for t in TrawlSonarNode.TRUTH) and all(
+            self.count_publishers(f'/trawl/{t}') for t in TrawlSonarNode.SAMPLES
+        )
+
+
+@pytest.fixture
+def graph(open_graph):
+    with open_graph(DOMAIN) as graph:
+        yield graph
+
+
+@pytest.fixture
+def deck(graph, gear_path):
+    deck = graph.add(Deck)
+    graph.add(TrawlSonarNode, gear=str(gear_path), seed=SEED)
+    graph.until(deck.connected)
+    graph.rest(0.5)
+    return deck
+
+
+def test_the_node_sends_byte_for_byte_what_the_instruments_give(graph, deck, truths, gear_path):
+    for truth in truths:
+        deck.tell(truth)
+        graph.rest(0.01)
+    graph.until(lambda: len(deck.heard['sonar/bottom']) == 26)
+    graph.rest(0.5)
+    instruments = SonarInstruments(
+        load_instruments().sonar,
+        Draws(SEED),
+        surroundings=build_surroundings(load_gear(gear_path)),
+    )
+    expected = {topic: [] for topic in TrawlSonarNode.SAMPLES}
+    for truth in truths:
+        for sample in instruments.observe(truth):
+            topic, message = sample_message(sample)
+            expected[topic].append(serialize(message))
+    heard = {topic: list(map(serialize, messages)) for topic, messages in deck.heard.items()}
+    assert heard == expected
+    assert len(heard['sonar/image']) == 2
+    # The fish and the seabed have come through: without them there is less to see.
+    image = to_sample('sonar/image', deck.heard['sonar/image'][0]).image
+    assert (image[30:50, 395:] > 200).any()
+
+
+def test_a_fault_by_command_silences_image_and_readings_and_goes_again(graph, deck, truths):
+    deck.send(*fault_command('sonar/image', 'silent'))
+    graph.rest(0.3)
+    for truth in truths:
+        deck.tell(truth)
+    graph.until(lambda: len(deck.heard['sonar/bottom']) == 26)
+    swept = [topic for topic in deck.heard if topic not in ('sonar/pressure', 'sonar/bottom')]
+    assert not any(deck.heard[topic] for topic in swept)
+    deck.send(*fault_command('sonar/image', 'none'))
+    graph.rest(0.3)
+    for truth in truths[:21]:
+        later = replace(truth, stamp=truth.stamp + 30 * SECOND)
+        deck.tell(later)
+    graph.until(lambda: all(deck.heard[topic] for topic in swept))
+    assert {stamp_of(deck.heard[topic][0]) for topic in swept} == {20 * SECOND}
