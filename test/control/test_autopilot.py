@@ -27,6 +27,7 @@ SECOND = 1_000_000_000
 DT = 0.5
 SPEED = 2.2
 STILL = np.zeros(3)
+SETTINGS = AutopilotSettings(max_turn=math.radians(0.3))
 DATUM = Datum(60.0, 2.0)
 
 
@@ -36,7 +37,7 @@ class Voyage:
 
     gear: GearRecord
     current: np.ndarray = field(default_factory=lambda: STILL)
-    settings: AutopilotSettings = AutopilotSettings(max_turn=math.radians(0.3))
+    settings: AutopilotSettings = SETTINGS
     heading: float = 0.0
     lost: tuple[str, ...] = ()
     school: np.ndarray | None = None

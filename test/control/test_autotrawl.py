@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.control.autotrawl import Autotrawl, AutotrawlSettings
+from trawl_ros.control.autotrawl import Autotrawl
+from trawl_ros.control.autotrawl_records import AutotrawlSettings
 from trawl_ros.instruments.samples import WinchSample
 from trawl_ros.simulation.heave import regular_heave
 from trawl_ros.simulation.sea import Sea

@@ -5,7 +5,8 @@ import time
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from trawl_ros.control.autotrawl import Autotrawl, AutotrawlSettings
+from trawl_ros.control.autotrawl import Autotrawl
+from trawl_ros.control.autotrawl_records import AutotrawlSettings
 from trawl_ros.errors import MessageError
 from trawl_ros.instruments.samples import WinchSample
 from trawl_ros.messages.commands import WINCH_COMMAND, winch_command

@@ -15,7 +15,7 @@ from trawl_ros.control.autopilot import (
     Target,
     ToSchool,
 )
-from trawl_ros.control.autotrawl import AutotrawlSettings
+from trawl_ros.control.autotrawl_records import AutotrawlSettings
 from trawl_ros.instruments.geodesy import Datum, to_east_north
 from trawl_ros.schema import Record
 
