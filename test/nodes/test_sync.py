@@ -7,7 +7,7 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 from trawl_ros.messages.stamps import SECOND, header  # noqa: E402
 from trawl_ros.nodes import sync  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.sync import HEADER, SYNC, Consumers  # noqa: E402
+from trawl_ros.nodes.sync import HEADER, SYNC, Consumers, Progress  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -114,3 +114,25 @@ def test_who_is_silent_for_long_is_missing_and_not_waited_for(graph, source, rep
 def test_progress_from_before_the_beginning_is_worth_nothing(source, report, begin):
     report('needed', begin + 61 * SECOND)
     assert source.consumers.slowest() == begin
+
+
+class Follower(TrawlNode):
+    """Deals with what another consumer sends."""
+
+    def __init__(self, **kwargs):
+        super().__init__('follower', **kwargs)
+        self.progress = Progress(self, follows_others=True)
+        self.time = 5 * SECOND
+
+    def now(self):
+        return self.time
+
+
+def test_who_follows_a_consumer_that_fell_silent_comes_as_far_as_the_clock(graph):
+    follower = graph.add(Follower)
+    graph.rest(1.5 * sync.IDLE_S)
+    assert follower.progress.stamp == sync.NOTHING, 'it has not begun'
+    follower.progress.done(3 * SECOND)
+    assert follower.progress.stamp == 3 * SECOND
+    graph.until(lambda: follower.progress.stamp == 5 * SECOND, timeout_s=10.0)
+    graph.remove(follower)

@@ -24,6 +24,9 @@ HEARTBEAT_S = 0.5
 SETTLED_S = 1.0
 """Discovery is taken to be over when nobody was added for this long."""
 
+IDLE_S = 2 * HEARTBEAT_S
+"""Who has heard nothing for this long has nothing left to deal with."""
+
 NOTHING = 0
 """What a consumer reports before it has dealt with anything."""
 
@@ -40,11 +43,23 @@ class Progress:
         Whose progress it is.
     ready
         Whether the node may announce itself; a source that waits for it starts then.
+    follows_others
+        Whether what it deals with comes from other consumers of the source, which may fall
+        silent: having heard nothing for a while, it is as far as the clock. Otherwise the source
+        would wait for it, it for them, and they, started anew, for the source.
     """
 
-    def __init__(self, node: TrawlNode, ready: Callable[[], bool] = lambda: True) -> None:
+    def __init__(
+        self,
+        node: TrawlNode,
+        ready: Callable[[], bool] = lambda: True,
+        *,
+        follows_others: bool = False,
+    ) -> None:
         self._node = node
         self._ready = ready
+        self._follows_others = follows_others
+        self._heard_at = time.monotonic()
         self._done = NOTHING
         self._reported = NOTHING
         node.advertise(SYNC, HEADER)
@@ -58,13 +73,18 @@ class Progress:
     def done(self, stamp: int) -> None:
         """All up to this stamp (ns) is dealt with; an earlier one than before starts anew."""
         self._done = stamp
+        self._heard_at = time.monotonic()
         self._node.headway.reached(stamp)
         if not 0 <= stamp - self._reported < INTERVAL_NS:
             self._report()
 
     def _beat(self) -> None:
-        if self._ready():
-            self._report()
+        if not self._ready():
+            return
+        idle = time.monotonic() - self._heard_at > IDLE_S
+        if idle and self._follows_others and self._done != NOTHING:
+            self._done = max(self._done, self._node.now())
+        self._report()
 
     def _report(self) -> None:
         self._reported = self._done
