@@ -84,14 +84,14 @@ def test_schools_move_evenly_and_are_in_every_truth(model: GearModel) -> None:
     school = School(
         np.array([800.0, -30.0, -90.0]),
         np.array([60.0, 40.0, 20.0]),
-        0.7,
+        0.75,
         np.array([0.25, -0.5, 0.0]),
     )
     simulation = Simulation(model, START, stamp=5_000_000_000, sea=Sea(schools=(school,)))
     (first,) = simulation.truth().schools
     np.testing.assert_array_equal(first.position, school.position)
     np.testing.assert_array_equal(first.size, school.size)
-    assert first.density == 0.7
+    assert first.density == 0.75
     for _ in range(20):
         simulation.advance()
     (later,) = simulation.truth().schools

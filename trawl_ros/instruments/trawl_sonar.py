@@ -28,7 +28,7 @@ from trawl_ros.instruments.sonar.echoes import Ping
 from trawl_ros.instruments.sonar.reading import read_openings
 from trawl_ros.instruments.sonar.sweep import Luck, Sweep, image_of
 from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.simulation.truth import NetTruth, SchoolTruth, Truth
+from trawl_ros.simulation.truth import NetTruth, Truth
 
 
 class TrawlSonar(Instrument[Truth, Sweep]):
@@ -132,22 +132,10 @@ def _ping(truth: Truth, angle: float) -> Ping:
         angle=angle,
         position=net.sonar_position,
         axes=_axes(net),
-        section=_as_in_messages(net.section),
-        schools=tuple(
-            SchoolTruth(
-                _as_in_messages(school.position),
-                _as_in_messages(school.size),
-                float(np.float32(school.density)),
-            )
-            for school in truth.schools
-        ),
+        section=net.section,
+        schools=truth.schools,
         altitude=altitude if altitude > 0 else math.inf,
     )
-
-
-def _as_in_messages(values: np.ndarray) -> np.ndarray:
-    """Give values as exact as point clouds carry them: the graph then gives the same image."""
-    return values.astype(np.float32).astype(float)
 
 
 def _axes(net: NetTruth) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.simulation.heave import Heave
 from trawl_ros.simulation.seabed import Seabed
-from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth
+from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth, single
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,8 @@ class School:
 
     def at(self, time: float) -> SchoolTruth:
         """Where it is at a time (s since the start of the trial)."""
-        return SchoolTruth(self.position + self.velocity * time, self.size, self.density)
+        position = self.position + self.velocity * time
+        return SchoolTruth(single(position), single(self.size), float(np.float32(self.density)))
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import numpy as np
 
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State
+from trawl_ros.simulation.truth import single
 
 
 def sonar_axes(model: GearModel, state: State) -> np.ndarray:
@@ -54,4 +55,4 @@ def section_of(model: GearModel, state: State, axes: np.ndarray) -> np.ndarray:
     diameters = 4 / np.pi * model.bars.volume[bars] / model.bars.normal_area[bars]
     # The footrope touches the plane with its middle, and need not pass through it anywhere.
     lowest = [*seen[middle, :2], model.gear.footrope.diameter_m]
-    return np.vstack([np.column_stack([places, diameters]), lowest])
+    return single(np.vstack([np.column_stack([places, diameters]), lowest]))

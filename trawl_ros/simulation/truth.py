@@ -9,8 +9,18 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 SIDES = ('port', 'starboard')
+
+
+def single(values: ArrayLike) -> np.ndarray:
+    """Give values as exact as point clouds carry them, 32 bits.
+
+    What is published as a point cloud is no more exact from the beginning, so that instruments
+    in the graph and in one process see the very same.
+    """
+    return np.asarray(values, dtype=np.float32).astype(float)
 
 
 @dataclass(frozen=True)
