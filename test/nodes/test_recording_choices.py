@@ -194,3 +194,20 @@ def test_a_long_recording_goes_into_several_files(graph, tmp_path):
         assert [stamp for _, stamp, _ in reader.messages()] == stamps
     with (bag.path / 'bag_1.mcap').open('rb') as stream:
         assert make_reader(stream).get_summary().chunk_indexes[0].compression == 'lz4'
+
+
+def test_diagnostics_by_another_clock_than_the_tow_do_not_tear_the_bag_apart(graph, tmp_path):
+    recorder = graph.add(
+        BagRecorder, output=str(tmp_path / 'bag'), max_bag_duration=600.0, use_sim_time=True
+    )
+    # Its diagnostics carry the time of the wall.
+    teller = source(graph, {'vessel/heading': STREAM})
+    graph.until(teller.heard)
+    before = recorder.traffic.counts('received').get('/diagnostics', 0)
+    for second in range(1, 4):
+        teller.tell('vessel/heading', second * SECOND)
+        graph.until(
+            lambda: recorder.traffic.counts('received').get('/diagnostics', 0) > before + second  # noqa: B023
+        )
+    recorder.finish_work()
+    assert len(recorder._bag.files) == 1

@@ -22,7 +22,7 @@ from trawl_ros.messages.topics import (
     absolute,
 )
 from trawl_ros.nodes.graph_checks import SYNC
-from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.node import DIAGNOSTICS, TrawlNode
 from trawl_ros.nodes.parameters import Names, Number, Text
 from trawl_ros.nodes.qos import CONSUMER
 from trawl_ros.nodes.recorded_qos import matching, profiles_of
@@ -150,10 +150,12 @@ class BagRecorder(TrawlNode):
 
     def _taker(self, topic: str, type_name: str) -> Callable[[bytes], None]:
         timed = topic in self._timed
+        # Who reports of itself may go by another clock than the tow.
+        by_header = self._by_header and topic != DIAGNOSTICS
 
         def take(data: bytes) -> None:
             stamp = stamp_in(type_name, data)
-            logged = self.now() if stamp is None or not self._by_header else stamp
+            logged = self.now() if stamp is None or not by_header else stamp
             if not self._bag.declared(topic):
                 self._declare(topic, type_name)
             self._bag.write(topic, type_name, data, logged)

@@ -12,6 +12,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity
+from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
 from trawl_ros.messages.diagnostics import read_statuses
@@ -109,7 +110,14 @@ class Monitor:
         os.environ.update(self._environment)
         self._context = Context()
         rclpy.init(args=[], context=self._context)
-        self._node = TrawlNode('monitor', namespace=NAMESPACE, context=self._context)
+        # Recorded beside the others, its diagnostics are to lie in their time.
+        in_simulated_time = Parameter('use_sim_time', value=True)
+        self._node = TrawlNode(
+            'monitor',
+            namespace=NAMESPACE,
+            context=self._context,
+            parameter_overrides=[in_simulated_time],
+        )
         # What it notices of clocks and types the nodes themselves have in their logs.
         self._node.get_logger().set_level(LoggingSeverity.ERROR)
         self._node.listen(DIAGNOSTICS, self._heard.take, CONSUMER)
