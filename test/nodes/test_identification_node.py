@@ -42,8 +42,8 @@ HAUL_LOG = ROOT.parent / 'shared/data/noaa_trawlmetrics/gear_testing_2026_haul_l
 HAUL_MAPPING = ROOT / 'config/logs/door_test_haul_log.yaml'
 
 SETTLE_S, WINDOW_S = 10.0, 20.0
-LENGTH_S = 34
-"""One window's worth of steady towing, and a little more."""
+LENGTH_S = 46
+"""One window's worth of steady towing, and as much more as late readings may take."""
 
 
 class Listener(TrawlNode):

@@ -21,13 +21,10 @@ WATCHED = {
     'door_sensor_node': 'door/port/pressure',
     'trawl_sonar_node': 'sonar/pressure',
     'vessel_node': 'vessel/heading',
-    'autotrawl_node': 'command/winch',
-    'autopilot_node': 'command/vessel',
 }
 """A topic of each source."""
 
-CONTROLLERS = {'autotrawl_node': {'mode': 'lengths'}, 'autopilot_node': {'mode': 'heading'}}
-INSTRUMENTS = tuple(node for node in WATCHED if node not in ('sim_node', *CONTROLLERS))
+INSTRUMENTS = tuple(node for node in WATCHED if node != 'sim_node')
 LISTENERS = {'bag_recorder': ('bag', 'recorded until'),
              'identification_node': ('estimate', 'samples used until')}  # fmt: skip
 """Status and key in which each listener says how far it has come."""
@@ -67,11 +64,11 @@ class Tow:
         self.gear = str(gear)
         self.bags = 0
         self.lookout = graph.add(Lookout, use_sim_time=True)
-        for node in (*INSTRUMENTS, *LISTENERS, *CONTROLLERS, 'sim_node'):
+        for node in (*INSTRUMENTS, *LISTENERS, 'sim_node'):
             self.start(node)
 
     def start(self, node):
-        parameters = CONTROLLERS.get(node, {'gear': self.gear})
+        parameters = {'gear': self.gear}
         if node == 'bag_recorder':
             self.bags += 1
             parameters = {'output': str(self.folder / f'bag{self.bags}')}
@@ -121,7 +118,7 @@ def tow(open_graph, gear_path, tmp_path_factory):
         yield tow
 
 
-@pytest.mark.parametrize('node', [*INSTRUMENTS, *LISTENERS, *CONTROLLERS])
+@pytest.mark.parametrize('node', [*INSTRUMENTS, *LISTENERS])
 def test_a_node_that_is_killed_comes_back_to_work_and_stops_nobody(tow, node):
     tow.kill(node)
     tow.start(node)
