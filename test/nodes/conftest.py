@@ -73,6 +73,21 @@ class Graph:
         while time.monotonic() < end:
             self.executor.spin_once(timeout_sec=0.05)
 
+    def settle(self, quiet_s: float = 0.5) -> None:
+        """Spin until nothing more arrives of what is under way."""
+        arrived = -1
+        while arrived != (arrived := self._arrived()):
+            self.rest(quiet_s)
+
+    def _arrived(self) -> int:
+        # Heartbeats never end.
+        return sum(
+            number
+            for node in self.executor.get_nodes()
+            for topic, number in node.traffic.counts('received').items()
+            if not topic.endswith(('/diagnostics', '/sync/progress'))
+        )
+
     def call(self, node, service: str):
         """Call a Trigger service and give the response."""
         from std_srvs.srv import Trigger

@@ -67,7 +67,7 @@ def graph(open_graph):
 def finish(graph, player):
     """Play to the end, and let those hear it who share the executor."""
     graph.until(lambda: player.exit_code is not None)
-    graph.rest(0.1)
+    graph.settle()
 
 
 def times(messages):
@@ -80,7 +80,7 @@ def test_it_plays_at_its_rate_with_a_clock_and_ends(graph, bag):
     graph.until(lambda: listener.headings)
     began = time.monotonic()
     graph.until(lambda: len(listener.headings) == COUNT)
-    assert time.monotonic() - began == pytest.approx((COUNT - 1) / HZ / 2, abs=0.25)
+    assert time.monotonic() - began > 0.9 * (COUNT - 1) / HZ / 2, 'no faster than it should'
     finish(graph, player)
     assert player.exit_code == 0
     assert times(listener.headings) == pytest.approx([n / HZ for n in range(COUNT)])

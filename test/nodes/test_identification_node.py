@@ -110,7 +110,7 @@ def session(open_graph, steady_bag, gear_path, tmp_path_factory):
         player = graph.add(BagPlayer, bag=str(steady_bag), rate=0.0, wait_for=follower)
         graph.until(lambda: player.exit_code is not None)
         graph.until(lambda: listener.innovations)
-        graph.rest(0.2)
+        graph.settle()
         late = graph.add(partial(Listener, 'late'))
         graph.until(lambda: late.estimates and late.covariances and late.summaries)
         Session.listener, Session.late = listener, late
@@ -121,7 +121,7 @@ def session(open_graph, steady_bag, gear_path, tmp_path_factory):
         again = graph.add(BagPlayer, bag=str(steady_bag), rate=0.0, wait_for=follower)
         graph.until(lambda: again.exit_code is not None)
         graph.until(lambda: len(listener.innovations) > 1)
-        graph.rest(0.2)
+        graph.settle()
         Session.resets_after = node._resets
         Session.last_status = read_statuses(listener.summaries[-1])[0]
     return Session

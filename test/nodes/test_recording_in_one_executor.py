@@ -52,7 +52,7 @@ def tow(open_graph, scenario_path, tmp_path_factory):
             SimNode, scenario=scenario, time_scale=0.0, exit_at_end=True, wait_for=names
         )
         graph.until(lambda: simulation.exit_code is not None)
-        graph.rest(0.5)
+        graph.settle()
         published = Counter()
         for node in (simulation, *instruments):
             published.update(node.traffic.counts('published'))
@@ -154,7 +154,7 @@ def test_the_player_gives_the_bag_back_message_for_message(tow, open_graph, tmp_
         topics = sorted(set(Bag(tow.path).topics) - {'/diagnostics'})
         graph.until(lambda: player.exit_code is not None)
         assert player.exit_code == 0
-        graph.rest(0.5)
+        graph.settle()
     assert contents(copy, topics) == contents(tow.path, topics)
 
 

@@ -215,7 +215,7 @@ def test_parameters_say_what_they_are(simulation):
 
 def test_two_clocks_are_an_error_that_names_both(graph, simulation, crew):
     crew.advertise('/clock')
-    graph.until(lambda: crew.reports['/trawl/sim_node: clock'].level == ERROR, 5.0)
+    graph.until(lambda: crew.reports['/trawl/sim_node: clock'].level == ERROR)
     message = crew.reports['/trawl/sim_node: clock'].message
     assert '2 publishers on /clock (crew, sim_node)' in message
 

@@ -92,7 +92,7 @@ def test_the_node_sends_byte_for_byte_what_the_instruments_give(graph, deck, tru
         deck.tell(truth)
         graph.rest(0.01)
     graph.until(lambda: len(deck.heard['sonar/bottom']) == 26)
-    graph.rest(0.5)
+    graph.settle()
     instruments = SonarInstruments(
         load_instruments().sonar,
         Draws(SEED),

@@ -113,7 +113,7 @@ class AutopilotNode(TrawlNode):
         self._datum = Datum(datum['datum_lat'], datum['datum_lon'])
         self._begin()
         self.advertise(VESSEL_COMMAND)
-        self._progress = Progress(self, follows_others=True)
+        self._progress = Progress(self, idle=lambda: True)
         for topic in SENSORS:
             self._listen_to(topic)
         self.every(1.0, self._watch)

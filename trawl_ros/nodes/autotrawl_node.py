@@ -67,7 +67,7 @@ class AutotrawlNode(TrawlNode):
         self._heard_at = time.monotonic()
         self._found = (math.nan, math.nan)
         self.advertise(WINCH_COMMAND)
-        self._progress = Progress(self, follows_others=True)
+        self._progress = Progress(self, idle=lambda: True)
         self.listen(WINCH, self._take, CONSUMER)
 
     def parameter_changed(self, name: str) -> None:

@@ -183,7 +183,8 @@ class BagRecorder(TrawlNode):
             heard = self._latest
             self._progress.done(min(heard[name] for name in self._pacing if name in heard))
         elif not any(name in self._latest for name in self._pacing):
-            self._progress.done(stamp)
+            # A reading may be older than one that came before it.
+            self._progress.done(max(self._latest.values()))
 
     def _look_after(self) -> None:
         if self._dirty:

@@ -88,7 +88,7 @@ class IdentificationNode(TrawlNode):
         )
         for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
             self.advertise(topic)
-        self._progress = Progress(self)
+        self._progress = Progress(self, idle=lambda: self._worker.idle)
         self._newest: dict[str, int] = {}
         self._resets = 0
         self._worker = IdentificationWorker(

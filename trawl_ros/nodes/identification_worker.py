@@ -91,7 +91,9 @@ class IdentificationWorker(Thread):
     estimated
         Called, in this thread, after each accepted window and at the end.
     dealt_with
-        Called, in this thread, with the stamp (ns) of each sample after it was used.
+        Called, in this thread, with the newest stamp (ns) so far after each sample was used. A
+        sonar's reading is as old as its sweep is long, so stamps do not rise from one sample to
+        the next.
     """
 
     def __init__(
@@ -111,10 +113,19 @@ class IdentificationWorker(Thread):
         self._queue: SimpleQueue[Work] = SimpleQueue()
         self._wishes: list[Finish] = []
         self._fed = 0
+        self._newest = 0
+        self._handed_over = 0
+        self._dealt = 0
         self.outcome = self._outcome()
+
+    @property
+    def idle(self) -> bool:
+        """Whether all samples that were handed over are dealt with."""
+        return self._handed_over == self._dealt
 
     def feed(self, sample: Sample) -> None:
         """Hand over a sample."""
+        self._handed_over += 1
         self._queue.put(sample)
 
     def reset(self) -> None:
@@ -157,6 +168,7 @@ class IdentificationWorker(Thread):
             case _Reset():
                 self._identification.reset()
                 self._fed = 0
+                self._newest = 0
                 self.outcome = self._outcome()
             case _Look():
                 if self.outcome.finished is None:
@@ -169,7 +181,9 @@ class IdentificationWorker(Thread):
                     if isinstance(event, WindowUsed):
                         self.outcome = self._outcome()
                         self._estimated(self.outcome)
-                self._dealt_with(work.stamp)
+                self._newest = max(work.stamp, self._newest)
+                self._dealt += 1
+                self._dealt_with(self._newest)
 
     def _grant(self) -> None:
         wishes, self._wishes = self._wishes, []

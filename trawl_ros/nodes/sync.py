@@ -43,10 +43,11 @@ class Progress:
         Whose progress it is.
     ready
         Whether the node may announce itself; a source that waits for it starts then.
-    follows_others
-        Whether what it deals with comes from other consumers of the source, which may fall
-        silent: having heard nothing for a while, it is as far as the clock. Otherwise the source
-        would wait for it, it for them, and they, started anew, for the source.
+    idle
+        For one that deals with what other consumers of the source give out, which may fall
+        silent: whether nothing is left to deal with. Having heard nothing for a while it is then
+        as far as the clock. Otherwise the source would wait for it, it for them, and they,
+        started anew, for the source.
     """
 
     def __init__(
@@ -54,11 +55,11 @@ class Progress:
         node: TrawlNode,
         ready: Callable[[], bool] = lambda: True,
         *,
-        follows_others: bool = False,
+        idle: Callable[[], bool] = lambda: False,
     ) -> None:
         self._node = node
         self._ready = ready
-        self._follows_others = follows_others
+        self._idle = idle
         self._heard_at = time.monotonic()
         self._done = NOTHING
         self._reported = NOTHING
@@ -81,8 +82,8 @@ class Progress:
     def _beat(self) -> None:
         if not self._ready():
             return
-        idle = time.monotonic() - self._heard_at > IDLE_S
-        if idle and self._follows_others and self._done != NOTHING:
+        quiet = time.monotonic() - self._heard_at > IDLE_S
+        if quiet and self._done != NOTHING and self._idle():
             self._done = max(self._done, self._node.now())
         self._report()
 
