@@ -102,7 +102,8 @@ class SteadyWindow:
     ``index`` counts windows, ``state`` the steady states they belong to; ``start_ns`` and
     ``end_ns`` are header stamps. Per channel (SI): ``means``, ``noise`` the standard error of
     the mean from scatter and autocorrelation, ``bias`` the standard deviation of what stays
-    wrong through the state, ``counts`` of readings in the mean.
+    wrong through the state, ``counts`` of readings in the mean. ``tow`` counts tows, through
+    each of which the errors of calibration stay the same.
     """
 
     index: int
@@ -113,6 +114,7 @@ class SteadyWindow:
     noise: Mapping[str, float]
     bias: Mapping[str, float]
     counts: Mapping[str, int]
+    tow: int = 0
 
     def std(self, channel: str, windows_in_state: int = 1) -> float:
         """Standard deviation of a channel's mean as one of several windows of a state.
