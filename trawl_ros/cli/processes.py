@@ -17,7 +17,7 @@ from trawl_ros.errors import TrawlError
 LAST_LINES = 15
 """What is shown of the output of a process that failed."""
 
-END_S = 10.0
+END_S = 20.0
 """Time (s) that a process has to end after it was asked to."""
 
 POLL_S = 0.02
