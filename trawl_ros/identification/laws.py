@@ -1,0 +1,159 @@
+"""The six laws of eq. 14 as an engineer asks for them: how much at the angle she works at, and how
+much more when that angle grows.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.observables import Observables
+
+RANGE = np.radians(15.0)
+"""Width (rad) of the working range, from 15 to 30° of attack; slip is given the same."""
+
+WELL_KNOWN = 0.2
+"""Part of what its law spans below which the std of a quantity counts as well known."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """One straight line of eq. 14: what it gives, its symbol, coefficients and angle."""
+
+    name: str
+    symbol: str
+    slope: str
+    constant: str
+    angle: Literal['attack', 'slip']
+
+    @property
+    def columns(self) -> list[int]:
+        """Where slope and constant stand among the coefficients."""
+        return [COEFFICIENTS.index(self.slope), COEFFICIENTS.index(self.constant)]
+
+
+LAWS = (
+    Law('drag', 'C_x^F', 'a1', 'c1', 'attack'),
+    Law('lift', 'C_y^F', 'a2', 'c2', 'attack'),
+    Law('force along the span', 'C_z^F', 'b3', 'c3', 'slip'),
+    Law('roll moment', 'C_x^M', 'a4', 'c4', 'attack'),
+    Law('pitch moment', 'C_y^M', 'b5', 'c5', 'slip'),
+    Law('yaw moment', 'C_z^M', 'a6', 'c6', 'attack'),
+)
+"""In the order of eq. 36."""
+
+
+@dataclass(frozen=True)
+class WorkingAngles:
+    """Mean attack and slip angle (rad) of the boards, slip with the sign that enters eq. 14."""
+
+    attack: float
+    slip: float
+
+
+@dataclass(frozen=True)
+class LawQuantities:
+    """Value and slope of each law, the values first, in the order of `LAWS`; no unit.
+
+    Attributes
+    ----------
+    values : (12,) array
+        The laws at the mean working angle, and by how much they change over 15° of it.
+    sd : (12,) array
+        Standard deviations of these.
+    span : (12,) array
+        What each quantity's law spans over 15°, without a sign.
+    """
+
+    values: np.ndarray
+    sd: np.ndarray
+    span: np.ndarray
+
+    @property
+    def ratio(self) -> np.ndarray:
+        """Standard deviation as a part of the span (12,), infinite for a law without slope."""
+        with np.errstate(divide='ignore'):
+            return self.sd / self.span
+
+    @property
+    def well_known(self) -> np.ndarray:
+        """Which (12,) have a standard deviation below a fifth of the span."""
+        return self.ratio < WELL_KNOWN
+
+
+QUANTITIES = tuple(f'{law.symbol} {what}' for what in ('value', 'slope') for law in LAWS)
+"""Names of the twelve quantities, in order."""
+
+
+def working_angles(seen: Iterable[Observables], slip_sign: int) -> WorkingAngles:
+    """Average the angles of both boards over steady states.
+
+    Parameters
+    ----------
+    seen
+        Observables of the states.
+    slip_sign
+        Sign with which β of eq. 2 enters eq. 14, from the gear file.
+    """
+    angles = np.array(
+        [
+            (one.port_attack + one.starboard_attack, one.port_slip + one.starboard_slip)
+            for one in seen
+        ]
+    )
+    attack, slip = 0.5 * angles.mean(axis=0)
+    return WorkingAngles(float(attack), float(slip_sign * slip))
+
+
+def law_rows(angles: WorkingAngles) -> np.ndarray:
+    """The twelve quantities as linear functions of the coefficients, (12, 12)."""
+    values, slopes = np.zeros((2, len(LAWS), len(COEFFICIENTS)))
+    for row, law in enumerate(LAWS):
+        angle = angles.attack if law.angle == 'attack' else angles.slip
+        values[row, law.columns] = angle, 1.0
+        slopes[row, law.columns[0]] = RANGE
+    return np.vstack((values, slopes))
+
+
+def law_spans(coefficients: np.ndarray, std: np.ndarray | None = None) -> np.ndarray:
+    """What each quantity's law spans over 15° of its angle, (12,).
+
+    Parameters
+    ----------
+    coefficients
+        Of the board, (12,).
+    std
+        How uncertain these are (12,): then the root mean square of what the laws may span, so
+        that a law whose slope is not known yet has a span too.
+    """
+    variance = np.zeros(len(coefficients)) if std is None else std**2
+    slopes = [law.columns[0] for law in LAWS]
+    span = RANGE * np.sqrt(coefficients[slopes] ** 2 + variance[slopes])
+    return np.concatenate((span, span))
+
+
+def law_quantities(
+    coefficients: np.ndarray,
+    covariance: np.ndarray,
+    angles: WorkingAngles,
+    span: np.ndarray | None = None,
+) -> LawQuantities:
+    """Value and slope of each law, and how well they are known.
+
+    Parameters
+    ----------
+    coefficients, covariance
+        Of the board, (12,) and (12, 12), in the order of eq. 36.
+    angles
+        Where the boards work in the mean.
+    span
+        From `law_spans`, where it is not to be that of these coefficients.
+    """
+    rows = law_rows(angles)
+    return LawQuantities(
+        values=rows @ coefficients,
+        sd=np.sqrt(np.einsum('ij,jk,ik->i', rows, covariance, rows)),
+        span=law_spans(coefficients) if span is None else span,
+    )
