@@ -45,6 +45,11 @@ class Identification:
         Depth (m) for an absolute pressure (Pa).
     window_options, estimator_options
         When a window is steady; how the estimate is found.
+
+    Attributes
+    ----------
+    course : list of WindowUsed
+        The windows that were used, each with the estimate after it.
     """
 
     def __init__(
@@ -59,11 +64,13 @@ class Identification:
         self.window_options = window_options or WindowOptions()
         self.finder = SteadyWindowFinder(pressure_to_depth, self.window_options)
         self.estimator = Estimator(predictor, prior, observables, estimator_options)
+        self.course: list[WindowUsed] = []
 
     def reset(self) -> None:
         """Forget all: time has jumped back."""
         self.finder.reset()
         self.estimator.reset()
+        self.course = []
 
     def feed(self, sample: Sample) -> list[Event]:
         """Take one sample; return the windows it decided, with the estimates they led to."""
@@ -149,5 +156,6 @@ class Identification:
                     )
                 )
             else:
-                events.append(WindowUsed(item, estimate))
+                self.course.append(WindowUsed(item, estimate))
+                events.append(self.course[-1])
         return events
