@@ -7,6 +7,8 @@ from collections import Counter
 import numpy as np
 
 from trawl_ros.identification.channels import Channel, Reading
+from trawl_ros.identification.order import Order
+from trawl_ros.identification.timeline import NANO
 
 CAPACITY = 50_000
 """Readings kept per channel at most, whatever the stamps say: a minute at more than 500 Hz."""
@@ -19,73 +21,94 @@ class ChannelBuffer:
     ----------
     channel
         The channel's row of the table.
-    reorder_ns
-        Lateness (ns) up to which a reading is sorted in.
+    order
+        Judge of the stamps.
     rejected
         Where refused readings are counted by reason.
 
     Attributes
     ----------
-    first, newest
-        Oldest and newest stamp (ns) accepted, None before any.
-    decided
-        Stamp (ns) up to which windows are decided: nothing older is taken any more.
+    first
+        Oldest stamp (ns) accepted, None before any.
+    delay
+        By how much (ns) a window's readings of this channel lie before the window.
     """
 
-    def __init__(self, channel: Channel, reorder_ns: int, rejected: Counter[str]) -> None:
+    def __init__(self, channel: Channel, order: Order, rejected: Counter[str]) -> None:
         self.channel = channel
+        self.order = order
         self.first: int | None = None
-        self.newest: int | None = None
-        self.decided: int | None = None
-        self._reorder_ns = reorder_ns
+        self.delay = round(channel.delay * NANO)
+        self._decided: int | None = None
         self._rejected = rejected
         self._stamps: list[int] = []
         self._values: list[float] = []
         self._stds: list[float] = []
+        self._outside: list[tuple[int, float]] = []
 
-    def add(self, reading: Reading) -> bool:
-        """Take a reading, or count the reason why not and return False."""
-        reason = self._refusal(reading)
-        if reason is not None:
-            self._rejected[reason] += 1
-            return False
+    @property
+    def newest(self) -> int | None:
+        """Newest stamp (ns) that can be believed, None before any."""
+        return self.order.newest
+
+    def add(self, reading: Reading) -> int:
+        """Take a reading; return how many were accepted with it, for some wait for others.
+
+        Each one refused is counted by its reason.
+        """
+        if not math.isfinite(reading.value):
+            self._rejected['not finite'] += 1
+            return 0
+        low = max(self.channel.low, reading.low if math.isfinite(reading.low) else -math.inf)
+        high = min(self.channel.high, reading.high if math.isfinite(reading.high) else math.inf)
+        if not low <= reading.value <= high:
+            self._rejected['out of range'] += 1
+            self._outside.append((reading.stamp, reading.value))
+            del self._outside[:-CAPACITY]
+            return 0
+        sorted_out = self.order.judge(reading)
+        self._rejected.update(sorted_out.refused)
+        return sum(self._insert(one) for one in sorted_out.accepted)
+
+    def _insert(self, reading: Reading) -> bool:
         place = bisect_left(self._stamps, reading.stamp)
         if place < len(self._stamps) and self._stamps[place] == reading.stamp:
-            self._rejected['out of order'] += 1
+            self._rejected['duplicate stamp'] += 1
+            return False
+        if self._decided is not None and reading.stamp < self._decided:
+            self._rejected['late'] += 1
             return False
         self._stamps.insert(place, reading.stamp)
         self._values.insert(place, reading.value)
         stated = reading.std if math.isfinite(reading.std) and reading.std > 0.0 else 0.0
         self._stds.insert(place, stated or self.channel.noise)
         self.first = reading.stamp if self.first is None else min(self.first, reading.stamp)
-        self.newest = reading.stamp if self.newest is None else max(self.newest, reading.stamp)
         if len(self._stamps) > CAPACITY:
-            self.drop_before(self._stamps[CAPACITY // 10])
+            self._drop_before(self._stamps[CAPACITY // 10])
         return True
 
-    def _refusal(self, reading: Reading) -> str | None:
-        if not math.isfinite(reading.value):
-            return 'not finite'
-        low = max(self.channel.low, reading.low if math.isfinite(reading.low) else -math.inf)
-        high = min(self.channel.high, reading.high if math.isfinite(reading.high) else math.inf)
-        if not low <= reading.value <= high:
-            return 'out of range'
-        late = self.newest is not None and reading.stamp < self.newest - self._reorder_ns
-        if late or (self.decided is not None and reading.stamp < self.decided):
-            return 'out of order'
-        return None
-
-    def between(self, start_ns: int, end_ns: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Stamps (n,) in ns, values (n,) and stated std (n,) with start ≤ stamp < end."""
-        first = bisect_left(self._stamps, start_ns)
-        last = bisect_left(self._stamps, end_ns)
+    def window(self, start_ns: int, end_ns: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Stamps (n,) in ns, values (n,) and stated std (n,) for a window's start and end (ns)."""
+        first = bisect_left(self._stamps, start_ns - self.delay)
+        last = bisect_left(self._stamps, end_ns - self.delay)
         return (
             np.array(self._stamps[first:last], dtype=np.int64),
             np.array(self._values[first:last]),
             np.array(self._stds[first:last]),
         )
 
-    def drop_before(self, stamp_ns: int) -> None:
-        """Forget what no later window can use."""
+    def outside(self, start_ns: int, end_ns: int) -> np.ndarray:
+        """Values (n,) that a window would have if they were not out of range."""
+        start_ns, end_ns = start_ns - self.delay, end_ns - self.delay
+        return np.array([value for stamp, value in self._outside if start_ns <= stamp < end_ns])
+
+    def decide(self, end_ns: int, needed_ns: int) -> None:
+        """Windows are decided up to ``end_ns``; none will begin before ``needed_ns``."""
+        self._decided = end_ns - self.delay
+        self._drop_before(needed_ns - self.delay)
+
+    def _drop_before(self, stamp_ns: int) -> None:
         first = bisect_left(self._stamps, stamp_ns)
         del self._stamps[:first], self._values[:first], self._stds[:first]
+        if self._outside:
+            self._outside = [row for row in self._outside if row[0] >= stamp_ns]

@@ -37,6 +37,11 @@ class Channel:
         averages: an absolute part and a part of the mean's size, added in quadrature.
     min_rate
         Lowest rate (Hz) at which the instrument may report.
+    delay
+        A window takes this channel's readings from as long (s) before its own start and end. A
+        steady state does not care, and so a window can be decided at its end though the reading
+        that closes it comes late: a period at the lowest rate, the time on its way, and 2 s for
+        readings that overtake each other.
     required
         Without it no window is made.
     lively
@@ -54,6 +59,7 @@ class Channel:
     bias: float
     bias_fraction: float
     min_rate: float
+    delay: float
     required: bool
     lively: bool = False
     settles: bool = False
@@ -84,54 +90,58 @@ INPUTS = ('port_length', 'starboard_length', 'speed')
 _TABLE = (
     *_pair(
         Channel(
-            'length', 'winch/joint_states', 'm', 1.0, 6000.0, 0.1, 0.5, 0.002, 1.0, required=True
+            'length', 'winch/joint_states', 'm', 1.0, 6000.0, 0.1, 0.5, 0.002, 1.0, 4.0,
+            required=True,
         )
     ),
     Channel(
-        'speed', 'vessel/velocity_water', 'm/s', -2.0, 12.0, 0.05, 0.01, 0.005, 1.0, required=True
+        'speed', 'vessel/velocity_water', 'm/s', -2.0, 12.0, 0.05, 0.01, 0.005, 1.0, 4.0,
+        required=True, lively=True,
     ),
     *_pair(
         Channel(
-            'tension', 'winch/joint_states', 'N', -5e3, 2e6, 500.0, 200.0, 0.01, 1.0,
+            'tension', 'winch/joint_states', 'N', -5e3, 2e6, 500.0, 200.0, 0.01, 1.0, 4.0,
             required=True, lively=True, settles=True,
         )
     ),
     *_pair(
         Channel(
-            'door_depth', 'door/{side}/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.2,
+            'door_depth', 'door/{side}/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.2, 10.0,
             required=True, lively=True, settles=True,
         )
     ),
     Channel(
-        'door_spread', 'door/spread', 'm', 1.0, 1000.0, 1.0, 0.5, 0.005, 0.2,
+        'door_spread', 'door/spread', 'm', 1.0, 1000.0, 1.0, 0.5, 0.005, 0.2, 10.0,
         required=True, lively=True, settles=True,
     ),
     Channel(
-        'net_depth', 'sonar/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.5,
+        'net_depth', 'sonar/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.5, 6.0,
         required=True, lively=True, settles=True,
     ),
     *_pair(
         Channel(
             'pitch', 'door/{side}/attitude', 'rad', -1.6, 1.6, 1.0 * _DEGREE, 0.5 * _DEGREE, 0.0,
-            0.2, required=False, lively=True,
+            0.2, 10.0, required=False, lively=True,
         )
     ),
     *_pair(
         Channel(
             'roll', 'door/{side}/attitude', 'rad', -1.6, 1.6, 1.0 * _DEGREE, 0.5 * _DEGREE, 0.0,
-            0.2, required=False, lively=True,
+            0.2, 10.0, required=False, lively=True,
         )
     ),
+    # Stamped when a sweep of 10 s begins, sent when it ends, and 10 s pass until the next.
     Channel(
-        'vertical_opening', 'sonar/opening_height', 'm', 0.5, 300.0, 2.0, 1.0, 0.03, 0.02,
+        'vertical_opening', 'sonar/opening_height', 'm', 0.5, 300.0, 2.0, 1.0, 0.03, 0.02, 24.0,
         required=False,
     ),
     # Heading and rate of turn only tell turning from straight towing.
     Channel(
-        'heading', 'vessel/heading', 'rad', -10.0, 10.0, 0.02, 0.0, 0.0, 1.0, required=False
+        'heading', 'vessel/heading', 'rad', -10.0, 10.0, 0.02, 0.0, 0.0, 1.0, 4.0,
+        required=False,
     ),
     Channel(
-        'yaw_rate', 'vessel/velocity_water', 'rad/s', -1.0, 1.0, 0.002, 0.0, 0.0, 1.0,
+        'yaw_rate', 'vessel/velocity_water', 'rad/s', -1.0, 1.0, 0.002, 0.0, 0.0, 1.0, 4.0,
         required=False,
     ),
 )  # fmt: skip

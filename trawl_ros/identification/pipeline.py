@@ -10,13 +10,14 @@ from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.timeline import NANO
 from trawl_ros.identification.window_records import (
     REASONS,
     RejectedWindow,
     SteadyWindow,
     WindowOptions,
 )
-from trawl_ros.identification.windows import NANO, SteadyWindowFinder
+from trawl_ros.identification.windows import SteadyWindowFinder
 from trawl_ros.instruments.samples import Sample
 
 ONE_CLOCK_S = 3600.0
@@ -81,6 +82,10 @@ class Identification:
         events = self._use(self.finder.finish())
         self.estimator.finish()
         return events
+
+    def next_tow(self) -> list[Event]:
+        """Decide the windows that are left of this tow; what follows belongs to another."""
+        return self._use(self.finder.next_tow())
 
     @property
     def estimate(self) -> Estimate | None:

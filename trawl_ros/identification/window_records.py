@@ -9,7 +9,11 @@ REASONS = {
     'not finite': 'readings that are NaN or infinite',
     'out of range': 'readings outside what the channel or the sensor can say',
     'outlier': 'readings far from the median of their window',
-    'out of order': 'readings stamped before what was already decided or seen',
+    'out of order': 'readings stamped before others of their channel that came earlier',
+    'duplicate stamp': 'readings with the stamp of another of their channel',
+    'late': 'readings that came when the windows they belong to were decided',
+    'clock jump': 'readings whose stamps leap ahead for a moment, or far back',
+    'silence': 'readings of the first half minute after a long silence of their channel',
     'frozen': 'stretches with a sensor that repeats one value',
     'gap': 'stretches with a sensor that falls silent',
     'missing channel': 'stretches without a channel that is needed',
@@ -60,10 +64,14 @@ class WindowOptions:
         Identical successive readings, at least, that make a sensor frozen, if they are also
         half of its readings or more.
     reorder_s
-        Lateness (s) up to which readings may come in any order; what is read off a sweep of the
-        sonar comes when that ends, some 10 s after its stamp.
+        Lateness (s) up to which the readings of one channel may overtake each other; more than
+        2 s delays the windows, for which see `Channel.delay`.
     patience_s
-        A window is decided without a channel that lags the winch by more than this (s).
+        A window is decided without a channel that lags the winch by more than this (s) beyond
+        its delay. Channels may come by half of this before or after each other without any
+        effect on the windows.
+    tow_gap_s
+        Time (s) without warp lengths after which a new tow begins.
     """
 
     settle_s: float = 180.0
@@ -81,8 +89,9 @@ class WindowOptions:
     outlier_limit: float = 6.0
     outlier_fraction: float = 0.2
     frozen_count: int = 10
-    reorder_s: float = 12.0
+    reorder_s: float = 2.0
     patience_s: float = 60.0
+    tow_gap_s: float = 1800.0
 
     def __post_init__(self) -> None:
         for field in fields(self):

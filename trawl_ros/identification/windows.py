@@ -1,9 +1,9 @@
 """Finds steady windows in a stream of samples.
 
-Windows lie on a grid of header stamps, and a window is decided only when all required
-channels have passed its end, so the result does not depend on when samples arrive or how
-channels interleave, as long as none is late by more than the stated slack. Memory is bounded
-by one window of readings per channel.
+Windows lie on a grid of header stamps, and a window is decided only when all channels that
+speak have passed its end less their delay. So the result does not depend on when samples
+arrive or how channels interleave, as long as they do by less than half the stated patience.
+Memory is bounded by one window of readings per channel.
 """
 
 import math
@@ -13,13 +13,15 @@ from collections.abc import Callable
 import numpy as np
 
 from trawl_ros.identification.buffers import ChannelBuffer
-from trawl_ros.identification.channels import CHANNELS, INPUTS, REQUIRED, STEERING, readings
+from trawl_ros.identification.channels import CHANNELS, INPUTS, STEERING, readings
 from trawl_ros.identification.operation import Block, Operation, Unheld, circular_median
+from trawl_ros.identification.order import Order
 from trawl_ros.identification.statistics import error_of_mean, longest_run, outliers, trend
+from trawl_ros.identification.timeline import NANO, Timeline
 from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow, WindowOptions
 from trawl_ros.instruments.samples import Sample
 
-NANO = 1_000_000_000
+WINCH = INPUTS[:2]
 
 
 class SteadyWindowFinder:
@@ -35,8 +37,7 @@ class SteadyWindowFinder:
     Attributes
     ----------
     rejected : Counter
-        Reason → count: readings for 'not finite', 'out of range', 'outlier', 'out of order';
-        for all others stretches of time.
+        Reason → count, of what `REASONS` says.
     arrived, readings : Counter
         Channel → readings that came, and those of them that were accepted.
     """
@@ -56,15 +57,26 @@ class SteadyWindowFinder:
         self.rejected: Counter[str] = Counter()
         self.arrived: Counter[str] = Counter()
         self.readings: Counter[str] = Counter()
-        reorder_ns = round(self._options.reorder_s * NANO)
+        self._windows = 0
+        self._state = -1
+        self._tow = -1
+        self._begin_tow()
+        self._clear()
+
+    def _clear(self) -> None:
+        self._timeline = Timeline()
         self._buffers = {
-            name: ChannelBuffer(channel, reorder_ns, self.rejected)
+            name: ChannelBuffer(
+                channel, Order(channel, self._options, self._timeline), self.rejected
+            )
             for name, channel in CHANNELS.items()
         }
         self._operation = Operation(self._options)
         self._next_block: int | None = None
-        self._windows = 0
-        self._state = -1
+        self._last_winch: int | None = None
+
+    def _begin_tow(self) -> None:
+        self._tow += 1
         self._in_state = 0
         self._held = False
         self._reference: np.ndarray | None = None
@@ -82,51 +94,53 @@ class SteadyWindowFinder:
             if reading.channel == 'yaw_rate' and not math.isfinite(reading.value):
                 continue
             self.arrived[reading.channel] += 1
-            if self._buffers[reading.channel].add(reading):
-                self.readings[reading.channel] += 1
+            self.readings[reading.channel] += self._buffers[reading.channel].add(reading)
         return self._advance(self._watermark())
 
     def finish(self) -> list[SteadyWindow | RejectedWindow]:
         """Decide what is left: no more samples will come."""
-        lead = self._lead()
+        for buffer in self._buffers.values():
+            self.rejected.update(buffer.order.finish())
+        lead = self._timeline.lead
         return [] if lead is None else self._advance(lead + 1)
 
-    def _lead(self) -> int | None:
-        # Without warp lengths there are no windows, so the winch tells how far time is.
-        stamps = [self._buffers[name].newest for name in INPUTS[:2]]
-        known = [stamp for stamp in stamps if stamp is not None]
-        return max(known) if known else None
+    def next_tow(self) -> list[SteadyWindow | RejectedWindow]:
+        """Decide what is left of this tow and begin the next; states and counts go on."""
+        found = self.finish()
+        if any(buffer.newest is not None for buffer in self._buffers.values()):
+            self._begin_tow()
+        self._clear()
+        return found
 
     def _watermark(self) -> int | None:
-        lead = self._lead()
+        """Stamp (ns) that all channels have passed that are waited for."""
+        lead = self._timeline.lead
         if lead is None:
             return None
-        floor = lead - round(self._options.patience_s * NANO)
-        passed = min(
-            lead if newest is None else newest
-            for newest in (self._buffers[name].newest for name in REQUIRED)
-        )
-        if any(self._buffers[name].newest is None for name in REQUIRED):
-            passed = floor
-        return max(passed, floor) - round(self._options.reorder_s * NANO)
+        patience = round(self._options.patience_s * NANO)
+        reorder = round(self._options.reorder_s * NANO)
+        begins = lead < self._timeline.start + patience
+        passed = lead
+        for buffer in self._buffers.values():
+            if buffer.newest is None:
+                if begins:
+                    return None
+            elif begins or buffer.newest + buffer.delay >= lead - patience:
+                passed = min(passed, buffer.newest + buffer.delay - reorder)
+        return passed
 
     def _advance(self, watermark: int | None) -> list[SteadyWindow | RejectedWindow]:
-        if watermark is None:
+        if watermark is None or self._timeline.first is None:
             return []
         if self._next_block is None:
-            oldest = self._buffers['port_length'].between(0, watermark)[0]
-            if len(oldest) == 0:
-                return []
-            self._next_block = int(oldest[0]) // self._block_ns
+            self._next_block = self._timeline.first // self._block_ns
         found: list[SteadyWindow | RejectedWindow] = []
         end_block = watermark // self._block_ns
         history = self._operation.most_blocks
         if end_block - self._next_block > 2 * history:
             # A hole longer than any look-back needs no block by block walk.
-            stamps = self._buffers['port_length'].between(
-                self._next_block * self._block_ns, end_block * self._block_ns
-            )[0]
-            if len(stamps) == 0:
+            start_ns, end_ns = self._next_block * self._block_ns, end_block * self._block_ns
+            if all(len(self._buffers[name].window(start_ns, end_ns)[0]) == 0 for name in WINCH):
                 self._next_block = end_block - history
         while self._next_block < end_block:
             found.extend(self._block(self._next_block))
@@ -135,18 +149,27 @@ class SteadyWindowFinder:
 
     def _block(self, index: int) -> list[SteadyWindow | RejectedWindow]:
         end_ns = (index + 1) * self._block_ns
+        self._look_for_tow(end_ns - self._block_ns, end_ns)
         self._operation.add(self._summary(index))
         start_ns = end_ns - self._operation.window_blocks * self._block_ns
         found = self._decide(start_ns, end_ns) if self._operation.full else []
         for buffer in self._buffers.values():
-            buffer.decided = end_ns
-            buffer.drop_before(start_ns + self._block_ns)
+            buffer.decide(end_ns, start_ns + self._block_ns)
         return found
+
+    def _look_for_tow(self, start_ns: int, end_ns: int) -> None:
+        stamps = np.concatenate([self._buffers[name].window(start_ns, end_ns)[0] for name in WINCH])
+        if len(stamps) == 0:
+            return
+        gap = round(self._options.tow_gap_s * NANO)
+        if self._last_winch is not None and stamps.min() - self._last_winch > gap:
+            self._begin_tow()
+        self._last_winch = int(stamps.max())
 
     def _summary(self, index: int) -> Block:
         def values(name: str) -> np.ndarray:
             start_ns = index * self._block_ns
-            return self._buffers[name].between(start_ns, start_ns + self._block_ns)[1]
+            return self._buffers[name].window(start_ns, start_ns + self._block_ns)[1]
 
         def median(name: str) -> float | None:
             return float(np.median(found)) if len(found := values(name)) else None
@@ -203,8 +226,8 @@ class SteadyWindowFinder:
 
     def _heard(self, name: str, end_ns: int) -> bool:
         # By stamps, not by what has arrived: the verdict must not depend on arrival.
-        first = self._buffers[name].first
-        return first is not None and first < end_ns
+        buffer = self._buffers[name]
+        return buffer.first is not None and buffer.first < end_ns - buffer.delay
 
     def _window(self, start_ns: int, end_ns: int, state: int) -> SteadyWindow | Unheld:
         means: dict[str, float] = {}
@@ -228,7 +251,9 @@ class SteadyWindowFinder:
             counts[name] = len(values)
             dropped['outlier'] += excluded
         self.rejected.update(+dropped)
-        return SteadyWindow(self._windows, state, start_ns, end_ns, means, noise, bias, counts)
+        return SteadyWindow(
+            self._windows, state, start_ns, end_ns, means, noise, bias, counts, self._tow
+        )
 
     def _channel(
         self, name: str, start_ns: int, end_ns: int
@@ -236,8 +261,10 @@ class SteadyWindowFinder:
         """Readings for the mean, their stated std and how many were left out, or why none."""
         options, channel = self._options, CHANNELS[name]
         where = f'{name} ({channel.topic})'
-        stamps, values, stds = self._buffers[name].between(start_ns, end_ns)
-        if not self._heard(name, end_ns):
+        heard = self._heard(name, end_ns)
+        stamps, values, stds = self._buffers[name].window(start_ns, end_ns)
+        start_ns, end_ns = start_ns - self._buffers[name].delay, end_ns - self._buffers[name].delay
+        if not heard:
             return Unheld('missing channel', f'{where} has not been heard')
         silence = np.max(np.diff(np.concatenate(([start_ns], stamps, [end_ns])))) / NANO
         if len(stamps) == 0 or silence > channel.longest_gap:
