@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.errors import NoSteadyState
-from trawl_ros.identification.channels import CHANNELS
+from trawl_ros.identification.channels import CHANNELS, INPUTS
+from trawl_ros.identification.error_terms import Scheme
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.instruments.samples import (
@@ -156,8 +157,18 @@ SIDES = ('port', 'starboard')
 def trial_windows(
     model: ClosedForm, rng: np.random.Generator, noise: float = 1.0, repeats: int = 1
 ) -> list[SteadyWindow]:
-    """Five warp lengths at three speeds, with normal errors of the stated size times noise."""
+    """One tow of five warp lengths at three speeds, wrong as the channel table says.
+
+    Calibration is wrong throughout; ``noise`` is a factor on what differs between windows, for
+    warp lengths and speed 1 at most.
+    """
+    shares = Scheme()
+    drawn = {name: rng.normal(size=2) for name in sorted(CHANNELS)}
     found = []
+
+    def noise_of(name: str) -> float:
+        return min(noise, 1.0) if name in INPUTS else noise
+
     for speed in (1.8, 2.0, 2.2):
         for length in (200.0, 375.0, 550.0, 725.0, 900.0):
             for _ in range(repeats):
@@ -165,7 +176,13 @@ def trial_windows(
                 exact = {'port_length': length, 'starboard_length': length, 'speed': speed}
                 seen = zip(OBSERVABLES, values, strict=True)
                 exact |= {name: value for name, value in seen if name in CHANNELS}
-                std = {name: CHANNELS[name].bias_std(mean) for name, mean in exact.items()}
+                means = {}
+                for name, value in exact.items():
+                    channel = CHANNELS[name]
+                    sizes = np.array([channel.bias, channel.bias_fraction * value])
+                    calibration = shares.tow_share * float(sizes @ drawn[name])
+                    own = shares.state_share * channel.bias_std(value) * float(rng.normal())
+                    means[name] = value + noise_of(name) * own + bool(noise) * calibration
                 index = len(found)
                 found.append(
                     SteadyWindow(
@@ -173,9 +190,9 @@ def trial_windows(
                         state=index,
                         start_ns=EPOCH + index * 300 * NANO,
                         end_ns=EPOCH + index * 300 * NANO + 90 * NANO,
-                        means={n: exact[n] + noise * std[n] * float(rng.normal()) for n in exact},
+                        means=means,
                         noise=dict.fromkeys(exact, 0.0),
-                        bias=std,
+                        bias={n: CHANNELS[n].bias_std(value) for n, value in exact.items()},
                         counts=dict.fromkeys(exact, 90),
                     )
                 )

@@ -1,5 +1,6 @@
 """The estimate after a window: values, what they are worth, and what the data leave open."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,18 +47,34 @@ class Innovation:
 
 
 @dataclass(frozen=True)
+class TowBias:
+    """How much a channel reads too high through one tow.
+
+    ``value``, its ``std`` after the fit and what was ``known`` before (std), in the channel's
+    ``unit``, at the channel's mean over the tow.
+    """
+
+    tow: int
+    channel: str
+    unit: str
+    value: float
+    std: float
+    known: float
+
+
+@dataclass(frozen=True)
 class Knowledge:
     """What prior and data together say about the coefficients, from whitened rows.
 
     ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
-    by the prior's std, in descending order; ``data_parameters`` is how many parameters the
-    data, rather than the prior, have settled.
+    by the prior's std, in descending order; ``root`` (12, 12) times its transpose is the
+    covariance in prior std.
     """
 
     covariance: np.ndarray
     singular: np.ndarray
     directions: np.ndarray
-    data_parameters: float
+    root: np.ndarray
 
     @property
     def condition_number(self) -> float:
@@ -95,9 +112,11 @@ class Estimate:
         Of the sensitivities, in units of readings' std per prior std, from the data alone.
     undetermined
         Combinations that the data know less well than the prior did.
-    noise_scale
-        Factor by which residuals exceed the stated noise, at least 1; a few imagined readings
-        as stated steady it, and intervals are widened by it.
+    noise_scales
+        Group of channels → factor by which residuals say that its stated noise is wrong; a few
+        imagined readings as stated steady it, and intervals are set by it.
+    tow_biases
+        What the instruments of each tow read too high by.
     freedom
         Degrees of freedom of Student's t.
     cost
@@ -121,13 +140,19 @@ class Estimate:
     active_bounds: tuple[str, ...]
     condition_number: float
     undetermined: tuple[Combination, ...]
-    noise_scale: float
+    noise_scales: Mapping[str, float]
+    tow_biases: tuple[TowBias, ...]
     freedom: float
     cost: float
     objective: float
     innovation: Innovation | None
     converged: bool
     reason: str
+
+    @property
+    def noise_scale(self) -> float:
+        """Root mean square of the factors on the stated noise of all groups."""
+        return float(np.sqrt(np.mean(np.square(list(self.noise_scales.values())))))
 
 
 def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowledge:
@@ -148,12 +173,12 @@ def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowle
     _, singular, directions = np.linalg.svd(triangle)
     # Where neither data nor prior say anything, the std is a million times the scale.
     information = singular**2 + max(prior_weight, 1e-12)
-    scaled = (directions.T / information) @ directions
+    root = directions.T / np.sqrt(information)
     return Knowledge(
-        covariance=scaled * np.outer(prior_std, prior_std),
+        covariance=(root @ root.T) * np.outer(prior_std, prior_std),
         singular=singular,
         directions=directions,
-        data_parameters=float(np.sum(singular**2 / information)),
+        root=root,
     )
 
 

@@ -13,6 +13,8 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from trawl_ros.errors import NoSteadyState
+from trawl_ros.identification.calibration import tow_biases
+from trawl_ros.identification.error_terms import GROUP_OF, GROUPS
 from trawl_ros.identification.estimate import (
     Estimate,
     Innovation,
@@ -22,7 +24,7 @@ from trawl_ros.identification.estimate import (
     undetermined,
 )
 from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.fit import AS_STATED, Fit
 from trawl_ros.identification.linearised import Linearised, linearise
 from trawl_ros.identification.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.identification.prediction import Predictor
@@ -93,7 +95,7 @@ class Estimator:
         """Forget all windows."""
         self.estimate: Estimate | None = None
         self.history: list[Progress] = []
-        self._fit = Fit((), np.array(self.prior.start), 1.0, self.prior, self.options)
+        self._fit = Fit((), np.array(self.prior.start), AS_STATED, self.prior, self.options)
         self._without: list[SteadyWindow] = []
         self._revision = 0
 
@@ -204,7 +206,7 @@ class Estimator:
     def _far(self, part: Linearised, coefficients: np.ndarray, threshold: float) -> bool:
         """Whether a window is to be solved anew at other coefficients."""
         change = part.by_coefficients @ (coefficients - part.at)
-        return bool(np.max(np.abs(change) / (self._fit.scale * part.std(1))) > threshold)
+        return bool(np.max(np.abs(change) / part.std(1)) > threshold)
 
     def _rest(self) -> tuple[bool, str]:
         """Iterate to the end; whether it converged and how one knows."""
@@ -217,9 +219,9 @@ class Estimator:
                 if step.gain > NEGLIGIBLE_GAIN:
                     return False, f'{step.obstacle}, {step.size:.2g} std from rest'
                 return True, f'after {iteration} iterations no step can lower the cost noticeably'
-            before = self._fit.scale
+            before = np.array(self._fit.scales)
             self._fit = self._fit.rescaled()
-            settled = abs(self._fit.scale / before - 1.0) < 0.01
+            settled = bool(np.max(np.abs(np.array(self._fit.scales) / before - 1.0)) < 0.01)
             if step.size < self.options.tolerance and settled:
                 return True, (
                     f'after {iteration} iterations the step is below '
@@ -273,10 +275,14 @@ class Estimator:
 
     def _innovation(self, part: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
-        by_inputs = part.by_inputs * part.input_std(1)
-        noise = np.diag(part.std(1) ** 2) + by_inputs @ by_inputs.T
+        (errors,) = replace(self._fit, windows=(part,)).errors
+        there = errors.present[0]
+        own = (errors.noise[0] * np.array(self._fit.scales)[GROUP_OF])[there]
+        shared = np.hstack(
+            [errors.inputs[0][there], errors.calibration[0][there], errors.model[0][there]]
+        )
         spread = part.by_coefficients @ known @ part.by_coefficients.T
-        std = np.sqrt(np.diag(self._fit.scale**2 * noise + spread))
+        std = np.sqrt(own**2 + np.sum(shared**2, axis=1) + np.diag(spread))
         difference = part.measured - part.values
         return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
 
@@ -300,7 +306,8 @@ class Estimator:
             active_bounds=active_bounds(values, prior),
             condition_number=fit.knowledge.condition_number,
             undetermined=undetermined(fit.knowledge),
-            noise_scale=fit.scale,
+            noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
+            tow_biases=tow_biases(fit),
             freedom=freedom,
             cost=fit.cost,
             objective=fit.objective,

@@ -4,6 +4,8 @@ from dataclasses import dataclass, fields
 
 from trawl_ros.errors import TrawlError
 
+MAY_BE_ZERO = ('prior_weight', 'state_share', 'model_error')
+
 
 @dataclass(frozen=True)
 class EstimatorOptions:
@@ -19,7 +21,12 @@ class EstimatorOptions:
     prior_weight
         1 uses the prior as stated, 0 leaves it out.
     stated_noise_readings
-        How many imagined readings speak for the stated noise when the noise scale is found.
+        How many imagined readings speak for the stated noise when the noise is found.
+    alike_readings
+        How many imagined readings of each channel group speak for the noise being wrong by the
+        same factor in all of them.
+    state_share, model_error
+        How errors are divided, as in `trawl_ros.identification.error_terms.Scheme`.
     iterations_per_window, iterations_final
         Gauss–Newton steps at most after each window and at the end.
     halvings
@@ -37,6 +44,9 @@ class EstimatorOptions:
     confidence: float = 0.95
     prior_weight: float = 1.0
     stated_noise_readings: float = 4.0
+    alike_readings: float = 12.0
+    state_share: float = 0.3
+    model_error: float = 1.0
     iterations_per_window: int = 3
     iterations_final: int = 25
     halvings: int = 6
@@ -48,7 +58,8 @@ class EstimatorOptions:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if not value >= 0.0 or (value == 0.0 and field.name != 'prior_weight'):
+            if not value >= 0.0 or (value == 0.0 and field.name not in MAY_BE_ZERO):
                 raise TrawlError(f'{field.name} is {value}, expected a positive number')
-        if self.confidence >= 1.0:
-            raise TrawlError(f'confidence is {self.confidence}, expected a number below 1')
+        for name in ('confidence', 'state_share'):
+            if not (value := getattr(self, name)) < 1.0:
+                raise TrawlError(f'{name} is {value}, expected a number below 1')

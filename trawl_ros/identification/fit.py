@@ -5,73 +5,89 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.identification.error_terms import (
+    GROUP_OF,
+    GROUPS,
+    Scheme,
+    TowErrors,
+    spread,
+    tow_errors,
+)
 from trawl_ros.identification.estimate import Knowledge, know
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.marginal import (
+    Marginal,
+    clipped_variance,
+    marginalise,
+    own_shares,
+    triangular,
+)
 from trawl_ros.identification.objective import objective, paper_values, stack
 from trawl_ros.identification.prior import BoardPrior
-from trawl_ros.identification.whitening import Whitened, whiten
+
+AS_STATED = (1.0,) * len(GROUPS)
+"""Factors on the stated noise before anything is known of it."""
+
+LEAST_SCALE = 0.3
+"""Noise is never taken to be less than this part of what is stated."""
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Linearised windows, coefficients (12,), and the factor ``scale`` on the stated noise."""
+    """Linearised windows, coefficients (12,), and factors on the stated noise by group."""
 
     windows: tuple[Linearised, ...]
     coefficients: np.ndarray
-    scale: float
+    scales: tuple[float, ...]
     prior: BoardPrior
     options: EstimatorOptions
 
     @cached_property
-    def residuals(self) -> list[np.ndarray]:
-        """Measured minus predicted per window, to first order."""
-        return [part.measured - part.predicted(self.coefficients) for part in self.windows]
+    def errors(self) -> tuple[TowErrors, ...]:
+        """What can be wrong with the readings, tow by tow."""
+        scheme = Scheme(self.options.state_share, self.options.model_error)
+        return tow_errors(self.windows, scheme)
 
     @cached_property
-    def whitened(self) -> list[Whitened]:
-        """The robust whitening of each window."""
-        return self._whitened_by(self)
+    def residual(self) -> np.ndarray:
+        """Measured minus predicted (windows, k), to first order; 0 where nothing is measured."""
+        rows = [
+            spread(part, part.measured - part.predicted(self.coefficients)) for part in self.windows
+        ]
+        return np.array(rows).reshape(-1, len(GROUP_OF))
 
     @cached_property
+    def jacobian(self) -> np.ndarray:
+        """Sensitivities (windows, k, 12) per prior std."""
+        rows = [spread(part, part.by_coefficients * self.prior.std) for part in self.windows]
+        return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior.std))
+
+    @cached_property
+    def marginal(self) -> Marginal:
+        """What is left for the coefficients once all other errors are eliminated."""
+        return self._marginal(self.errors, self.jacobian)
+
+    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> Marginal:
+        scales = np.array(self.scales)[GROUP_OF]
+        return marginalise(errors, scales, self.residual, jacobian, self.options.huber)
+
+    @property
     def cost(self) -> float:
         """Robust loss of all windows plus half the squared departure from the prior."""
-        return self.cost_beside(self)
+        return self.marginal.cost + self._prior_cost
 
     def cost_beside(self, other: 'Fit') -> float:
-        """The cost with the sensitivities to the inputs of another fit of the same windows.
+        """The cost with what errors do taken from another fit of the same windows.
 
-        These set how much the errors of warp lengths and speed explain. A step is judged
-        with them held still, as the step itself was found.
+        A step is judged with that held still, as the step itself was found.
         """
+        return self._marginal(other.errors, self.jacobian[:, :, :0]).cost + self._prior_cost
+
+    @property
+    def _prior_cost(self) -> float:
         away = (self.coefficients - self.prior.start) / self.prior.std
-        data = sum(part.cost for part in self._whitened_by(other))
-        return float(data + 0.5 * self.options.prior_weight * away @ away)
-
-    def _whitened_by(self, other: 'Fit') -> list[Whitened]:
-        states = [part.window.state for part in self.windows]
-        found = []
-        for part, residual, peer in zip(self.windows, self.residuals, other.windows, strict=True):
-            number = states.count(part.window.state)
-            found.append(
-                whiten(
-                    residual,
-                    self.scale * part.std(number),
-                    peer.by_inputs,
-                    self.scale * part.input_std(number),
-                    self.options.huber,
-                )
-            )
-        return found
-
-    @cached_property
-    def rows(self) -> tuple[np.ndarray, np.ndarray]:
-        """Whitened sensitivities (m, 12) per prior std, and whitened residuals (m,)."""
-        rows, rest = [np.zeros((0, len(self.coefficients)))], [np.zeros(0)]
-        for part, residual, white in zip(self.windows, self.residuals, self.whitened, strict=True):
-            rows.append(white.root @ part.by_coefficients * self.prior.std)
-            rest.append(white.root @ residual)
-        return np.vstack(rows), np.concatenate(rest)
+        return float(0.5 * self.options.prior_weight * away @ away)
 
     @cached_property
     def system(self) -> tuple[np.ndarray, np.ndarray]:
@@ -82,27 +98,37 @@ class Fit:
         number = len(self.coefficients)
         root = np.sqrt(self.options.prior_weight)
         away = (self.prior.start - self.coefficients) / self.prior.std
-        rows, rest = self.rows
-        left = np.vstack((rows, root * np.eye(number)))
-        right = np.concatenate((rest, root * away))
-        _, triangle = np.linalg.qr(np.column_stack((left, right)))
+        left = np.vstack((self.marginal.triangle, root * np.eye(number)))
+        right = np.concatenate((self.marginal.right, root * away))
+        triangle = triangular(np.column_stack((left, right)))
         return triangle[:number, :-1], triangle[:number, -1]
 
     @cached_property
     def knowledge(self) -> Knowledge:
         """Covariance and singular directions."""
-        return know(self.rows[0], self.prior.std, self.options.prior_weight)
+        return know(self.marginal.triangle, self.prior.std, self.options.prior_weight)
 
     @property
     def std(self) -> np.ndarray:
         """Standard deviations (12,) of the coefficients."""
         return np.sqrt(np.diag(self.knowledge.covariance))
 
+    @cached_property
+    def own_shares(self) -> np.ndarray:
+        """Part (windows, k) of each reading's variance that its fitted own error keeps."""
+        return own_shares(self.marginal, self.jacobian, self.knowledge.root)
+
     @property
     def freedom(self) -> float:
-        """Readings less the parameters they settle."""
-        readings = sum(len(part.channels) for part in self.windows)
-        return max(readings - self.knowledge.data_parameters, 0.0)
+        """Readings less all that they settle: what the noise is known by."""
+        return float((self.own_shares * self._numbers).sum())
+
+    @property
+    def _numbers(self) -> np.ndarray:
+        numbers = np.zeros(self.residual.shape)
+        for tow in self.errors:
+            numbers[tow.rows] = tow.numbers
+        return numbers
 
     @cached_property
     def objective(self) -> float:
@@ -115,19 +141,34 @@ class Fit:
         return objective(stack(predicted), stack(measured))
 
     def rescaled(self) -> 'Fit':
-        """The same fit with the noise scale that its residuals tell.
+        """The same fit with the noise of each group that its residuals tell.
 
         Clipped squares beside what they would be on normal noise (Huber's proposal 2), per
-        degree of freedom, pooled with the imagined readings that speak for the stated noise.
-        Never below 1: part of the stated noise is what stays wrong in every state alike,
-        which the fit absorbs and residuals cannot show.
+        degree of freedom (restricted maximum likelihood). What all groups have in common is
+        pooled with imagined readings that speak for the stated noise, each group with imagined
+        readings that speak for what they have in common.
         """
-        readings = sum(len(part.channels) for part in self.windows)
-        if self.freedom <= 0.0:
-            return self
-        spread = sum(part.spread for part in self.whitened)
-        expected = sum(part.expected for part in self.whitened)
-        squared = self.scale**2 * spread / expected * readings / self.freedom
-        stated = self.options.stated_noise_readings
-        pooled = (stated + self.freedom * squared) / (stated + self.freedom)
-        return replace(self, scale=max(1.0, float(np.sqrt(pooled))))
+        # Windows that share an error vary less than each of them is taken to.
+        shares = np.clip(self.own_shares, 0.0, 1.0) * self._numbers
+        huber, stated = self.options.huber, self.options.stated_noise_readings
+        own = np.zeros(shares.shape)
+        for part in self.marginal.tows:
+            own[part.errors.rows] = part.own
+        clipped = np.minimum(np.abs(own), huber) ** 2
+        # A share of nothing has no noise to tell of.
+        limit = huber / np.sqrt(np.maximum(shares, 1e-12))
+        expected = shares * clipped_variance(limit)
+        numbers = np.array([shares[:, group == GROUP_OF].sum() for group in range(len(GROUPS))])
+        told = np.array(
+            [
+                self.scales[group] ** 2 * clipped[:, columns].sum() / expected[:, columns].sum()
+                if numbers[group] > 0.0
+                else 0.0
+                for group in range(len(GROUPS))
+                for columns in [group == GROUP_OF]
+            ]
+        )
+        common = (stated + numbers @ told) / (stated + numbers.sum())
+        alike = self.options.alike_readings
+        pooled = (alike * common + numbers * told) / (alike + numbers)
+        return replace(self, scales=tuple(np.maximum(np.sqrt(pooled), LEAST_SCALE).tolist()))

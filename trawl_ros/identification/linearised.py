@@ -37,10 +37,6 @@ class Linearised:
         """Standard deviations (n,) of the measured means."""
         return np.array([self.window.std(name, windows_in_state) for name in self.channels])
 
-    def input_std(self, windows_in_state: int) -> np.ndarray:
-        """Standard deviations (3,) of warp lengths and speed."""
-        return np.array([self.window.std(name, windows_in_state) for name in INPUTS])
-
 
 def linearise(
     predictor: Predictor,

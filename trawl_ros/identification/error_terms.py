@@ -1,0 +1,207 @@
+"""What can be wrong with the readings of a tow, and how each error goes over its windows.
+
+Four kinds of error stand between a reading and the model: those of the single reading (scatter,
+and what changes from one steady state to the next), those of the window's measured warp
+lengths and speed, calibration, which is wrong alike throughout a tow, and the model's own, alike
+in all tows.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.identification.linearised import Linearised
+
+
+def group_of(channel: str) -> str:
+    """Give the name of the quantity, which is the same for both sides."""
+    return channel.removeprefix('port_').removeprefix('starboard_')
+
+
+GROUPS = tuple(dict.fromkeys(map(group_of, MEASURED)))
+"""Measured quantities; sensors of both sides are alike."""
+
+GROUP_OF = np.array([GROUPS.index(group_of(name)) for name in MEASURED])
+"""Index into `GROUPS` of each channel (k,)."""
+
+MODEL_FRACTION = 0.003
+MODEL_ANGLE = np.radians(0.2)
+"""Std of what the model itself is wrong by: what a gear of twice as fine warps and bridles and
+a net without joined meshes shows more than the default, as ``trawl study identification`` prints
+it; a part of the value, and for pitch and roll an angle."""
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """How errors are divided.
+
+    Attributes
+    ----------
+    state_share
+        Part of a channel's bias, in std, that changes from one steady state to the next; the
+        rest stays through the tow.
+    model_error
+        Factor on the model's own errors; 0 is a model taken to be exact.
+    """
+
+    state_share: float = 0.3
+    model_error: float = 1.0
+
+    @property
+    def tow_share(self) -> float:
+        """Part in std that stays through the tow."""
+        return float(np.sqrt(1.0 - self.state_share**2))
+
+
+@dataclass(frozen=True)
+class Term:
+    """An error of calibration: the channel or input it belongs to, and its std there.
+
+    ``relative`` errors are parts of the value, others are in the channel's unit.
+    """
+
+    channel: str
+    std: float
+    relative: bool
+
+
+TERMS = tuple(
+    Term(name, std, relative)
+    for name in (*MEASURED, *INPUTS)
+    for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
+    if std > 0.0
+)
+"""Errors of calibration of one tow."""
+
+
+@dataclass(frozen=True)
+class TowErrors:
+    """Windows of one tow: n windows by k channels (in the order of `MEASURED`).
+
+    Attributes
+    ----------
+    rows : (n,) int array
+        Which of all windows these are.
+    present : (n, k) bool array
+        Whether a window has the channel; all else is 0 where it has not.
+    noise : (n, k) array
+        Std of the single reading's own error as stated, 1 where absent.
+    numbers : (n, k) array
+        How many independent readings each stands for: all windows of a state share what
+        changes with the state.
+    inputs : (n, k, 3) array
+        What one std in warp lengths and speed of this window does.
+    calibration : (n, k, p) array
+        What one std of each of `TERMS` does.
+    model : (n, k, m) array
+        What one std of the model's errors does, one per group.
+    """
+
+    rows: np.ndarray
+    present: np.ndarray
+    noise: np.ndarray
+    numbers: np.ndarray
+    inputs: np.ndarray
+    calibration: np.ndarray
+    model: np.ndarray
+
+
+def spread(part: Linearised, values: np.ndarray) -> np.ndarray:
+    """Rows of a window's channels set among all channels, 0 for those it has not.
+
+    Parameters
+    ----------
+    part
+        The window.
+    values
+        (channels of the window, ...) array.
+    """
+    full = np.zeros((len(MEASURED), *values.shape[1:]))
+    full[[MEASURED.index(name) for name in part.channels]] = values
+    return full
+
+
+def tow_errors(parts: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, ...]:
+    """Errors of all windows, tow by tow.
+
+    Parameters
+    ----------
+    parts
+        Linearised windows of any tows.
+    scheme
+        How errors are divided.
+    """
+    states = [part.window.state for part in parts]
+    in_state = {state: states.count(state) for state in set(states)}
+    tows: dict[int, list[int]] = {}
+    for row, part in enumerate(parts):
+        tows.setdefault(part.window.tow, []).append(row)
+    return tuple(
+        _of_one_tow(rows, [parts[row] for row in rows], in_state, scheme)
+        for _, rows in sorted(tows.items())
+    )
+
+
+def _of_one_tow(
+    rows: Sequence[int],
+    parts: Sequence[Linearised],
+    in_state: Mapping[int, int],
+    scheme: Scheme,
+) -> TowErrors:
+    present = np.array([[name in part.channels for name in MEASURED] for part in parts])
+    by_inputs = np.array([spread(part, part.by_inputs) for part in parts])
+    own = np.array(
+        [[_own_std(part, name, in_state, scheme) for name in MEASURED] for part in parts]
+    )
+    alone = np.array(
+        [[_own_std(part, name, {part.window.state: 1}, scheme) for name in MEASURED]
+         for part in parts]
+    )  # fmt: skip
+    input_std = np.array(
+        [[_own_std(part, name, in_state, scheme) for name in INPUTS] for part in parts]
+    )
+    return TowErrors(
+        rows=np.array(rows),
+        present=present,
+        noise=own,
+        numbers=present * alone**2 / own**2,
+        inputs=by_inputs * input_std[:, None, :],
+        calibration=np.array([_calibration(part, scheme) for part in parts]),
+        model=np.array([_model(part, scheme) for part in parts]),
+    )
+
+
+def _own_std(part: Linearised, name: str, in_state: Mapping[int, int], scheme: Scheme) -> float:
+    window = part.window
+    if name not in window.means or (name in MEASURED and name not in part.channels):
+        return 1.0
+    # All windows of a state share what changes with it, so their number must not wear it down.
+    changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
+    return float(np.sqrt(window.noise[name] ** 2 + changing))
+
+
+def _calibration(part: Linearised, scheme: Scheme) -> np.ndarray:
+    columns = np.zeros((len(MEASURED), len(TERMS)))
+    by_inputs = spread(part, part.by_inputs)
+    for column, term in enumerate(TERMS):
+        mean = part.window.means.get(term.channel)
+        if mean is None:
+            continue
+        size = scheme.tow_share * term.std * (mean if term.relative else 1.0)
+        if term.channel in INPUTS:
+            # An input read too large makes the prediction differ, not the reading.
+            columns[:, column] = -size * by_inputs[:, INPUTS.index(term.channel)]
+        elif term.channel in part.channels:
+            columns[MEASURED.index(term.channel), column] = size
+    return columns
+
+
+def _model(part: Linearised, scheme: Scheme) -> np.ndarray:
+    columns = np.zeros((len(MEASURED), len(GROUPS)))
+    for name, value in zip(part.channels, part.values, strict=True):
+        row = MEASURED.index(name)
+        size = MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
+        columns[row, GROUP_OF[row]] = scheme.model_error * size
+    return columns
