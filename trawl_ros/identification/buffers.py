@@ -2,12 +2,12 @@
 
 import math
 from bisect import bisect_left
-from collections import Counter
 
 import numpy as np
 
 from trawl_ros.identification.channels import Channel, Reading
 from trawl_ros.identification.order import Order
+from trawl_ros.identification.rejections import Rejections
 from trawl_ros.identification.timeline import NANO
 
 CAPACITY = 50_000
@@ -23,7 +23,7 @@ class ChannelBuffer:
         The channel's row of the table.
     order
         Judge of the stamps.
-    rejected
+    rejections
         Where refused readings are counted by reason.
 
     Attributes
@@ -34,13 +34,14 @@ class ChannelBuffer:
         By how much (ns) a window's readings of this channel lie before the window.
     """
 
-    def __init__(self, channel: Channel, order: Order, rejected: Counter[str]) -> None:
+    def __init__(self, channel: Channel, order: Order, rejections: Rejections) -> None:
         self.channel = channel
         self.order = order
         self.first: int | None = None
         self.delay = round(channel.delay * NANO)
         self._decided: int | None = None
-        self._rejected = rejected
+        self._rejections = rejections
+        self._where = f'{channel.name} ({channel.topic})'
         self._stamps: list[int] = []
         self._values: list[float] = []
         self._stds: list[float] = []
@@ -57,26 +58,27 @@ class ChannelBuffer:
         Each one refused is counted by its reason.
         """
         if not math.isfinite(reading.value):
-            self._rejected['not finite'] += 1
+            self._rejections.add('not finite', f'{self._where} reads {reading.value}')
             return 0
         low = max(self.channel.low, reading.low if math.isfinite(reading.low) else -math.inf)
         high = min(self.channel.high, reading.high if math.isfinite(reading.high) else math.inf)
         if not low <= reading.value <= high:
-            self._rejected['out of range'] += 1
+            expected = f'expected {low:g} to {high:g} {self.channel.unit}'
+            found = f'{self._where} reads {reading.value:g} {self.channel.unit}, {expected}'
+            self._rejections.add('out of range', found)
             self._outside.append((reading.stamp, reading.value))
             del self._outside[:-CAPACITY]
             return 0
-        sorted_out = self.order.judge(reading)
-        self._rejected.update(sorted_out.refused)
-        return sum(self._insert(one) for one in sorted_out.accepted)
+        return sum(self._insert(one) for one in self.order.judge(reading))
 
     def _insert(self, reading: Reading) -> bool:
         place = bisect_left(self._stamps, reading.stamp)
         if place < len(self._stamps) and self._stamps[place] == reading.stamp:
-            self._rejected['duplicate stamp'] += 1
+            self._rejections.add('duplicate stamp', f'{self._where} has a stamp twice')
             return False
         if self._decided is not None and reading.stamp < self._decided:
-            self._rejected['late'] += 1
+            late = (self._decided - reading.stamp) / NANO
+            self._rejections.add('late', f'{self._where} came {late:.1f} s too late for its window')
             return False
         self._stamps.insert(place, reading.stamp)
         self._values.insert(place, reading.value)

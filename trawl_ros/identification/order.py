@@ -4,10 +4,8 @@ The verdict on a reading depends on the readings of its own channel alone, so it
 however channels interleave.
 """
 
-from collections import Counter
-from dataclasses import dataclass, field
-
 from trawl_ros.identification.channels import CHANNELS, INPUTS, Channel, Reading
+from trawl_ros.identification.rejections import Rejections
 from trawl_ros.identification.timeline import NANO, Timeline
 from trawl_ros.identification.window_records import WindowOptions
 
@@ -21,14 +19,6 @@ WINCH = CHANNELS[INPUTS[0]].topic
 
 STEP_S = 60.0
 """Longest time (s) between two of these, but for channels that are slower still."""
-
-
-@dataclass
-class Sorted:
-    """What came of one reading: readings ``accepted``, and those ``refused`` by reason."""
-
-    accepted: list[Reading] = field(default_factory=list)
-    refused: Counter[str] = field(default_factory=Counter)
 
 
 class Order:
@@ -49,6 +39,8 @@ class Order:
         Slack and patience.
     timeline
         Of the winches, kept by their own readings.
+    rejections
+        Where refused readings are counted.
 
     Attributes
     ----------
@@ -56,8 +48,16 @@ class Order:
         Newest stamp (ns) that can be believed, None before any.
     """
 
-    def __init__(self, channel: Channel, options: WindowOptions, timeline: Timeline) -> None:
+    def __init__(
+        self,
+        channel: Channel,
+        options: WindowOptions,
+        timeline: Timeline,
+        rejections: Rejections,
+    ) -> None:
         self.newest: int | None = None
+        self._where = f'{channel.name} ({channel.topic})'
+        self._rejections = rejections
         self._timeline = timeline
         self._winch = channel.topic == WINCH
         self._length = channel.name in INPUTS[:2]
@@ -69,54 +69,58 @@ class Order:
         self._closed_until: int | None = None
         self._waiting: list[Reading] = []
 
-    def judge(self, reading: Reading) -> Sorted:
-        """Sort out one reading, and those that have waited for it."""
-        found = Sorted()
+    def judge(self, reading: Reading) -> list[Reading]:
+        """Give the readings that are accepted now, this one or those that waited for it."""
         if self.newest is None or reading.stamp > self.newest + self._leap:
-            self._wait(reading, found)
-            return found
-        self._give_up(found)
-        age = self.newest - reading.stamp
-        if age > self._reorder:
-            found.refused['clock jump' if age > BACK_S * NANO else 'out of order'] += 1
-        else:
-            self._accept(reading, found)
-        return found
+            return self._wait(reading)
+        self.give_up()
+        behind = self.newest - reading.stamp
+        if behind <= self._reorder:
+            return self._accept([reading])
+        reason = 'clock jump' if behind > BACK_S * NANO else 'out of order'
+        sentence = f'{self._where} is stamped {behind / NANO:.1f} s before what came earlier'
+        self._rejections.add(reason, sentence)
+        return []
 
-    def finish(self) -> Counter[str]:
-        """Refuse what still waits, by reason: nothing will come to confirm it."""
-        found = Sorted()
-        self._give_up(found)
-        return found.refused
-
-    def _wait(self, reading: Reading, found: Sorted) -> None:
-        if any(reading.stamp == one.stamp for one in self._waiting):
-            found.refused['duplicate stamp'] += 1
+    def give_up(self) -> None:
+        """Refuse what waits: nothing has come to confirm it."""
+        if not self._waiting:
             return
+        leap = f'{self._where} is stamped far from its other readings, and only for a moment'
+        if self.newest is not None:
+            ahead = (self._waiting[0].stamp - self.newest) / NANO
+            leap = f'{self._where} is stamped {ahead:.1f} s ahead for a moment'
+        self._rejections.add('clock jump', leap, len(self._waiting))
+        self._waiting = []
+
+    def _wait(self, reading: Reading) -> list[Reading]:
+        if any(reading.stamp == one.stamp for one in self._waiting):
+            self._rejections.add('duplicate stamp', f'{self._where} has a stamp twice')
+            return []
         if self._waiting:
             newest = max(one.stamp for one in self._waiting)
             if not newest - self._reorder <= reading.stamp <= newest + self._step:
-                self._give_up(found)
+                self.give_up()
         self._waiting.append(reading)
-        if len(self._waiting) == CONFIRM:
-            waited, self._waiting = self._waiting, []
-            for one in sorted(waited, key=lambda one: one.stamp):
-                self._accept(one, found)
+        if len(self._waiting) < CONFIRM:
+            return []
+        waited, self._waiting = self._waiting, []
+        return self._accept(sorted(waited, key=lambda one: one.stamp))
 
-    def _give_up(self, found: Sorted) -> None:
-        if self._waiting:
-            found.refused['clock jump'] += len(self._waiting)
-            self._waiting = []
-
-    def _accept(self, reading: Reading, found: Sorted) -> None:
-        stamp = reading.stamp
-        silent = self.newest is None or stamp > self.newest + self._silence
-        if silent and not self._winch and self._timeline.speaks_at(stamp - self._half_patience):
-            self._closed_until = stamp + self._half_patience
-        if self._length:
-            self._timeline.advance(stamp)
-        self.newest = stamp if self.newest is None else max(self.newest, stamp)
-        if self._closed_until is not None and stamp < self._closed_until:
-            found.refused['silence'] += 1
-        else:
-            found.accepted.append(reading)
+    def _accept(self, readings: list[Reading]) -> list[Reading]:
+        accepted = []
+        for reading in readings:
+            stamp = reading.stamp
+            silent = self.newest is None or stamp > self.newest + self._silence
+            if silent and not self._winch and self._timeline.speaks_at(stamp - self._half_patience):
+                self._closed_until = stamp + self._half_patience
+            if self._length:
+                self._timeline.advance(stamp)
+            self.newest = stamp if self.newest is None else max(self.newest, stamp)
+            if self._closed_until is None or stamp >= self._closed_until:
+                accepted.append(reading)
+                continue
+            wait = self._half_patience / NANO
+            sentence = f'{self._where} was silent for long and is not used for {wait:g} s'
+            self._rejections.add('silence', sentence)
+        return accepted

@@ -16,6 +16,7 @@ from trawl_ros.identification.buffers import ChannelBuffer
 from trawl_ros.identification.channels import CHANNELS, INPUTS, STEERING, readings
 from trawl_ros.identification.operation import Block, Operation, Unheld, circular_median
 from trawl_ros.identification.order import Order
+from trawl_ros.identification.rejections import Rejections
 from trawl_ros.identification.statistics import error_of_mean, longest_run, outliers, trend
 from trawl_ros.identification.timeline import NANO, Timeline
 from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow, WindowOptions
@@ -36,8 +37,8 @@ class SteadyWindowFinder:
 
     Attributes
     ----------
-    rejected : Counter
-        Reason → count, of what `REASONS` says.
+    rejections : Rejections
+        Counts by reason, of what `REASONS` says, and what was found.
     arrived, readings : Counter
         Channel → readings that came, and those of them that were accepted.
     """
@@ -54,7 +55,7 @@ class SteadyWindowFinder:
 
     def reset(self) -> None:
         """Forget everything: time has jumped back."""
-        self.rejected: Counter[str] = Counter()
+        self.rejections = Rejections()
         self.arrived: Counter[str] = Counter()
         self.readings: Counter[str] = Counter()
         self._windows = 0
@@ -67,7 +68,9 @@ class SteadyWindowFinder:
         self._timeline = Timeline()
         self._buffers = {
             name: ChannelBuffer(
-                channel, Order(channel, self._options, self._timeline), self.rejected
+                channel,
+                Order(channel, self._options, self._timeline, self.rejections),
+                self.rejections,
             )
             for name, channel in CHANNELS.items()
         }
@@ -87,6 +90,11 @@ class SteadyWindowFinder:
         """Newest stamp (ns) accepted on a channel."""
         return self._buffers[channel].newest
 
+    @property
+    def rejected(self) -> Counter[str]:
+        """Reason → count."""
+        return self.rejections.counts
+
     def feed(self, sample: Sample) -> list[SteadyWindow | RejectedWindow]:
         """Take one sample; return what could be decided with it, in order of time."""
         for reading in readings(sample, self._pressure_to_depth):
@@ -100,7 +108,7 @@ class SteadyWindowFinder:
     def finish(self) -> list[SteadyWindow | RejectedWindow]:
         """Decide what is left: no more samples will come."""
         for buffer in self._buffers.values():
-            self.rejected.update(buffer.order.finish())
+            buffer.order.give_up()
         lead = self._timeline.lead
         return [] if lead is None else self._advance(lead + 1)
 
@@ -221,7 +229,7 @@ class SteadyWindowFinder:
         if stretch == self._stretch:
             return []
         self._stretch = stretch
-        self.rejected[why.reason] += 1
+        self.rejections.add(why.reason, why.detail)
         return [RejectedWindow(why.reason, start_ns, end_ns, why.detail)]
 
     def _heard(self, name: str, end_ns: int) -> bool:
@@ -234,7 +242,7 @@ class SteadyWindowFinder:
         noise: dict[str, float] = {}
         bias: dict[str, float] = {}
         counts: dict[str, int] = {}
-        dropped: Counter[str] = Counter()
+        dropped: list[tuple[str, str, int]] = []
         for name, channel in CHANNELS.items():
             if name in STEERING or not (channel.required or self._heard(name, end_ns)):
                 continue
@@ -242,15 +250,18 @@ class SteadyWindowFinder:
             if isinstance(result, Unheld):
                 if channel.required:
                     return result
-                dropped[result.reason] += 1
+                dropped.append((result.reason, result.detail, 1))
                 continue
             values, stated, excluded = result
             means[name] = float(values.mean())
             noise[name] = error_of_mean(values, stated)
             bias[name] = channel.bias_std(means[name])
             counts[name] = len(values)
-            dropped['outlier'] += excluded
-        self.rejected.update(+dropped)
+            if excluded:
+                found = f'{name} ({channel.topic}) has {excluded} outliers in a window'
+                dropped.append(('outlier', found, excluded))
+        for reason, sentence, number in dropped:
+            self.rejections.add(reason, sentence, number)
         return SteadyWindow(
             self._windows, state, start_ns, end_ns, means, noise, bias, counts, self._tow
         )
