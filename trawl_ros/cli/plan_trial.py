@@ -1,0 +1,155 @@
+"""``trawl plan-trial``."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich.status import Status
+
+from trawl_ros.cli.files import FOLDER
+from trawl_ros.cli.progress import LINE_EVERY_S, error_console
+from trawl_ros.cli.tables import output_console, plain_table
+from trawl_ros.files import empty_folder
+
+if TYPE_CHECKING:
+    from trawl_ros.identification.planning import TrialPlan
+
+
+@click.command('plan-trial')
+@click.argument('gear', metavar='GEAR')
+@click.option(
+    '--hours',
+    default=6.0,
+    show_default=True,
+    type=click.FloatRange(0.0, 48.0, min_open=True),
+    help='Time at sea.',
+)
+@click.option('--out', type=FOLDER, help='Folder for plan.json, trial.yaml and plan.png.')
+@click.option(
+    '--max-tension-kn',
+    type=click.FloatRange(0.0, 2000.0, min_open=True),
+    help='What a warp may be pulled with.',
+)
+@click.option(
+    '--seabed-m',
+    type=click.FloatRange(10.0, 11_000.0),
+    help='Depth of the water; the gear stays 10 m above the bottom.',
+)
+@click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
+def command(
+    gear: str,
+    hours: float,
+    out: Path | None,
+    max_tension_kn: float | None,
+    seabed_m: float | None,
+    force: bool,
+) -> None:
+    """Plan a trial that tells most about the boards of GEAR in a given time at sea.
+
+    GEAR is a gear file or the name of one that comes with the package. Says what will be known
+    after it and what will not, beside the paper's sweep of warp lengths at one speed. With --out
+    it writes the plan, a scenario that ``trawl tow`` can run, and a picture.
+    """
+    if out is not None:
+        empty_folder(out, force=force)
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.identification.planning import plan_trial
+    from trawl_ros.identification.planning_states import Limits
+    from trawl_ros.identification.planning_writing import write_plan
+
+    record = load_gear(gear)
+    limits = Limits(
+        max_tension=None if max_tension_kn is None else 1e3 * max_tension_kn, seabed=seabed_m
+    )
+    with _Counting() as progress:
+        plan = plan_trial(record, hours=hours, limits=limits, progress=progress)
+    print_plan(plan)
+    if out is not None:
+        write_plan(plan, gear, out)
+        click.echo(f'\nWritten to {out}; to tow it: trawl tow {out}/trial.yaml --out BAG')
+
+
+def print_plan(plan: 'TrialPlan') -> None:
+    """Print legs, what is known after them, and what limits the rest."""
+    from trawl_ros.identification.laws import LAWS, QUANTITIES
+
+    console = output_console()
+    legs = plain_table(
+        'leg', 'warps / m', 'speed / (m/s)', 'minutes', 'well known', 'helps most', 'sd / span',
+        right=('leg', 'warps / m', 'speed / (m/s)', 'minutes', 'well known'),
+    )  # fmt: skip
+    for number, (leg, gain) in enumerate(zip(plan.trial.legs, plan.gains, strict=True), 1):
+        lengths, _, _ = str(leg.manoeuvre).partition(' ')
+        legs.add_row(
+            str(number), lengths, f'{leg.manoeuvre.speed:g}', f'{leg.total_minutes:.1f}',
+            f'{gain.well_known} of {len(QUANTITIES)}', gain.quantity,
+            f'{100 * gain.before:.1f} → {100 * gain.after:.1f} %',
+        )  # fmt: skip
+    console.print(legs)
+    console.print(f'{plan.trial.minutes / 60.0:.2f} h in all.\n')
+
+    trials = (plan.trial, *plan.sweeps)
+    known = plain_table(
+        'law', 'quantity', 'before', *(trial.name for trial in trials), 'limited by',
+        right=('before', *(trial.name for trial in trials)),
+    )  # fmt: skip
+    for index, name in enumerate(QUANTITIES):
+        law = LAWS[index % len(LAWS)]
+        known.add_row(
+            law.name, name, f'{100 * plan.before.ratio[index]:.0f} %',
+            *(f'{100 * trial.known.ratio[index]:.1f} %' for trial in trials),
+            plan.limits.get(name, ''),
+        )  # fmt: skip
+    for title, kind in (
+        ('well known (below 20 %)', 'known'),
+        ('… by the data alone', 'by_data'),
+        ('… if the board is as the file has it', 'as_filed'),
+    ):
+        numbers = [getattr(trial, kind).well_known.sum() for trial in trials]
+        known.add_row(title, '', '', *(f'{number} of {len(QUANTITIES)}' for number in numbers))
+    console.print(known)
+    sweep = plan.sweeps[0]
+    if sweep.legs:
+        console.print(
+            f'\nStandard deviations are parts of what each law spans over 15°. The sweep takes '
+            f'{len(sweep.legs)} states at {sweep.legs[0].manoeuvre.speed:g} m/s in '
+            f'{sweep.minutes / 60.0:.2f} h.',
+            soft_wrap=True,
+        )
+    reasons = ', '.join(sorted({one.reason for one in plan.choice.refused}))
+    if reasons:
+        console.print(
+            f'{len(plan.choice.refused)} of '
+            f'{len(plan.choice.refused) + len(plan.choice.candidates)} manoeuvres are not to be '
+            f'had: {reasons}.',
+            soft_wrap=True,
+        )
+
+
+class _Counting:
+    """Says how many of how many are done: on a terminal always, else every ten seconds."""
+
+    def __init__(self) -> None:
+        self._console = error_console()
+        self._status: Status | None = None
+        self._said = time.monotonic()
+        if self._console.is_terminal:
+            self._status = self._console.status('planning')
+
+    def __call__(self, what: str, done: int, number: int) -> None:
+        words = f'{what}: {done} of {number}'
+        if self._status is not None:
+            self._status.update(words)
+        elif time.monotonic() - self._said >= LINE_EVERY_S:
+            self._said = time.monotonic()
+            self._console.print(words)
+
+    def __enter__(self) -> '_Counting':
+        if self._status is not None:
+            self._status.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._status is not None:
+            self._status.stop()

@@ -1,0 +1,207 @@
+"""Which manoeuvres, in a given time, teach most about the six laws."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.laws import (
+    WELL_KNOWN,
+    LawQuantities,
+    WorkingAngles,
+    law_quantities,
+)
+from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.planning_information import (
+    covariance_from,
+    fitted_covariance,
+    information_before,
+    information_of,
+)
+from trawl_ros.identification.planning_states import (
+    Candidate,
+    Manoeuvre,
+)
+from trawl_ros.identification.planning_time import (
+    Ability,
+    Leg,
+    arranged,
+    legs_of,
+    minutes_of,
+)
+from trawl_ros.identification.planning_windows import TABLE_NOISE, imagined_windows
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.window_records import WindowOptions
+
+LEAST_GAIN = 1e-9
+"""A gain below this is none: what rounding may give must not decide."""
+
+
+def shortfall(quantities: LawQuantities) -> float:
+    """How far the twelve quantities are from being well known, to be made small.
+
+    Mean of log(1 + (ratio / 0.2)²) / 2: of a quantity that is hardly known the logarithm of its
+    std counts, and little is won by knowing better what is well known.
+    """
+    return float(0.5 * np.mean(np.log1p((quantities.ratio / WELL_KNOWN) ** 2)))
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of a trial: the laws of this board, in these units, in this time.
+
+    ``coefficients`` (12,) as they are believed to be, ``span`` (12,) from `law_spans`.
+    """
+
+    coefficients: np.ndarray
+    prior: BoardPrior
+    angles: WorkingAngles
+    span: np.ndarray
+    estimator: EstimatorOptions
+    windows: WindowOptions
+    ability: Ability
+    minutes: float
+
+    def quantities(self, covariance: np.ndarray) -> LawQuantities:
+        """The twelve quantities with a covariance (12, 12) of the coefficients."""
+        return law_quantities(self.coefficients, covariance, self.angles, self.span)
+
+
+MOST_VISITS = 2
+"""How often a trial may come back to a steady state. What a state teaches is computed with the
+board as it is believed to be; a trial that rests on few states is as good as this belief."""
+
+
+class Designer:
+    """Builds trials from candidates.
+
+    Parameters
+    ----------
+    question
+        What is asked.
+    candidates
+        What may be chosen from.
+    noise
+        Standard error of each channel's mean; channels that are not in it are not heard.
+    """
+
+    def __init__(
+        self,
+        question: Question,
+        candidates: Iterable[Candidate],
+        noise: Mapping[str, float] = TABLE_NOISE,
+    ) -> None:
+        self.question = question
+        self.candidates = tuple(candidates)
+        self.noise = noise
+        self._number = {one.manoeuvre: index for index, one in enumerate(self.candidates)}
+        self._before = information_before(question.estimator)
+        self._taught = [
+            information_of(self._windows(one, 0), question.prior, question.estimator)
+            for one in self.candidates
+        ]
+
+    def legs(self, manoeuvres: Sequence[Manoeuvre]) -> tuple[Leg, ...] | None:
+        """Put manoeuvres in order; None where that cannot be done in the time there is."""
+        if max(Counter(manoeuvres).values(), default=0) > MOST_VISITS:
+            return None
+        ordered = arranged(manoeuvres)
+        if ordered is None:
+            return None
+        legs = legs_of(ordered, self.question.ability, self.question.windows)
+        return legs if minutes_of(legs) <= self.question.minutes else None
+
+    def _windows(self, candidate: Candidate, state: int) -> tuple[Linearised, ...]:
+        question = self.question
+        return imagined_windows(
+            candidate,
+            question.coefficients,
+            state=state,
+            number=question.windows.max_windows_per_state,
+            noise=self.noise,
+        )
+
+    def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> np.ndarray:
+        """Information after manoeuvres, each done so many times."""
+        taught = [self._taught[self._number[one]] for one in manoeuvres]
+        return self._before + times * sum(taught)
+
+    def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> np.ndarray:
+        """Covariance (12, 12) of the coefficients after manoeuvres."""
+        return covariance_from(self.information(manoeuvres), self.question.prior)
+
+    def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> np.ndarray:
+        """The same (12, 12), as the estimator itself gives it."""
+        question = self.question
+        parts = [
+            part
+            for state, one in enumerate(manoeuvres)
+            for part in self._windows(self.candidates[self._number[one]], state)
+        ]
+        return fitted_covariance(parts, question.coefficients, question.prior, question.estimator)
+
+    def quantities(self, manoeuvres: Sequence[Manoeuvre]) -> LawQuantities:
+        """The twelve quantities after manoeuvres."""
+        return self.question.quantities(self.covariance(manoeuvres))
+
+    def shortfall(self, manoeuvres: Sequence[Manoeuvre]) -> float:
+        """How far the quantities are from being well known after manoeuvres."""
+        return shortfall(self.quantities(manoeuvres))
+
+    def best(self, progress: Callable[[float], None] = lambda minutes: None) -> tuple[Leg, ...]:
+        """The trial that leaves the least shortfall, as far as adding and exchanging finds it.
+
+        Manoeuvres are added by what they gain per minute until the time is up; then each is
+        exchanged for whatever gains most, and what has become free is filled, until nothing
+        gains. Ties fall to the first candidate, so that the result is always the same.
+
+        Parameters
+        ----------
+        progress
+            Is told how many minutes of the trial are planned.
+        """
+        chosen: list[Manoeuvre] = []
+        while True:
+            chosen = self._filled(chosen, progress)
+            better = self._exchanged(chosen)
+            if better is None:
+                return self.legs(chosen) or ()
+            chosen = better
+
+    def _filled(
+        self, chosen: list[Manoeuvre], progress: Callable[[float], None]
+    ) -> list[Manoeuvre]:
+        while True:
+            now = self.shortfall(chosen)
+            minutes = minutes_of(self.legs(chosen) or ())
+            best, most = chosen, 0.0
+            for one in self.candidates:
+                trial = [*chosen, one.manoeuvre]
+                gain = now - self.shortfall(trial)
+                if gain <= LEAST_GAIN:
+                    continue
+                legs = self.legs(trial)
+                if legs is None:
+                    continue
+                rate = gain / max(minutes_of(legs) - minutes, 1.0)
+                if rate > most * (1.0 + LEAST_GAIN):
+                    best, most = trial, rate
+            if best is chosen:
+                return chosen
+            chosen = best
+            progress(minutes_of(self.legs(chosen) or ()))
+
+    def _exchanged(self, chosen: list[Manoeuvre]) -> list[Manoeuvre] | None:
+        """One round in which each manoeuvre may be exchanged; None where nothing was gained."""
+        changed = False
+        for place in range(len(chosen)):
+            rest = chosen[:place] + chosen[place + 1 :]
+            least = self.shortfall(chosen)
+            for one in self.candidates:
+                trial = [*rest[:place], one.manoeuvre, *rest[place:]]
+                left = self.shortfall(trial)
+                if left < least - LEAST_GAIN and self.legs(trial) is not None:
+                    chosen, least, changed = trial, left, True
+        return chosen if changed else None

@@ -1,0 +1,73 @@
+"""The paper's trial: warp lengths out and back at one speed."""
+
+from dataclasses import dataclass
+from itertools import chain, count
+
+from trawl_ros.identification.channels import INPUTS
+from trawl_ros.identification.laws import LawQuantities
+from trawl_ros.identification.objective import PAPER_CHANNELS
+from trawl_ros.identification.planning_search import Designer
+from trawl_ros.identification.planning_states import Manoeuvre
+from trawl_ros.identification.planning_time import Leg, legs_of, minutes_of
+from trawl_ros.identification.planning_windows import TABLE_NOISE
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Legs and what they teach.
+
+    ``known`` is that with the board as it is believed to be, ``by_data`` the same without what
+    was known before, and ``as_filed`` that with the board as the gear file has it.
+    """
+
+    name: str
+    legs: tuple[Leg, ...]
+    known: LawQuantities
+    by_data: LawQuantities
+    as_filed: LawQuantities
+
+    @property
+    def manoeuvres(self) -> tuple[Manoeuvre, ...]:
+        """What is done."""
+        return tuple(leg.manoeuvre for leg in self.legs)
+
+    @property
+    def minutes(self) -> float:
+        """How long it takes."""
+        return minutes_of(self.legs)
+
+
+def paper_noise() -> dict[str, float]:
+    """Standard errors of what the paper's trial measured, with the inputs'."""
+    heard = {name for channel in PAPER_CHANNELS for name in channel.observables} | set(INPUTS)
+    return {name: value for name, value in TABLE_NOISE.items() if name in heard}
+
+
+def best_sweep(designer: Designer) -> tuple[Leg, ...]:
+    """Sweep all lengths out and back, again and again until the time is up.
+
+    Of all speeds, the one is taken at which this teaches most.
+    """
+    speeds = sorted({one.manoeuvre.speed for one in designer.candidates if one.manoeuvre.equal})
+    sweeps = [_sweep(designer, speed) for speed in speeds]
+    return min(sweeps, key=lambda legs: designer.shortfall([leg.manoeuvre for leg in legs]))
+
+
+def _sweep(designer: Designer, speed: float) -> tuple[Leg, ...]:
+    question = designer.question
+    out = sorted(
+        one.manoeuvre
+        for one in designer.candidates
+        if one.manoeuvre.equal and one.manoeuvre.speed == speed
+    )
+    legs: tuple[Leg, ...] = ()
+    done: list[Manoeuvre] = []
+    for manoeuvre in chain.from_iterable((*out, *out[-2:0:-1]) for _ in count()):
+        # One length alone is one state, however long it is held.
+        if done and manoeuvre == done[-1]:
+            return legs
+        longer = legs_of([*done, manoeuvre], question.ability, question.windows)
+        if minutes_of(longer) > question.minutes:
+            return legs
+        legs, done = longer, [*done, manoeuvre]
+    return legs
