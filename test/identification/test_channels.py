@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED, REQUIRED, readings
+from trawl_ros.identification.window_records import WindowOptions
 from trawl_ros.instruments.samples import (
     AttitudeSample,
     FixSample,
@@ -60,9 +61,22 @@ def test_attitude_spread_and_log(sea):
     assert fed(sea, water)['speed'].value == 2.0
 
 
-def test_speed_over_ground_and_position_are_not_used(sea):
-    assert fed(sea, VelocitySample(1, 'ground', np.array([2.0, 0.0, 0.0]), 0.0)) == {}
+def test_speed_over_ground_is_a_witness_and_position_is_not_used(sea):
+    ground = fed(sea, VelocitySample(1, 'ground', np.array([2.0, 0.5, 0.0]), 0.0))
+    assert {name: reading.value for name, reading in ground.items()} == {
+        'ground_east': 2.0,
+        'ground_north': 0.5,
+    }
+    assert not set(ground) & {*INPUTS, *MEASURED}
     assert fed(sea, FixSample(1, 10.0, 20.0, 3.0)) == {}
+
+
+def test_delays_leave_time_for_the_slowest_reading_on_its_way():
+    options = WindowOptions()
+    for channel in CHANNELS.values():
+        if channel.name != 'vertical_opening':
+            assert channel.delay >= 1.0 / channel.min_rate + options.reorder_s + 1.0
+    assert max(channel.delay for channel in CHANNELS.values()) < options.settle_s / 4.0
 
 
 def test_the_needed_channels_are_those_of_the_paper_and_the_inputs():

@@ -99,6 +99,13 @@ class ChannelBuffer:
             np.array(self._stds[first:last]),
         )
 
+    def heard(self, end_ns: int) -> bool:
+        """Whether the channel had spoken before a window's end (ns).
+
+        By stamps, not by what has arrived: the verdict must not depend on arrival.
+        """
+        return self.first is not None and self.first < end_ns - self.delay
+
     def outside(self, start_ns: int, end_ns: int) -> np.ndarray:
         """Values (n,) that a window would have if they were not out of range."""
         start_ns, end_ns = start_ns - self.delay, end_ns - self.delay

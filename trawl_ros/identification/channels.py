@@ -144,14 +144,24 @@ _TABLE = (
         'yaw_rate', 'vessel/velocity_water', 'rad/s', -1.0, 1.0, 0.002, 0.0, 0.0, 1.0, 4.0,
         required=False,
     ),
+    # Velocity over ground only tells whether the log sees the water.
+    *(
+        Channel(
+            f'ground_{axis}', 'vessel/velocity_ground', 'm/s', -12.0, 12.0, 0.05, 0.0, 0.0, 1.0,
+            4.0, required=False,
+        )
+        for axis in ('east', 'north')
+    ),
 )  # fmt: skip
 
 CHANNELS: Mapping[str, Channel] = MappingProxyType({row.name: row for row in _TABLE})
 """The channel table by name."""
 
 REQUIRED = tuple(name for name, channel in CHANNELS.items() if channel.required)
-STEERING = ('heading', 'yaw_rate')
-MEASURED = tuple(name for name in CHANNELS if name not in INPUTS and name not in STEERING)
+WITNESSES = ('heading', 'yaw_rate', 'ground_east', 'ground_north')
+"""Channels that tell how the ship moves; no part of the fit."""
+
+MEASURED = tuple(name for name in CHANNELS if name not in INPUTS and name not in WITNESSES)
 """Channels compared with the model's observables of the same name."""
 
 
@@ -211,6 +221,9 @@ def readings(sample: Sample, pressure_to_depth: Callable[[float], float]) -> Ite
         case VelocitySample(over='water'):
             yield Reading('speed', stamp, float(sample.velocity[0]), 0.0)
             yield Reading('yaw_rate', stamp, sample.yaw_rate, 0.0)
+        case VelocitySample(over='ground'):
+            yield Reading('ground_east', stamp, float(sample.velocity[0]), 0.0)
+            yield Reading('ground_north', stamp, float(sample.velocity[1]), 0.0)
         case HeadingSample():
             yield Reading('heading', stamp, sample.heading, sample.std)
         case _:

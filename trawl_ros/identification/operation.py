@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.identification.channels import CHANNELS, INPUTS
+from trawl_ros.identification.statistics import circular_median, wrapped
 from trawl_ros.identification.window_records import WindowOptions
 
 SLOWEST = 0.5
@@ -33,16 +34,6 @@ class Unheld:
 
     reason: str
     detail: str
-
-
-def circular_median(angles: np.ndarray) -> float:
-    """Median of angles (n,) in rad that may lie on both sides of ±π."""
-    middle = math.atan2(float(np.sin(angles).sum()), float(np.cos(angles).sum()))
-    return middle + float(np.median(_wrap(angles - middle)))
-
-
-def _wrap(angles: np.ndarray) -> np.ndarray:
-    return (angles + math.pi) % (2.0 * math.pi) - math.pi
 
 
 class Operation:
@@ -117,7 +108,7 @@ class Operation:
         if len(headings):
             window = [b.heading for b in blocks[-self.window_blocks :] if b.heading is not None]
             middle = circular_median(np.array(window)) if window else headings[-1]
-            turn = float(np.max(np.abs(_wrap(headings - middle))))
+            turn = float(np.max(np.abs(wrapped(headings - middle))))
             if turn > limit:
                 return Unheld(
                     'turning',

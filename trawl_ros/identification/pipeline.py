@@ -8,8 +8,10 @@ from trawl_ros.identification.channels import CHANNELS, REQUIRED
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.guard import Guard
 from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.screening import Screening
 from trawl_ros.identification.timeline import NANO
 from trawl_ros.identification.window_records import (
     REASONS,
@@ -65,12 +67,14 @@ class Identification:
         self.window_options = window_options or WindowOptions()
         self.finder = SteadyWindowFinder(pressure_to_depth, self.window_options)
         self.estimator = Estimator(predictor, prior, observables, estimator_options)
+        self.guard = Guard(Screening(predictor, prior, observables))
         self.course: list[WindowUsed] = []
 
     def reset(self) -> None:
         """Forget all: time has jumped back."""
         self.finder.reset()
         self.estimator.reset()
+        self.guard.reset()
         self.course = []
 
     def feed(self, sample: Sample) -> list[Event]:
@@ -87,6 +91,10 @@ class Identification:
         """Decide the windows that are left of this tow; what follows belongs to another."""
         return self._use(self.finder.next_tow())
 
+    def take(self, found: Sequence[SteadyWindow]) -> list[Event]:
+        """Use windows that finders of their own have found, one after another."""
+        return self._use(found)
+
     @property
     def estimate(self) -> Estimate | None:
         """The newest estimate."""
@@ -96,8 +104,15 @@ class Identification:
     def rejected(self) -> dict[str, int]:
         """Reason → count, without zeros, in the order of `REASONS`."""
         counts = Counter(self.finder.rejected)
+        counts.update(self.guard.rejections.counts)
         counts['no steady state'] += self.estimator.without_steady_state
         return {reason: counts[reason] for reason in REASONS if counts[reason]}
+
+    @property
+    def found(self) -> dict[str, str]:
+        """Reason → what was found last, in one sentence; in the order of `REASONS`."""
+        sentences = self.finder.rejections.sentences | self.guard.rejections.sentences
+        return {reason: sentences[reason] for reason in REASONS if reason in sentences}
 
     def missing_channels(self) -> tuple[str, ...]:
         """Needed channels from which not one usable reading has come."""
@@ -148,6 +163,14 @@ class Identification:
             if isinstance(item, RejectedWindow):
                 events.append(item)
                 continue
+            guarded = self.guard.judge(item, self.estimator.coefficients)
+            if guarded.withdraw:
+                self._withdraw(item.tow)
+            if guarded.rejected is not None:
+                events.append(guarded.rejected)
+            if guarded.window is None:
+                continue
+            item = guarded.window
             estimate = self.estimator.add(item)
             if estimate is None:
                 lengths = f'{item.means["port_length"]:.0f} m'
@@ -164,3 +187,15 @@ class Identification:
                 self.course.append(WindowUsed(item, estimate))
                 events.append(self.course[-1])
         return events
+
+    def _withdraw(self, tow: int) -> None:
+        """Estimate anew without the windows of a tow."""
+        if all(used.window.tow != tow for used in self.course):
+            return
+        kept = [used.window for used in self.course if used.window.tow != tow]
+        self.estimator.reset()
+        self.course = []
+        for window in kept:
+            estimate = self.estimator.add(window)
+            if estimate is not None:
+                self.course.append(WindowUsed(window, estimate))

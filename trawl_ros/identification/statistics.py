@@ -79,6 +79,17 @@ def outliers(values: np.ndarray, stated: float, limit: float) -> np.ndarray:
     return distance > limit * spread
 
 
+def wrapped(angles: np.ndarray) -> np.ndarray:
+    """Angles (n,) in rad as the same ones within ±π."""
+    return (angles + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def circular_median(angles: np.ndarray) -> float:
+    """Median of angles (n,) in rad that may lie on both sides of ±π."""
+    middle = math.atan2(float(np.sin(angles).sum()), float(np.cos(angles).sum()))
+    return middle + float(np.median(wrapped(angles - middle)))
+
+
 def longest_run(values: np.ndarray) -> int:
     """Length of the longest run of exactly equal successive values."""
     if len(values) == 0:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.identification.over_ground import GroundTrack
 
 REASONS = {
     'not finite': 'readings that are NaN or infinite',
@@ -19,6 +20,9 @@ REASONS = {
     'missing channel': 'stretches without a channel that is needed',
     'turning': 'stretches while or soon after the ship turns',
     'unsteady': 'stretches while the gear is moved, settles or drifts',
+    'wrong unit': 'windows with channels that are plausible in another unit only',
+    'implausible': 'windows with channels that contradict each other, whatever the board',
+    'speed over ground': 'windows of tows whose speed log does not see the current',
     'no steady state': 'windows for which the model finds no steady state',
 }
 """Every reason for a rejection, and what its count counts."""
@@ -112,7 +116,8 @@ class SteadyWindow:
     ``end_ns`` are header stamps. Per channel (SI): ``means``, ``noise`` the standard error of
     the mean from scatter and autocorrelation, ``bias`` the standard deviation of what stays
     wrong through the state, ``counts`` of readings in the mean. ``tow`` counts tows, through
-    each of which the errors of calibration stay the same.
+    each of which the errors of calibration stay the same. ``track`` compares log and GPS, None
+    where one of them or the compass is silent.
     """
 
     index: int
@@ -124,6 +129,7 @@ class SteadyWindow:
     bias: Mapping[str, float]
     counts: Mapping[str, int]
     tow: int = 0
+    track: GroundTrack | None = None
 
     def std(self, channel: str, windows_in_state: int = 1) -> float:
         """Standard deviation of a channel's mean as one of several windows of a state.

@@ -13,11 +13,13 @@ from collections.abc import Callable
 import numpy as np
 
 from trawl_ros.identification.buffers import ChannelBuffer
-from trawl_ros.identification.channels import CHANNELS, INPUTS, STEERING, readings
-from trawl_ros.identification.operation import Block, Operation, Unheld, circular_median
+from trawl_ros.identification.channel_means import ChannelMean, channel_mean
+from trawl_ros.identification.channels import CHANNELS, INPUTS, WITNESSES, readings
+from trawl_ros.identification.operation import Block, Operation, Unheld
 from trawl_ros.identification.order import Order
+from trawl_ros.identification.over_ground import ground_track
 from trawl_ros.identification.rejections import Rejections
-from trawl_ros.identification.statistics import error_of_mean, longest_run, outliers, trend
+from trawl_ros.identification.statistics import circular_median
 from trawl_ros.identification.timeline import NANO, Timeline
 from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow, WindowOptions
 from trawl_ros.instruments.samples import Sample
@@ -232,70 +234,41 @@ class SteadyWindowFinder:
         self.rejections.add(why.reason, why.detail)
         return [RejectedWindow(why.reason, start_ns, end_ns, why.detail)]
 
-    def _heard(self, name: str, end_ns: int) -> bool:
-        # By stamps, not by what has arrived: the verdict must not depend on arrival.
-        buffer = self._buffers[name]
-        return buffer.first is not None and buffer.first < end_ns - buffer.delay
-
     def _window(self, start_ns: int, end_ns: int, state: int) -> SteadyWindow | Unheld:
-        means: dict[str, float] = {}
-        noise: dict[str, float] = {}
-        bias: dict[str, float] = {}
-        counts: dict[str, int] = {}
-        dropped: list[tuple[str, str, int]] = []
+        used: dict[str, ChannelMean] = {}
+        lost: list[Unheld] = []
         for name, channel in CHANNELS.items():
-            if name in STEERING or not (channel.required or self._heard(name, end_ns)):
+            buffer = self._buffers[name]
+            silent = not buffer.heard(end_ns) and len(buffer.outside(start_ns, end_ns)) == 0
+            if name in WITNESSES or (silent and not channel.required):
                 continue
-            result = self._channel(name, start_ns, end_ns)
-            if isinstance(result, Unheld):
-                if channel.required:
-                    return result
-                dropped.append((result.reason, result.detail, 1))
-                continue
-            values, stated, excluded = result
-            means[name] = float(values.mean())
-            noise[name] = error_of_mean(values, stated)
-            bias[name] = channel.bias_std(means[name])
-            counts[name] = len(values)
-            if excluded:
-                found = f'{name} ({channel.topic}) has {excluded} outliers in a window'
-                dropped.append(('outlier', found, excluded))
-        for reason, sentence, number in dropped:
-            self.rejections.add(reason, sentence, number)
+            found = channel_mean(buffer, start_ns, end_ns, self._options)
+            if isinstance(found, ChannelMean):
+                used[name] = found
+            elif channel.required:
+                return found
+            else:
+                lost.append(found)
+        for why in lost:
+            self.rejections.add(why.reason, why.detail)
+        for name, mean in used.items():
+            if mean.excluded:
+                sentence = f'{name} ({CHANNELS[name].topic}) has {mean.excluded} outliers'
+                self.rejections.add('outlier', sentence, mean.excluded)
         return SteadyWindow(
-            self._windows, state, start_ns, end_ns, means, noise, bias, counts, self._tow
-        )
-
-    def _channel(
-        self, name: str, start_ns: int, end_ns: int
-    ) -> tuple[np.ndarray, float, int] | Unheld:
-        """Readings for the mean, their stated std and how many were left out, or why none."""
-        options, channel = self._options, CHANNELS[name]
-        where = f'{name} ({channel.topic})'
-        heard = self._heard(name, end_ns)
-        stamps, values, stds = self._buffers[name].window(start_ns, end_ns)
-        start_ns, end_ns = start_ns - self._buffers[name].delay, end_ns - self._buffers[name].delay
-        if not heard:
-            return Unheld('missing channel', f'{where} has not been heard')
-        silence = np.max(np.diff(np.concatenate(([start_ns], stamps, [end_ns])))) / NANO
-        if len(stamps) == 0 or silence > channel.longest_gap:
-            return Unheld('gap', f'{where} is silent for {silence:.1f} s')
-        stated = float(np.median(stds))
-        run = longest_run(values)
-        if channel.lively and run >= options.frozen_count and 2 * run >= len(values):
-            return Unheld('frozen', f'{where} repeats {values[-1]:g} {run} times')
-        off = outliers(values, stated, options.outlier_limit)
-        excluded = int(np.count_nonzero(off))
-        if excluded > options.outlier_fraction * len(values):
-            return Unheld('outlier', f'{where} has {excluded} outliers in {len(values)} readings')
-        stamps, values = stamps[~off], values[~off]
-        if channel.settles:
-            change = trend((stamps - start_ns) / NANO, values)
-            limit = max(options.drift_fraction * abs(float(values.mean())), channel.bias)
-            if change.p_value < options.significance and abs(change.drift) > limit:
-                return Unheld(
-                    'unsteady',
-                    f'{where} drifts by {change.drift:.3g} {channel.unit} in one window, '
-                    f'at most {limit:.3g} {channel.unit} is steady',
+            self._windows,
+            state,
+            start_ns,
+            end_ns,
+            means={name: found.mean for name, found in used.items()},
+            noise={name: found.noise for name, found in used.items()},
+            bias={name: CHANNELS[name].bias_std(found.mean) for name, found in used.items()},
+            counts={name: found.count for name, found in used.items()},
+            tow=self._tow,
+            track=ground_track(
+                *(
+                    self._buffers[name].window(start_ns, end_ns)[:2]
+                    for name in ('speed', 'ground_east', 'ground_north', 'heading')
                 )
-        return values, stated, excluded
+            ),
+        )

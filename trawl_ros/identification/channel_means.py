@@ -1,0 +1,77 @@
+"""One channel in one window: its readings, or why it has none that can be used."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.buffers import ChannelBuffer
+from trawl_ros.identification.channels import Channel
+from trawl_ros.identification.operation import Unheld
+from trawl_ros.identification.statistics import error_of_mean, longest_run, outliers, trend
+from trawl_ros.identification.timeline import NANO
+from trawl_ros.identification.units import NAMES, unit_of
+from trawl_ros.identification.window_records import WindowOptions
+
+
+@dataclass(frozen=True)
+class ChannelMean:
+    """``mean`` of ``count`` readings, its standard error ``noise``, and how many outliers were
+    ``excluded``.
+    """
+
+    mean: float
+    noise: float
+    count: int
+    excluded: int
+
+
+def channel_mean(
+    buffer: ChannelBuffer, start_ns: int, end_ns: int, options: WindowOptions
+) -> ChannelMean | Unheld:
+    """Judge a channel's readings in a window and average them."""
+    channel = buffer.channel
+    where = f'{channel.name} ({channel.topic})'
+    stamps, values, stds = buffer.window(start_ns, end_ns)
+    outside = buffer.outside(start_ns, end_ns)
+    if len(outside) > options.outlier_fraction * (len(values) + len(outside)):
+        return _outside(where, channel, outside)
+    if not buffer.heard(end_ns):
+        return Unheld('missing channel', f'{where} has not been heard')
+    seconds = (stamps - (start_ns - buffer.delay)) / NANO
+    edges = np.concatenate(([0.0], seconds, [(end_ns - start_ns) / NANO]))
+    silence = float(np.max(np.diff(edges)))
+    if len(stamps) == 0 or silence > channel.longest_gap:
+        return Unheld('gap', f'{where} is silent for {silence:.1f} s')
+    stated = float(np.median(stds))
+    run = longest_run(values)
+    if channel.lively and run >= options.frozen_count and 2 * run >= len(values):
+        return Unheld('frozen', f'{where} repeats {values[-1]:g} {run} times')
+    off = outliers(values, stated, options.outlier_limit)
+    excluded = int(np.count_nonzero(off))
+    if excluded > options.outlier_fraction * len(values):
+        return Unheld('outlier', f'{where} has {excluded} outliers in {len(values)} readings')
+    seconds, values = seconds[~off], values[~off]
+    mean = float(values.mean())
+    if channel.settles:
+        change = trend(seconds, values)
+        limit = max(options.drift_fraction * abs(mean), channel.bias)
+        if change.p_value < options.significance and abs(change.drift) > limit:
+            return Unheld(
+                'unsteady',
+                f'{where} drifts by {change.drift:.3g} {channel.unit} in one window, '
+                f'at most {limit:.3g} {channel.unit} is steady',
+            )
+    return ChannelMean(mean, error_of_mean(values, stated), len(values), excluded)
+
+
+def _outside(where: str, channel: Channel, outside: np.ndarray) -> Unheld:
+    unit, reads = unit_of(outside, channel), float(np.median(outside))
+    if unit is not None:
+        return Unheld(
+            'wrong unit',
+            f'{where} looks like {unit}, expected {NAMES[channel.unit]}: it reads {reads:.4g}',
+        )
+    return Unheld(
+        'out of range',
+        f'{where} reads {reads:.4g} {channel.unit}, expected {channel.low:g} to {channel.high:g}',
+    )

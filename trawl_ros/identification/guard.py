@@ -1,0 +1,61 @@
+"""Windows on their way to the estimate: what no single channel can tell is judged here."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.over_ground import OverGround
+from trawl_ros.identification.rejections import Rejections
+from trawl_ros.identification.screening import Screening, without
+from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow
+
+
+@dataclass(frozen=True)
+class Guarded:
+    """A window to be used, or None and why not.
+
+    ``withdraw``: what was found holds for the whole tow, also for its windows in the estimate.
+    """
+
+    window: SteadyWindow | None
+    rejected: RejectedWindow | None = None
+    withdraw: bool = False
+
+
+class Guard:
+    """Judges windows by all of their channels and by their tow.
+
+    Parameters
+    ----------
+    screening
+        Of units and plausibility, by the model.
+    """
+
+    def __init__(self, screening: Screening) -> None:
+        self._screening = screening
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all windows."""
+        self.rejections = Rejections()
+        self._over_ground = OverGround()
+        self._screening.reset()
+
+    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Guarded:
+        """Judge a window, by the model at the present coefficients (12,)."""
+        over_ground = self._over_ground.judge(window.tow, window.track)
+        if over_ground is not None:
+            return self._refuse(window, 'speed over ground', over_ground, withdraw=True)
+        judgement = self._screening.judge(window, coefficients)
+        if judgement.found is None:
+            return Guarded(window)
+        reason, detail = judgement.found.reason, judgement.found.detail
+        if judgement.refused:
+            return self._refuse(window, reason, detail, withdraw=reason == 'wrong unit')
+        self.rejections.add(reason, detail)
+        return Guarded(without(window, judgement.without))
+
+    def _refuse(self, window: SteadyWindow, reason: str, detail: str, *, withdraw: bool) -> Guarded:
+        self.rejections.add(reason, detail)
+        rejected = RejectedWindow(reason, window.start_ns, window.end_ns, detail)
+        return Guarded(None, rejected, withdraw)

@@ -1,0 +1,87 @@
+"""Units in which instruments speak by mistake, and how much larger or smaller they make a value."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.channels import CHANNELS, INPUTS, Channel
+
+WRONG_UNITS: Mapping[str, Mapping[str, float]] = {
+    'm': {'feet': 3.28084, 'fathoms': 0.546807},
+    'm/s': {'knots': 1.943844, 'kilometres per hour': 3.6},
+    'N': {
+        'kilonewtons': 1e-3,
+        'tonnes-force': 1.019716e-4,
+        'kilograms-force': 0.1019716,
+        'pounds-force': 0.2248089,
+    },
+    'rad': {'degrees': 57.29578},
+}
+"""SI unit → unit mistaken for it → reading per SI value."""
+
+NAMES: Mapping[str, str] = {
+    'm': 'metres', 'm/s': 'metres per second', 'N': 'newtons', 'rad': 'radians',
+}  # fmt: skip
+
+DOORS = ('port_door_depth', 'starboard_door_depth')
+TENSIONS = ('port_tension', 'starboard_tension')
+PITCHES, ROLLS = ('port_pitch', 'starboard_pitch'), ('port_roll', 'starboard_roll')
+
+TOGETHER = (
+    INPUTS[:2], ('speed',), TENSIONS, ('door_spread',), DOORS, ('net_depth',),
+    (*DOORS, 'net_depth'), *((name,) for name in (*DOORS, *TENSIONS)),
+    ('vertical_opening',), PITCHES, ROLLS, (*PITCHES, *ROLLS),
+)  # fmt: skip
+"""Channels that are set to a unit together."""
+
+
+@dataclass(frozen=True)
+class Misreading:
+    """Channels whose readings are in ``unit``: ``factor`` times the SI value."""
+
+    channels: tuple[str, ...]
+    unit: str
+    factor: float
+
+    def repaired(self, means: Mapping[str, float]) -> dict[str, float]:
+        """The means in SI."""
+        return {
+            name: mean / self.factor if name in self.channels else mean
+            for name, mean in means.items()
+        }
+
+    @property
+    def optional(self) -> bool:
+        """Whether windows do without these channels."""
+        return not any(CHANNELS[name].required for name in self.channels)
+
+    def sentence(self, means: Mapping[str, float]) -> str:
+        """What was found."""
+        name = self.channels[0]
+        row = CHANNELS[name]
+        return (
+            f'{" and ".join(self.channels)} ({row.topic}) look like {self.unit}, expected '
+            f'{NAMES[row.unit]}: {means[name]:.4g} agrees with the other channels as '
+            f'{means[name] / self.factor:.4g} {row.unit}'
+        )
+
+
+def misreadings(means: Mapping[str, float]) -> list[Misreading]:
+    """All that could be wrong with the units of these channels."""
+    return [
+        Misreading(channels, unit, factor)
+        for channels in TOGETHER
+        if all(name in means for name in channels)
+        for unit, factor in WRONG_UNITS[CHANNELS[channels[0]].unit].items()
+    ]
+
+
+def unit_of(outside: np.ndarray, channel: Channel) -> str | None:
+    """The unit in which values (n,) outside a channel's range would be plausible."""
+    for unit, factor in WRONG_UNITS.get(channel.unit, {}).items():
+        if factor > 1.0 and np.all(
+            (outside / factor >= channel.low) & (outside / factor <= channel.high)
+        ):
+            return unit
+    return None
