@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.status import Status
@@ -15,6 +15,29 @@ from trawl_ros.files import empty_folder
 if TYPE_CHECKING:
     from trawl_ros.identification.planning import TrialPlan
 
+MOST_NUMBERS = 20
+"""Each length at each speed takes seconds to look up."""
+
+
+class _Numbers(click.ParamType):
+    """Different numbers between two limits, given with commas, put in order."""
+
+    name = 'numbers'
+
+    def __init__(self, low: float, high: float) -> None:
+        self._one = click.FloatRange(low, high)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        """Read the list."""
+        if isinstance(value, tuple):
+            return value
+        numbers = {float(self._one.convert(one.strip(), param, ctx)) for one in value.split(',')}
+        if len(numbers) > MOST_NUMBERS:
+            self.fail(f'{len(numbers)} numbers, expected at most {MOST_NUMBERS}', param, ctx)
+        return tuple(sorted(numbers))
+
 
 @click.command('plan-trial')
 @click.argument('gear', metavar='GEAR')
@@ -26,6 +49,18 @@ if TYPE_CHECKING:
     help='Time at sea.',
 )
 @click.option('--out', type=FOLDER, help='Folder for plan.json, trial.yaml and plan.png.')
+@click.option(
+    '--lengths-m',
+    type=_Numbers(20.0, 3000.0),
+    metavar='L,L,…',
+    help='Warp lengths among which to choose.  [default: as in the paper, 200 to 900]',
+)
+@click.option(
+    '--speeds-m-s',
+    type=_Numbers(0.5, 4.0),
+    metavar='U,U,…',
+    help='Speeds among which to choose.  [default: 1.9 to 2.5]',
+)
 @click.option(
     '--max-tension-kn',
     type=click.FloatRange(0.0, 2000.0, min_open=True),
@@ -41,6 +76,8 @@ def command(
     gear: str,
     hours: float,
     out: Path | None,
+    lengths_m: tuple[float, ...] | None,
+    speeds_m_s: tuple[float, ...] | None,
     max_tension_kn: float | None,
     seabed_m: float | None,
     force: bool,
@@ -60,7 +97,10 @@ def command(
 
     record = load_gear(gear)
     limits = Limits(
-        max_tension=None if max_tension_kn is None else 1e3 * max_tension_kn, seabed=seabed_m
+        lengths=lengths_m or Limits.lengths,
+        speeds=speeds_m_s or Limits.speeds,
+        max_tension=None if max_tension_kn is None else 1e3 * max_tension_kn,
+        seabed=seabed_m,
     )
     with _Counting() as progress:
         plan = plan_trial(record, hours=hours, limits=limits, progress=progress)

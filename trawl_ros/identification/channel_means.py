@@ -1,5 +1,6 @@
 """One channel in one window: its readings, or why it has none that can be used."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,6 +53,7 @@ def channel_mean(
         return Unheld('outlier', f'{where} has {excluded} outliers in {len(values)} readings')
     seconds, values = seconds[~off], values[~off]
     mean = float(values.mean())
+    noise = error_of_mean(values, stated)
     if channel.settles:
         change = trend(seconds, values)
         limit = max(options.drift_fraction * abs(mean), channel.bias)
@@ -61,7 +63,10 @@ def channel_mean(
                 f'{where} drifts by {change.drift:.3g} {channel.unit} in one window, '
                 f'at most {limit:.3g} {channel.unit} is steady',
             )
-    return ChannelMean(mean, error_of_mean(values, stated), len(values), excluded)
+        # What decays slowly has as much still to come as its slope brings in that time.
+        to_come = change.beyond_noise * options.slow_s / options.window_s
+        noise = math.hypot(noise, to_come)
+    return ChannelMean(mean, noise, len(values), excluded)
 
 
 def _outside(where: str, channel: Channel, outside: np.ndarray) -> Unheld:

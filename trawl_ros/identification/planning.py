@@ -149,7 +149,7 @@ def plan_trial(
                 'until the gear has settled and its windows are taken; expected more hours'
             )
         sweep = best_sweep(designer)
-        lost = _look_up((*legs, *sweep), filed, seen, progress)
+        lost = _look_up((*legs, *sweep), filed, choice.candidates, seen, progress)
         if not lost:
             break
         choice = choice.without(lost)
@@ -196,14 +196,17 @@ def _angles(candidates: Sequence[Candidate], gear: GearRecord) -> WorkingAngles:
 def _look_up(
     legs: Sequence[Leg],
     explorer: Explorer,
+    near: Sequence[Candidate],
     seen: dict[Manoeuvre, Candidate],
     progress: Progress,
 ) -> dict[Manoeuvre, Refused]:
-    """Look the legs up with another board; give those that are not to be had with it."""
+    """Look the legs up with another board, from the states near them that are known; give those
+    that are not to be had with it.
+    """
     wanted = sorted({leg.manoeuvre for leg in legs} - seen.keys())
     lost = {}
     for done, manoeuvre in enumerate(wanted, 1):
-        found = explorer.look_up(manoeuvre, list(seen.values()))
+        found = explorer.look_up(manoeuvre, near)
         if isinstance(found, Candidate):
             seen[manoeuvre] = found
         else:

@@ -37,7 +37,7 @@ def _legs(axes: Axes, plan: TrialPlan) -> None:
         axes.scatter(
             [one.length for one in chosen],
             # Beside each other, since many have the same length and speed.
-            [one.speed + (0.012 if equal else -0.012) for one in chosen],
+            [one.speed + (0.016 if equal else -0.016) for one in chosen],
             s=[70.0 * number for number in chosen.values()],
             marker=mark,
             color=PLAN if equal else SECOND,

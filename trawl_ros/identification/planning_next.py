@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -118,6 +119,11 @@ class Adviser:
         self._known: dict[Manoeuvre, Candidate] = {}
 
     @property
+    def known(self) -> Mapping[Manoeuvre, Candidate]:
+        """Manoeuvres that can be towed in, as far as they have been looked up."""
+        return MappingProxyType(self._known)
+
+    @property
     def looked_up(self) -> float:
         """Part of all manoeuvres that have been looked up."""
         return 0.0 if self._explorer is None else 1.0 - len(self._waiting) / len(self._explorer)
@@ -153,27 +159,47 @@ class Adviser:
         """
         if not fit.windows or not self._known:
             return None
-        here = _manoeuvre_of(fit)
         question = _Question.of(fit, self._gear)
-        ability = ability_of(self._gear, sorted(self._known))
-        before = question.quantities(fit.knowledge.covariance)
+        before = shortfall(question.quantities(fit.knowledge.covariance))
         information = information_in(fit)
         best, most = None, -np.inf
         for manoeuvre, candidate in sorted(self._known.items()):
             parts = expected_windows(fit, candidate, self._windows.max_windows_per_state)
             taught = information_of(parts, fit.prior, fit.options, fit.scales)
-            after = question.quantities(covariance_from(information + taught, fit.prior))
-            legs = legs_of((here, manoeuvre), ability, self._windows)
-            minutes = minutes_of(legs[1:])
-            rate = (shortfall(before) - shortfall(after)) / minutes
+            after = shortfall(question.quantities(covariance_from(information + taught, fit.prior)))
+            rate = (before - after) / self._minutes(fit, manoeuvre)
             if rate > most:
-                best, most = (manoeuvre, minutes, parts), rate
-        assert best is not None
-        manoeuvre, minutes, parts = best
-        covariance = replace(fit, windows=(*fit.windows, *parts)).knowledge.covariance
-        fall = np.linalg.slogdet(fit.knowledge.covariance)[1] - np.linalg.slogdet(covariance)[1]
-        after = question.quantities(covariance)
-        return Advice(manoeuvre, minutes, before, after, float(0.5 * fall), self.looked_up)
+                best, most = manoeuvre, rate
+        return None if best is None else self.promise(fit, best)
+
+    def promise(self, fit: Fit, manoeuvre: Manoeuvre) -> Advice:
+        """What one of the `known` manoeuvres would teach, by the fit itself.
+
+        Parameters
+        ----------
+        fit
+            With one window at least.
+        manoeuvre
+            What is done next.
+        """
+        question = _Question.of(fit, self._gear)
+        number = self._windows.max_windows_per_state
+        parts = expected_windows(fit, self._known[manoeuvre], number)
+        now = fit.knowledge.covariance
+        then = replace(fit, windows=(*fit.windows, *parts)).knowledge.covariance
+        return Advice(
+            manoeuvre=manoeuvre,
+            minutes=self._minutes(fit, manoeuvre),
+            before=question.quantities(now),
+            after=question.quantities(then),
+            nats=float(0.5 * (np.linalg.slogdet(now)[1] - np.linalg.slogdet(then)[1])),
+            looked_up=self.looked_up,
+        )
+
+    def _minutes(self, fit: Fit, manoeuvre: Manoeuvre) -> float:
+        ability = ability_of(self._gear, tuple(self._known))
+        legs = legs_of((_manoeuvre_of(fit), manoeuvre), ability, self._windows)
+        return minutes_of(legs[1:])
 
     def _moved(self, before: np.ndarray, now: np.ndarray) -> bool:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)

@@ -5,7 +5,7 @@ A turn is not among them: a gear that is towed around has no steady state in fix
 opposite heading, which shows nothing new where there is no current.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -166,7 +166,7 @@ class Explorer:
                 lost[manoeuvre.length] = manoeuvre.speed, found.reason
             yield found
 
-    def look_up(self, manoeuvre: Manoeuvre, known: list[Candidate]) -> Candidate | Refused:
+    def look_up(self, manoeuvre: Manoeuvre, known: Sequence[Candidate]) -> Candidate | Refused:
         """Solve one manoeuvre, warm from those known, and check it."""
 
         def distance(other: Candidate) -> float:

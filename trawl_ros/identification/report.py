@@ -1,16 +1,28 @@
-"""All that is said about one identification, worked out once for JSON, figures and tables."""
+"""All that is said about one identification, worked out once for JSON, figures and page."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.identification.channels import INPUTS
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimator import Progress
-from trawl_ros.identification.holdout import hold_out
-from trawl_ros.identification.objective import mnae, objective, paper_values, stack
-from trawl_ros.identification.pipeline import Identification
+from trawl_ros.identification.holdout import HeldOut, hold_out
+from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.objective import (
+    PAPER_CHANNELS,
+    mnae,
+    objective,
+    paper_values,
+    stack,
+)
+from trawl_ros.identification.pipeline import Identification, WindowUsed
 from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.residuals import ChannelResiduals, innovations, residuals, solve
+from trawl_ros.identification.spectrum import Spectrum, spectrum
+from trawl_ros.identification.window_records import SteadyWindow
 
 
 @dataclass(frozen=True)
@@ -21,35 +33,62 @@ class Report:
     ----------
     estimate, prior
         Where it ended and where it started.
+    prior_weight
+        1 where the prior was used, 0 where the data alone decided.
     truth : (12,) array or None
         The coefficients that made the data, where they are known.
     rejected
         Reason → count.
-    inputs : (n, 3) array
-        Port and starboard warp length (m) and speed (m/s) of each window.
-    states : (n,) array
-        The steady state each window belongs to.
-    measured, at_start, at_end, held_out : (n, 4) arrays
-        The channels of eq. 35: measured, solved at the start and at the estimate, and
-        predicted by fits without the window's state. NaN where there is no prediction.
+    windows
+        The steady windows in the fit, n of them.
+    tows
+        The name of each tow that a window can belong to.
+    measured, at_start, at_end : (n, 4) arrays
+        The channels of eq. 35: measured, and solved at the start and at the estimate. NaN
+        where there is no steady state.
+    held_out
+        What fits predict of the tows, or states, they have not seen.
     at_truth : (n, 4) array or None
         Solved at the truth.
+    residuals
+        What each channel's readings differ by from the model at the estimate.
+    innovations
+        What they differed by before their window was used.
+    course
+        The windows, each with the estimate after it, as they came.
     history
         The steps of the iteration.
+    spectrum
+        How much the data know of which direction.
     """
 
     estimate: Estimate
     prior: BoardPrior
+    prior_weight: float
     truth: np.ndarray | None
     rejected: dict[str, int]
-    inputs: np.ndarray
-    states: np.ndarray
+    windows: tuple[SteadyWindow, ...]
+    tows: tuple[str, ...]
     measured: np.ndarray
     at_start: np.ndarray
     at_end: np.ndarray
-    held_out: np.ndarray
+    held_out: HeldOut
     at_truth: np.ndarray | None
+    residuals: tuple[ChannelResiduals, ...]
+    innovations: tuple[ChannelResiduals, ...]
+    course: tuple[WindowUsed, ...]
     history: tuple[Progress, ...]
+    spectrum: Spectrum
+
+    @property
+    def inputs(self) -> np.ndarray:
+        """Port and starboard warp length (m) and speed (m/s) of each window, (n, 3)."""
+        return np.array([[window.means[name] for name in INPUTS] for window in self.windows])
+
+    @property
+    def tow_of(self) -> np.ndarray:
+        """The tow (n,) of each window."""
+        return np.array([window.tow for window in self.windows])
 
     @property
     def objectives(self) -> dict[str, float]:
@@ -68,12 +107,25 @@ class Report:
         return {
             'start': mnae(self.at_start, self.measured),
             'end': mnae(self.at_end, self.measured),
-            'held_out': mnae(self.held_out, self.measured),
+            'held_out': mnae(self.held_out.predicted, self.measured),
+        }
+
+    @property
+    def errors_by_tow(self) -> dict[int, np.ndarray]:
+        """The ``held_out`` errors (4,) of each tow."""
+        tows = self.tow_of
+        return {
+            int(tow): mnae(self.held_out.predicted[tows == tow], self.measured[tows == tow])
+            for tow in np.unique(tows)
         }
 
 
 def report(
-    identification: Identification, truth: np.ndarray | None = None, folds: int = 5
+    identification: Identification,
+    truth: np.ndarray | None = None,
+    folds: int = 5,
+    tows: Sequence[str] = (),
+    begun: Callable[[int, int], None] | None = None,
 ) -> Report:
     """Work out the report of a finished identification.
 
@@ -84,7 +136,11 @@ def report(
     truth
         True coefficients (12,), where known.
     folds
-        Of the hold-out.
+        Of the hold-out within a single tow.
+    tows
+        Names of the tows; numbered where none are given.
+    begun
+        Told before each fit of the hold-out which it is, from 1, and of how many.
 
     Raises
     ------
@@ -94,23 +150,37 @@ def report(
     estimator, estimate = identification.estimator, identification.estimate
     if estimate is None:
         raise TrawlError(identification.why_not() or 'nothing is estimated')
-    windows = estimator.windows
+    windows, weight = estimator.windows, estimator.options.prior_weight
+    number = 1 + max(window.tow for window in windows)
+    at_end = solve(estimator, estimate.values)
     return Report(
         estimate=estimate,
         prior=estimator.prior,
+        prior_weight=weight,
         truth=None if truth is None else np.asarray(truth, dtype=float),
         rejected=identification.rejected,
-        inputs=np.array(
-            [
-                [window.means[name] for name in ('port_length', 'starboard_length', 'speed')]
-                for window in windows
-            ]
-        ),
-        states=np.array([window.state for window in windows]),
+        windows=windows,
+        tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
         measured=stack([paper_values(window.means) for window in windows]),
-        at_start=estimator.predictions(estimator.prior.start),
-        at_end=estimator.predictions(estimate.values),
-        held_out=hold_out(estimator, folds),
-        at_truth=None if truth is None else estimator.predictions(np.asarray(truth)),
+        at_start=_values(solve(estimator, estimator.prior.start)),
+        at_end=_values(at_end),
+        held_out=hold_out(estimator, folds, begun=begun),
+        at_truth=None if truth is None else _values(solve(estimator, np.asarray(truth))),
+        residuals=residuals(at_end),
+        innovations=innovations(identification.course),
+        course=tuple(identification.course),
         history=tuple(estimator.history),
+        spectrum=spectrum(estimate.covariance, estimator.prior, weight),
+    )
+
+
+def _values(parts: Sequence[Linearised | None]) -> np.ndarray:
+    """The channels of eq. 35 (n, 4), NaN where there is no steady state."""
+    return stack(
+        [
+            np.full(len(PAPER_CHANNELS), np.nan)
+            if part is None
+            else paper_values(dict(zip(part.channels, part.values, strict=True)))
+            for part in parts
+        ]
     )

@@ -5,6 +5,7 @@ from typing import Any
 
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.identification.report import Report
+from trawl_ros.identification.residuals import ChannelResiduals
 from trawl_ros.model.board import COEFFICIENTS
 
 
@@ -22,6 +23,7 @@ def result(report: Report) -> dict[str, Any]:
                 'std': float(estimate.std[i]),
                 'low': float(estimate.low[i]),
                 'high': float(estimate.high[i]),
+                'shrink': float(estimate.shrink[i]),
                 'determined': estimate.determined[i],
             }
             for i, name in enumerate(COEFFICIENTS)
@@ -39,6 +41,81 @@ def result(report: Report) -> dict[str, Any]:
         'undetermined': [str(combination) for combination in estimate.undetermined],
         'converged': estimate.converged,
         'reason': estimate.reason,
+        'active_bounds': list(estimate.active_bounds),
+        'covariance': estimate.covariance.tolist(),
+        'singular_values': report.spectrum.singular.tolist(),
+        'weak_combinations': [
+            {
+                'names': list(combination.names),
+                'weights': dict(zip(COEFFICIENTS, combination.weights.tolist(), strict=True)),
+                'std': _number(combination.std),
+            }
+            for combination in estimate.undetermined
+        ],
+        'noise_scales': dict(estimate.noise_scales),
+        'prior_used': report.prior_weight > 0.0,
+        'held_out_by': report.held_out.by,
+        'accepted': _accepted(report),
+        'tows': _tows(report),
+        'residuals': {row.channel: _statistics(row) for row in report.residuals},
+        'innovations': {row.channel: _statistics(row) for row in report.innovations},
+    }
+
+
+def _accepted(report: Report) -> dict[str, Any]:
+    """How many windows and, per channel, readings are in the fit."""
+    readings: dict[str, int] = {}
+    for window in report.windows:
+        for name, count in window.counts.items():
+            readings[name] = readings.get(name, 0) + count
+    return {'windows': len(report.windows), 'readings': readings}
+
+
+def _tows(report: Report) -> list[dict[str, Any]]:
+    tows = []
+    for tow, errors in report.errors_by_tow.items():
+        windows = [window for window in report.windows if window.tow == tow]
+        tows.append(
+            {
+                'name': report.tows[tow],
+                'windows': len(windows),
+                'states': len({window.state for window in windows}),
+                'mnae_held_out': {
+                    channel.name: _number(error)
+                    for channel, error in zip(PAPER_CHANNELS, errors, strict=True)
+                },
+                'biases': {
+                    bias.channel: {
+                        'unit': bias.unit,
+                        'value': bias.value,
+                        'std': bias.std,
+                        'known': bias.known,
+                    }
+                    for bias in report.estimate.tow_biases
+                    if bias.tow == tow
+                },
+            }
+        )
+    return tows
+
+
+def _statistics(row: ChannelResiduals) -> dict[str, Any]:
+    white = row.whiteness
+    return {
+        'unit': row.unit,
+        'windows': len(row.values),
+        'mean': row.mean,
+        'std': _number(row.std),
+        'stated_std': row.stated_std,
+        'test_ratio': row.test_ratio,
+        'whiteness': None
+        if white is None
+        else {
+            'statistic': white.statistic,
+            'lags': white.lags,
+            'p_value': white.p_value,
+            'white': white.white,
+        },
     }
 
 

@@ -40,10 +40,18 @@ def error_of_mean(values: np.ndarray, stated: float) -> float:
 
 @dataclass(frozen=True)
 class Trend:
-    """Change over the whole series by its fitted slope, and the two-sided p-value."""
+    """Change over the whole series by its fitted slope, the two-sided p-value, and the std of
+    the change.
+    """
 
     drift: float
     p_value: float
+    error: float = 0.0
+
+    @property
+    def beyond_noise(self) -> float:
+        """What is left of the change's size when noise is taken off its square."""
+        return math.sqrt(max(0.0, self.drift**2 - self.error**2))
 
 
 def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
@@ -65,7 +73,8 @@ def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
     error = math.sqrt(variance * n / number / float(time @ time))
     if error <= 1e-12 * (abs(slope) + 1e-300):
         return Trend(slope * span, 0.0 if slope else 1.0)
-    return Trend(slope * span, float(2.0 * student.sf(abs(slope) / error, freedom)))
+    p_value = float(2.0 * student.sf(abs(slope) / error, freedom))
+    return Trend(slope * span, p_value, error * span)
 
 
 def outliers(values: np.ndarray, stated: float, limit: float) -> np.ndarray:

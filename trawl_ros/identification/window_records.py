@@ -28,7 +28,7 @@ REASONS = {
 """Every reason for a rejection, and what its count counts."""
 
 
-MAY_BE_ZERO = ('settle_s', 'settle_passages', 'net_length', 'longest_settle_s', 'reorder_s')
+MAY_BE_ZERO = ('settle_s', 'settle_passages', 'net_length', 'longest_settle_s', 'slow_s', 'reorder_s')
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,9 @@ class WindowOptions:
         A drift over the window beyond this part of the mean, and significant, is a trend.
     significance
         p-value below which a trend counts as significant.
+    slow_s
+        Time (s) in which the gear's slowest response decays: a channel that still drifts in a
+        window is taken to be that many seconds of its drift away from where it will rest.
     outlier_limit
         Robust standard deviations from the median at which a reading is an outlier.
     outlier_fraction
@@ -90,6 +93,7 @@ class WindowOptions:
     heading_tolerance: float = 0.06
     drift_fraction: float = 0.005
     significance: float = 0.001
+    slow_s: float = 300.0
     outlier_limit: float = 6.0
     outlier_fraction: float = 0.2
     frozen_count: int = 10

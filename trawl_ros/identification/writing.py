@@ -1,16 +1,27 @@
 """Writes a report into a folder."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.figures import draw_figures
+from trawl_ros.identification.page import PAGE, page
 from trawl_ros.identification.report import Report
 from trawl_ros.identification.result import result
 
 
-def write_report(found: Report, folder: Path) -> None:
-    """Write ``identification.json`` and the figures.
+def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> None:
+    """Write ``identification.json``, the figures and ``report.html``.
+
+    Parameters
+    ----------
+    found
+        What to write.
+    folder
+        Made if it does not exist.
+    advice
+        Sentences on what to tow next, where there are any.
 
     Raises
     ------
@@ -21,6 +32,7 @@ def write_report(found: Report, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps(result(found), indent=2)
         (folder / 'identification.json').write_text(f'{text}\n', encoding='utf-8')
-        draw_figures(found, folder)
+        drawings = draw_figures(found, folder)
+        (folder / PAGE).write_text(page(found, folder, drawings, advice), encoding='utf-8')
     except OSError as reason:
         raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason

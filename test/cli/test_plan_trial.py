@@ -1,0 +1,60 @@
+"""``trawl plan-trial`` prints a plan, and writes it so that it can be towed."""
+
+import json
+
+import pytest
+import yaml
+
+from trawl_ros.identification.laws import QUANTITIES
+from trawl_ros.scenario.scenario import load_scenario
+
+FEW = ('--lengths-m', '200', '--speeds-m-s', '2.5,2.3', '--hours', '0.6')
+
+
+@pytest.fixture
+def done(run, coarse_gear, tmp_path):
+    return run('plan-trial', coarse_gear, *FEW, '--out', tmp_path / 'out')
+
+
+def test_prints_and_writes_a_plan_that_can_be_towed(done, run, coarse_gear, tmp_path):
+    assert done.exit_code == 0, done.output
+    assert 'helps most' in done.stdout
+    assert 'limited by' in done.stdout
+    found = json.loads((tmp_path / 'out' / 'plan.json').read_text())
+    assert found['minutes'] <= found['budget_minutes'] == 36.0
+    assert tuple(found['quantities']) == QUANTITIES
+    for one in found['quantities'].values():
+        assert (one['limited_by'] is None) == one['well_known']
+    assert found['trials'][0]['name'] == 'plan'
+
+    scenario = load_scenario(tmp_path / 'out' / 'trial.yaml')
+    assert scenario.duration_s == 60.0 * found['minutes']
+    towed = [
+        (command.port_length, command.starboard_length, command.speed)
+        for step, (_, command) in zip(scenario.record.steps, scenario.commands, strict=True)
+        if 'on the way' not in step.name
+    ]
+    planned = [(leg['port_length'], leg['starboard_length'], leg['speed']) for leg in found['legs']]
+    assert towed == planned
+    assert (scenario.start.port_length, scenario.start.speed) == (towed[0][0], towed[0][2])
+    assert yaml.safe_load((tmp_path / 'out' / coarse_gear.name).read_text())['name'] == 'kaifuha'
+    assert (tmp_path / 'out' / 'plan.png').stat().st_size > 10_000
+
+    again = run('plan-trial', coarse_gear, *FEW, '--out', tmp_path / 'out')
+    assert again.exit_code == 1
+    assert 'holds files already' in again.stderr
+
+
+def test_says_what_is_wrong_with_the_question(run, coarse_gear):
+    done = run('plan-trial', 'no-such-gear')
+    assert done.exit_code == 1
+    assert 'no-such-gear: neither a file nor a gear of the package' in done.stderr
+    few = ('--lengths-m', '200', '--speeds-m-s', '2.5')
+    done = run('plan-trial', coarse_gear, *few, '--hours', '0.05')
+    assert done.exit_code == 1
+    assert '0.05 h are time for 0 of at least 2 legs' in done.stderr
+    done = run('plan-trial', coarse_gear, *few, '--max-tension-kn', '20')
+    assert done.exit_code == 1
+    assert 'found: none found, tension' in done.stderr or 'found: tension' in done.stderr
+    for wrong in (('--lengths-m', '5'), ('--speeds-m-s', 'fast'), ('--hours', '0')):
+        assert run('plan-trial', coarse_gear, *wrong).exit_code == 2
