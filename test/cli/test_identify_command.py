@@ -31,7 +31,7 @@ def test_writes_the_result_and_figures_and_prints_tables(identify, bag, trial, t
     assert set(found['objective']) == {'start', 'end', 'truth'}
     assert list(found['coefficients']) == list(COEFFICIENTS)
     for coefficient in found['coefficients'].values():
-        assert set(coefficient) == {'start', 'value', 'std', 'low', 'high', 'determined'}
+        assert {'start', 'value', 'std', 'low', 'high', 'shrink', 'determined'} == set(coefficient)
         assert coefficient['low'] <= coefficient['value'] <= coefficient['high']
     assert list(found['channels']) == [channel.name for channel in PAPER_CHANNELS]
     for channel in found['channels'].values():

@@ -5,20 +5,25 @@ from pathlib import Path
 
 import click
 from rich.console import Console
+from rich.progress import Progress
 
-from trawl_ros.bags.samples import SampleStream
 from trawl_ros.cli.files import BAG, FOLDER, SCENARIO
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.progress import error_console
+from trawl_ros.cli.read_tows import read_tows
 from trawl_ros.errors import TrawlError
 from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.from_gear import identification_for
-from trawl_ros.identification.pipeline import Identification, WindowUsed
 from trawl_ros.identification.report import Report, report
-from trawl_ros.identification.table import channel_table, closing_lines, coefficient_table
+from trawl_ros.identification.table import (
+    channel_table,
+    closing_lines,
+    coefficient_table,
+    opening_line,
+)
+from trawl_ros.identification.tows import FoundWindows, estimate_tows
 from trawl_ros.identification.writing import write_report
-from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.scenario.scenario import true_coefficients
 
@@ -27,7 +32,7 @@ TABLE_WIDTH = 100
 
 @click.command('identify')
 @click.argument('bags', nargs=-1, required=True, type=BAG)
-@click.option('--out', required=True, type=FOLDER, help='Folder for JSON and figures.')
+@click.option('--out', required=True, type=FOLDER, help='Folder for page, JSON and figures.')
 @click.option(
     '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '
     'the name of one that comes with the package.',
@@ -38,6 +43,10 @@ TABLE_WIDTH = 100
 )  # fmt: skip
 @click.option('--no-prior', is_flag=True, help='Let the data alone decide, within the bounds.')
 @click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
+@click.option(
+    '--scheduler', help='Address of a Dask cluster that reads the bags, which it must see under '
+    'the same paths; without it, processes of this machine do.',
+)  # fmt: skip
 @click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
 def command(
     bags: Sequence[Path],
@@ -46,50 +55,58 @@ def command(
     truth: Path | None,
     no_prior: bool,
     namespace: str,
+    scheduler: str | None,
     force: bool,
 ) -> None:
-    """Refit the twelve board coefficients from BAGS, several tows as one data set.
+    """Refit the twelve board coefficients from BAGS, each of them a tow.
 
-    Writes identification.json and figures.
+    Writes report.html, identification.json and figures. Each tow is left out in turn and
+    predicted from the others; with a single one, its steady states are.
     """
     empty_folder(out, force=force)
     true_values = None if truth is None else true_coefficients(packaged(truth, 'scenarios'))
     options = EstimatorOptions(prior_weight=0.0) if no_prior else None
-    identification = identification_for(load_gear(gear), estimator_options=options)
+    record = load_gear(gear)
     console = error_console()
-    stream = SampleStream(bags, namespace)
-    _feed(identification, stream, console)
-    for problem in stream.problems:
-        console.print(f'Damaged: {problem}', style='yellow', markup=False)
-    if reason := identification.why_not():
-        raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
-    with console.status('predicting steady states that are left out of the fit'):
-        found = report(identification, true_values)
-    write_report(found, out)
-    print_report(found)
+    found = read_tows(bags, record, namespace, console, scheduler)
+    _warn(found, console)
+    identification = identification_for(record, estimator_options=options)
+    with Progress(console=console, transient=True) as progress:
+        fit = progress.add_task('fitting', total=None)
+        names = estimate_tows(
+            identification, found, lambda done, of: progress.update(fit, completed=done, total=of)
+        )
+        if reason := identification.why_not():
+            raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
+        left = progress.add_task('leaving out, one after another', total=None)
+        said = report(
+            identification,
+            true_values,
+            tows=names,
+            begun=lambda number, of: progress.update(left, completed=number - 1, total=of),
+        )
+    write_report(said, out)
+    print_report(said)
 
 
 def print_report(found: Report) -> None:
-    """Print tables and closing sentences."""
+    """Print the verdict, tables and closing sentences."""
     console = Console(highlight=False, soft_wrap=True)
     width = None if console.is_terminal else TABLE_WIDTH
+    console.print(opening_line(found), style='bold')
     console.print(coefficient_table(found), width=width)
     console.print(channel_table(found), width=width)
     for line in closing_lines(found):
         console.print(line)
 
 
-def _feed(identification: Identification, stream: SampleStream, console: Console) -> None:
-    windows = 0
-    done = 0.0
-    with TimeProgress('reading', None, console) as progress:
-        last: tuple[Path, int] | None = None
-        for path, sample in stream:
-            if last is not None and last[0] == path:
-                done += max(0, sample.stamp - last[1]) / SECOND
-            last = path, max(sample.stamp, last[1] if last else 0)
-            events = identification.feed(sample)
-            windows += sum(isinstance(event, WindowUsed) for event in events)
-            progress.update(done, f'{windows} steady windows')
-        windows += sum(isinstance(event, WindowUsed) for event in identification.finish())
-        progress.update(done, f'{windows} steady windows')
+def _warn(found: Sequence[FoundWindows], console: Console) -> None:
+    """Say what is damaged; refuse bags none of which has a window, in the first one's words."""
+    for part in found:
+        for problem in part.problems:
+            console.print(f'Damaged: {problem}', style='yellow', markup=False)
+    empty = [part for part in found if part.why_not is not None]
+    if len(empty) == len(found):
+        raise TrawlError('; '.join(f'{part.name}: {part.why_not}' for part in found))
+    for part in empty:
+        console.print(f'Not used: {part.name}: {part.why_not}', style='yellow', markup=False)

@@ -1,0 +1,124 @@
+"""The report as one page that needs nothing beside it."""
+
+import base64
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from trawl_ros import __version__
+from trawl_ros.identification.figures import Drawing
+from trawl_ros.identification.objective import PAPER_CHANNELS
+from trawl_ros.identification.report import Report
+from trawl_ros.identification.residuals import ChannelResiduals
+from trawl_ros.identification.verdict import BEYOND, verdict
+from trawl_ros.identification.window_records import REASONS
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.reporting import templates
+
+PAGE = 'report.html'
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """A figure as text, and what to see in it."""
+
+    caption: str
+    data: str
+
+
+def page(
+    report: Report, folder: Path, drawings: Sequence[Drawing], advice: Sequence[str] = ()
+) -> str:
+    """Write the page as HTML.
+
+    Parameters
+    ----------
+    report
+        What it is about.
+    folder
+        Where the figures have been drawn.
+    drawings
+        The figures.
+    advice
+        Sentences on what to tow next; without any the page has no such heading.
+    """
+    sections: dict[str, list[Embedded]] = {}
+    for drawing in drawings:
+        data = base64.b64encode((folder / drawing.file).read_bytes()).decode('ascii')
+        sections.setdefault(drawing.section, []).append(Embedded(drawing.caption, data))
+    text = (
+        templates('trawl_ros.identification')
+        .get_template(f'{PAGE}.j2')
+        .render(
+            report=report,
+            verdict=verdict(report),
+            advice=advice,
+            coefficients=_coefficients(report),
+            sections=list(sections.items()),
+            residuals=[_residual(row) for row in report.residuals],
+            channels=PAPER_CHANNELS,
+            tows=_tows(report),
+            rejected=[(key, count, REASONS[key]) for key, count in report.rejected.items()],
+            objectives=report.objectives,
+            version=__version__,
+        )
+    )
+    return text.rstrip() + '\n'
+
+
+def _coefficients(report: Report) -> list[dict[str, Any]]:
+    estimate, rows = report.estimate, []
+    for i, name in enumerate(COEFFICIENTS):
+        row: dict[str, Any] = {
+            'name': name,
+            'start': report.prior.start[i],
+            'value': estimate.values[i],
+            'low': estimate.low[i],
+            'high': estimate.high[i],
+            'shrink': estimate.shrink[i],
+            'determined': estimate.determined[i],
+        }
+        if report.truth is not None:
+            row['truth'] = report.truth[i]
+            row['inside'] = estimate.low[i] <= report.truth[i] <= estimate.high[i]
+        rows.append(row)
+    return rows
+
+
+def _residual(row: ChannelResiduals) -> dict[str, Any]:
+    white = row.whiteness
+    scale, unit = {'N': (1e-3, 'kN'), 'rad': (180.0 / math.pi, '°')}.get(row.unit, (1.0, row.unit))
+    return {
+        'name': row.channel.replace('_', ' '),
+        'unit': unit,
+        'windows': len(row.values),
+        'mean': scale * row.mean,
+        'std': scale * row.std,
+        'stated_std': scale * row.stated_std,
+        'test_ratio': row.test_ratio,
+        'beyond': row.test_ratio > BEYOND,
+        'white': 'too few' if white is None else f'{white.p_value:.2g}',
+        'coloured': white is not None and not white.white,
+    }
+
+
+def _tows(report: Report) -> list[dict[str, Any]]:
+    rows = []
+    for tow, errors in report.errors_by_tow.items():
+        windows = [window for window in report.windows if window.tow == tow]
+        rows.append(
+            {
+                'name': report.tows[tow],
+                'windows': len(windows),
+                'states': len({window.state for window in windows}),
+                'errors': [percent(error) for error in errors],
+            }
+        )
+    return rows
+
+
+def percent(value: float) -> str:
+    """A part as a percentage, or a dash where it is not known."""
+    return f'{100.0 * value:.1f} %' if math.isfinite(value) else '–'

@@ -1,0 +1,53 @@
+"""How much the data know of each direction among the coefficients."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.identification.estimate import NAMED_SHARE
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.model.board import COEFFICIENTS
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Directions in units of the prior's std, from the best known to the least.
+
+    Attributes
+    ----------
+    singular : (12,) array
+        Of the data's whitened sensitivities: 1 where the data know as much as the prior did.
+    directions : (12, 12) array
+        A unit vector in each row.
+    """
+
+    singular: np.ndarray
+    directions: np.ndarray
+
+    def name(self, row: int) -> str:
+        """The coefficients with the largest part in a direction."""
+        weights = np.abs(self.directions[row])
+        order = np.argsort(-weights)
+        named = [COEFFICIENTS[i] for i in order if weights[i] >= NAMED_SHARE]
+        return ' with '.join(named or [COEFFICIENTS[order[0]]])
+
+
+def spectrum(covariance: np.ndarray, prior: BoardPrior, prior_weight: float) -> Spectrum:
+    """Take the prior back out of a covariance.
+
+    With C the covariance in prior std, C⁻¹ = V S² Vᵀ + w I: the eigenvalues of C are
+    1/(s² + w), whatever else was eliminated on the way to it.
+
+    Parameters
+    ----------
+    covariance
+        Of the coefficients (12, 12).
+    prior
+        Whose std (12,) is the scale.
+    prior_weight
+        w: 1 where the prior was used, 0 where not.
+    """
+    scaled = covariance / np.outer(prior.std, prior.std)
+    variances, vectors = np.linalg.eigh(scaled)
+    singular = np.sqrt(np.maximum(1.0 / variances - prior_weight, 0.0))
+    return Spectrum(singular, vectors.T)
