@@ -242,7 +242,11 @@ def _manoeuvre_of(fit: Fit) -> Manoeuvre:
 
 @dataclass(frozen=True)
 class _Question:
-    """The laws at the angles at which the fit's windows found the boards."""
+    """The laws at the angles at which the fit's windows found the boards.
+
+    They are measured by what they were expected to span before any tow: by the span of the
+    estimate, a law that turns out to have no slope could never be known well.
+    """
 
     coefficients: np.ndarray
     angles: WorkingAngles
@@ -254,7 +258,7 @@ class _Question:
         return cls(
             fit.coefficients,
             working_angles(seen, gear.board.slip_sign),
-            law_spans(fit.coefficients, fit.std),
+            law_spans(fit.prior.start, fit.prior.std),
         )
 
     def quantities(self, covariance: np.ndarray) -> LawQuantities:
