@@ -92,6 +92,9 @@ setup(
     ],
     install_requires=[
         'click>=8.1,<9',
+        'cryptography>=41,<60',
+        'dask>=2024.8,<2027',
+        'distributed>=2024.8,<2027',
         'gsw>=3.6,<4',
         'jinja2>=3.1,<4',
         'lz4>=4,<5',
