@@ -23,6 +23,7 @@ def test_a_former_demo_is_replaced_and_what_others_put_there_stays(tmp_path):
     (folder.bag / 'bag_0.mcap').write_bytes(b'old')
     (tmp_path / 'identification.json').write_text('{}')
     (tmp_path / 'history.png').write_bytes(b'old')
+    (tmp_path / 'report.html').write_text('old')
     (tmp_path / 'notes.txt').write_text('mine')
     DemoFolder(tmp_path)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ['notes.txt', 'summary.json']

@@ -1,13 +1,19 @@
 """``trawl identify`` uses what a bag holds, and says what it lacks."""
 
+import itertools
 import json
 import math
 
 import pytest
+from rich.console import Console
 
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.cli.read_tows import BagTask, read_tow, read_tows
+from trawl_ros.gear.load import load_gear
+from trawl_ros.identification.laws import QUANTITIES
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.instruments.samples import RangeSample
+from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.model.board import COEFFICIENTS
 
 
@@ -22,11 +28,15 @@ def bag(steady_tow, tmp_path_factory):
     return steady_tow.bag(tmp_path_factory.mktemp('bags') / 'steady')
 
 
+def result_in(folder):
+    return json.loads((folder / 'identification.json').read_text())
+
+
 def test_writes_the_result_and_figures_and_prints_tables(identify, bag, trial, tmp_path):
     out = tmp_path / 'out'
     done = identify(bag, '--out', out, '--truth', trial)
     assert done.exit_code == 0, done.output
-    found = json.loads((out / 'identification.json').read_text())
+    found = result_in(out)
     assert found['windows'] >= 2
     assert set(found['objective']) == {'start', 'end', 'truth'}
     assert list(found['coefficients']) == list(COEFFICIENTS)
@@ -38,10 +48,43 @@ def test_writes_the_result_and_figures_and_prints_tables(identify, bag, trial, t
         assert set(channel) == {'unit', 'mnae_start', 'mnae_end', 'mnae_held_out'}
         assert channel['mnae_end'] < 0.02
         assert math.isfinite(channel['mnae_held_out'])
-    assert {'rejected', 'condition_number', 'undetermined'} <= set(found)
-    assert len(list(out.glob('*.png'))) >= 3
+    assert found['held_out_by'] == 'state'
+    assert 10.0 < found['laws']['attack_deg'] < 40.0
+    assert list(found['laws']['quantities']) == list(QUANTITIES)
+    assert len(list(out.glob('*.png'))) == 9
+    page = (out / 'report.html').read_text()
+    assert 'The laws where the boards work' in page
+    assert 'lift over attack' in page
+    assert done.stdout.startswith('Steady states of this one tow left out of the fit')
     assert 'truth' in done.stdout
     assert 'Objective of eq. 35' in done.stdout
+
+
+def test_of_several_bags_each_is_left_out(identify, steady_tow, bag, tmp_path):
+    other = steady_tow.bag(tmp_path / 'other', seed=1)
+    out = tmp_path / 'out'
+    done = identify(bag, other, '--out', out)
+    assert done.exit_code == 0, done.output
+    found = result_in(out)
+    assert found['held_out_by'] == 'tow'
+    assert [tow['name'] for tow in found['tows']] == [str(bag), str(other)]
+    assert sum(tow['windows'] for tow in found['tows']) == found['windows']
+    for tow in found['tows']:
+        assert all(math.isfinite(error) for error in tow['mnae_held_out'].values())
+    assert done.stdout.startswith('Tows left out of the fit')
+
+
+def test_bags_read_at_once_and_in_turn_hold_the_same(steady_tow, bag, coarse_gear, tmp_path):
+    gear = load_gear(coarse_gear)
+    bags = [bag, steady_tow.bag(tmp_path / 'other', seed=1), bag]
+    at_once = read_tows(bags, gear, NAMESPACE, Console(quiet=True))
+    in_turn = [read_tow(BagTask(path, gear, NAMESPACE)) for path in bags]
+    assert [part.name for part in at_once] == [str(path) for path in bags]
+    for one, other in zip(at_once, in_turn, strict=True):
+        assert one.windows == other.windows
+        assert len(one.windows) >= 2
+        assert one.rejections.counts == other.rejections.counts
+        assert one.readings == other.readings
 
 
 def test_results_are_not_written_over_unless_asked(identify, bag, tmp_path):
@@ -65,13 +108,19 @@ def test_what_is_readable_of_a_damaged_bag_is_used_and_said(identify, steady_tow
     assert json.loads((tmp_path / 'out' / 'identification.json').read_text())['windows'] >= 1
 
 
-def test_without_the_prior_the_interval_is_wider(identify, bag, tmp_path):
-    widths = []
-    for name, flags in (('with', ()), ('without', ('--no-prior',))):
-        assert identify(bag, '--out', tmp_path / name, *flags).exit_code == 0
-        found = json.loads((tmp_path / name / 'identification.json').read_text())
-        widths.append(sum(entry['std'] for entry in found['coefficients'].values()))
-    assert widths[1] > widths[0]
+def test_a_bag_without_windows_is_named_and_without_the_prior_all_is_less_known(
+    identify, steady_tow, bag, tmp_path
+):
+    short = steady_tow.write(tmp_path / 'short', itertools.islice(steady_tow.samples(), 500))
+    done = identify(bag, short, '--out', tmp_path / 'out', '--no-prior')
+    assert done.exit_code == 0, done.output
+    assert f'Not used: {short}: no steady window was found' in done.stderr
+    found = result_in(tmp_path / 'out')
+    assert not found['prior_used']
+    assert [tow['name'] for tow in found['tows']] == [str(bag)]
+    prior = load_gear('kaifuha').identification.std
+    wider = [entry['std'] > std for entry, std in zip(found['coefficients'].values(), prior)]
+    assert any(wider)
 
 
 def test_a_missing_bag_and_an_empty_one(identify, tmp_path):

@@ -63,7 +63,7 @@ def test_the_result_has_what_was_promised(sea, tows):
         'windows', 'rejected', 'objective', 'coefficients', 'channels', 'condition_number',
         'undetermined', 'converged', 'reason', 'active_bounds', 'covariance', 'singular_values',
         'weak_combinations', 'noise_scales', 'prior_used', 'held_out_by', 'accepted', 'tows',
-        'residuals', 'innovations',
+        'residuals', 'innovations', 'laws', 'rejected_last',
     } == set(found)  # fmt: skip
     assert set(found['objective']) == {'start', 'end', 'truth'}
     assert found['objective']['end'] < found['objective']['start'] / 3.0
@@ -203,9 +203,12 @@ def test_what_speaks_against_a_fit_is_listed(tows):
         good.estimate, converged=False, reason='still moving', noise_scales=scales,
         active_bounds=('a1 at its lower bound 0',),
     )  # fmt: skip
-    said = ' '.join(verdict(replace(good, estimate=estimate, residuals=(coloured,))).concerns)
+    feet = {'wrong unit': 'door/port/pressure is plausible in feet'}
+    bad = replace(good, estimate=estimate, residuals=(coloured,), found=feet)
+    said = ' '.join(verdict(bad).concerns)
     words = coloured.channel.replace('_', ' ')
     for part in (
+        'Refused, wrong unit: door/port/pressure is plausible in feet.',
         'not come to rest: still moving', 'a1 at its lower bound 0',
         f'beyond what the stated errors allow in {words} (test ratio {coloured.test_ratio:.1f})',
         f'follow each other, rather than scatter, in {words}', 'roll (2.5 times)',

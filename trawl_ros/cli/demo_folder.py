@@ -85,5 +85,6 @@ class DemoFolder:
         for folder in (self.bag, self.logs, self.results):
             if folder.is_dir():
                 shutil.rmtree(folder)
-        for file in (self.path / 'identification.json', *self.path.glob('*.png')):
+        results = (self.path / name for name in ('identification.json', 'report.html'))
+        for file in (*results, *self.path.glob('*.png')):
             file.unlink(missing_ok=True)

@@ -83,6 +83,7 @@ def command(
             identification,
             true_values,
             tows=names,
+            gear=record,
             begun=lambda number, of: progress.update(left, completed=number - 1, total=of),
         )
     write_report(said, out)

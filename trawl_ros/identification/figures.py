@@ -74,7 +74,7 @@ def drawings(report: Report) -> list[Drawing]:
         Drawing(
             'lift_drag.png', KNOWN,
             "Lift and drag of the board over the attack angle, as in the paper's Fig. 5, with "
-            '95 % bands.',
+            '95 % bands. Shaded: where the boards worked, where that is known.',
             lift_drag_figure(report),
         ),
         Drawing(

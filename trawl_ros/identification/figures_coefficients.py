@@ -61,6 +61,8 @@ def lift_drag_figure(report: Report) -> Figure:
         ('a1', 'c1', PORT, 'drag $C_d$'),
     ):
         _draw_line(axes, report, (slope, constant), colour, name)
+    if report.laws is not None:
+        axes.axvspan(*np.degrees(report.laws.attack), color=FAINT, alpha=0.2, lw=0)
     axes.set_xlim(ATTACK_DEG[0], ATTACK_DEG[-1])
     axes.set_xlabel('attack angle α / °')
     axes.set_ylabel('coefficient')

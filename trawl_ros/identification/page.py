@@ -9,6 +9,7 @@ from typing import Any
 
 from trawl_ros import __version__
 from trawl_ros.identification.figures import Drawing
+from trawl_ros.identification.laws import LAWS
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.identification.report import Report
 from trawl_ros.identification.residuals import ChannelResiduals
@@ -60,7 +61,12 @@ def page(
             residuals=[_residual(row) for row in report.residuals],
             channels=PAPER_CHANNELS,
             tows=_tows(report),
-            rejected=[(key, count, REASONS[key]) for key, count in report.rejected.items()],
+            rejected=[
+                (key, count, REASONS[key], report.found.get(key, ''))
+                for key, count in report.rejected.items()
+            ],
+            laws=_laws(report),
+            attack_deg=math.degrees(report.laws.angles.attack) if report.laws else math.nan,
             objectives=report.objectives,
             version=__version__,
         )
@@ -85,6 +91,21 @@ def _coefficients(report: Report) -> list[dict[str, Any]]:
             row['inside'] = estimate.low[i] <= report.truth[i] <= estimate.high[i]
         rows.append(row)
     return rows
+
+
+def _laws(report: Report) -> list[dict[str, Any]]:
+    """A row per law, none where nothing is known of them."""
+    if report.laws is None:
+        return []
+    known, number = report.laws.quantities, len(LAWS)
+
+    def cells(i: int) -> dict[str, Any]:
+        return {'value': known.values[i], 'sd': known.sd[i], 'well': known.well_known[i]}
+
+    return [
+        {'name': law.name, 'angle': law.angle, 'at': cells(i), 'over': cells(number + i)}
+        for i, law in enumerate(LAWS)
+    ]
 
 
 def _residual(row: ChannelResiduals) -> dict[str, Any]:

@@ -6,10 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.channels import INPUTS
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimator import Progress
 from trawl_ros.identification.holdout import HeldOut, hold_out
+from trawl_ros.identification.laws import (
+    LawQuantities,
+    WorkingAngles,
+    law_quantities,
+    law_spans,
+    working_angles,
+)
 from trawl_ros.identification.linearised import Linearised
 from trawl_ros.identification.objective import (
     PAPER_CHANNELS,
@@ -26,6 +34,19 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 
 @dataclass(frozen=True)
+class KnownLaws:
+    """The boards' laws where they worked.
+
+    ``attack`` has the least and largest mean α (rad) of both boards in the windows' states,
+    ``angles`` the means over them, and ``quantities`` values and slopes there.
+    """
+
+    attack: tuple[float, float]
+    angles: WorkingAngles
+    quantities: LawQuantities
+
+
+@dataclass(frozen=True)
 class Report:
     """One identification beside its data.
 
@@ -37,8 +58,8 @@ class Report:
         1 where the prior was used, 0 where the data alone decided.
     truth : (12,) array or None
         The coefficients that made the data, where they are known.
-    rejected
-        Reason → count.
+    rejected, found
+        Reason → count, and → what was found last.
     windows
         The steady windows in the fit, n of them.
     tows
@@ -60,6 +81,8 @@ class Report:
         The steps of the iteration.
     spectrum
         How much the data know of which direction.
+    laws
+        What is known of the boards' laws; None where the gear is not at hand.
     """
 
     estimate: Estimate
@@ -67,6 +90,7 @@ class Report:
     prior_weight: float
     truth: np.ndarray | None
     rejected: dict[str, int]
+    found: dict[str, str]
     windows: tuple[SteadyWindow, ...]
     tows: tuple[str, ...]
     measured: np.ndarray
@@ -79,6 +103,7 @@ class Report:
     course: tuple[WindowUsed, ...]
     history: tuple[Progress, ...]
     spectrum: Spectrum
+    laws: KnownLaws | None
 
     @property
     def inputs(self) -> np.ndarray:
@@ -125,6 +150,7 @@ def report(
     truth: np.ndarray | None = None,
     folds: int = 5,
     tows: Sequence[str] = (),
+    gear: GearRecord | None = None,
     begun: Callable[[int, int], None] | None = None,
 ) -> Report:
     """Work out the report of a finished identification.
@@ -139,6 +165,8 @@ def report(
         Of the hold-out within a single tow.
     tows
         Names of the tows; numbered where none are given.
+    gear
+        Whose boards these are, to say what is known of their laws at the angles they work at.
     begun
         Told before each fit of the hold-out which it is, from 1, and of how many.
 
@@ -159,6 +187,7 @@ def report(
         prior_weight=weight,
         truth=None if truth is None else np.asarray(truth, dtype=float),
         rejected=identification.rejected,
+        found=identification.found,
         windows=windows,
         tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
         measured=stack([paper_values(window.means) for window in windows]),
@@ -171,6 +200,23 @@ def report(
         course=tuple(identification.course),
         history=tuple(estimator.history),
         spectrum=spectrum(estimate.covariance, estimator.prior, weight),
+        laws=None if gear is None else _laws(at_end, estimate, gear),
+    )
+
+
+def _laws(
+    parts: Sequence[Linearised | None], estimate: Estimate, gear: GearRecord
+) -> KnownLaws | None:
+    seen = [part.state.observables for part in parts if part is not None]
+    if not seen:
+        return None
+    attack = [0.5 * (one.port_attack + one.starboard_attack) for one in seen]
+    angles = working_angles(seen, gear.board.slip_sign)
+    span = law_spans(estimate.values, estimate.std)
+    return KnownLaws(
+        attack=(min(attack), max(attack)),
+        angles=angles,
+        quantities=law_quantities(estimate.values, estimate.covariance, angles, span),
     )
 
 

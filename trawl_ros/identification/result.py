@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from trawl_ros.identification.laws import QUANTITIES
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.identification.report import Report
 from trawl_ros.identification.residuals import ChannelResiduals
@@ -59,6 +60,28 @@ def result(report: Report) -> dict[str, Any]:
         'tows': _tows(report),
         'residuals': {row.channel: _statistics(row) for row in report.residuals},
         'innovations': {row.channel: _statistics(row) for row in report.innovations},
+        'laws': _laws(report),
+        'rejected_last': dict(report.found),
+    }
+
+
+def _laws(report: Report) -> dict[str, Any] | None:
+    """Value and slope of each law at the mean working angle, by name."""
+    if report.laws is None:
+        return None
+    known = report.laws.quantities
+    return {
+        'attack_deg': math.degrees(report.laws.angles.attack),
+        'slip_deg': math.degrees(report.laws.angles.slip),
+        'quantities': {
+            name: {
+                'value': float(known.values[i]),
+                'std': float(known.sd[i]),
+                'span': float(known.span[i]),
+                'well_known': bool(known.well_known[i]),
+            }
+            for i, name in enumerate(QUANTITIES)
+        },
     }
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.identification.laws import QUANTITIES
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.identification.report import Report
 from trawl_ros.identification.residuals import ChannelResiduals
@@ -11,6 +12,9 @@ from trawl_ros.model.board import COEFFICIENTS
 
 BEYOND = 1.0
 """Test ratio above which residuals are beyond what the stated errors allow."""
+
+GRAVE = ('wrong unit', 'implausible', 'speed over ground')
+"""Reasons of a rejection that one should not have to look for."""
 
 NOISY = 2.0
 """Scatter over what is stated from where it is worth a word."""
@@ -82,12 +86,22 @@ def _knowledge(report: Report) -> tuple[str, ...]:
     if estimate.undetermined:
         names = '; '.join(str(combination) for combination in estimate.undetermined)
         sentences.append(f'Known no better than before any tow: {names}.')
+    if report.laws is not None:
+        well = report.laws.quantities.well_known
+        lacking = [name for name, flag in zip(QUANTITIES, well, strict=True) if not flag]
+        listed = f'; not {", ".join(lacking)}' if lacking else ''
+        sentences.append(
+            f'At the angles the boards work at, {int(well.sum())} of the {len(well)} values and '
+            f'slopes of their laws are known to a fifth of what the law spans over 15°{listed}.'
+        )
     return tuple(sentences)
 
 
 def _concerns(report: Report) -> tuple[str, ...]:
     estimate = report.estimate
-    found = []
+    found = [
+        f'Refused, {reason}: {report.found[reason]}.' for reason in GRAVE if reason in report.found
+    ]
     if not estimate.converged:
         found.append(f'The iteration has not come to rest: {estimate.reason}.')
     if estimate.active_bounds:
