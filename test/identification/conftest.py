@@ -1,8 +1,9 @@
 """A closed-form gear with a known answer, and tows of it as streams of samples."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,8 +11,11 @@ import numpy as np
 import pytest
 
 from trawl_ros.errors import NoSteadyState
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.channels import CHANNELS, INPUTS
 from trawl_ros.identification.error_terms import Scheme
+from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.instruments.samples import (
@@ -23,6 +27,9 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.observables import OBSERVABLES as GEAR_OBSERVABLES
+from trawl_ros.solver.predict import Predictor
 
 NANO = 1_000_000_000
 EPOCH = 1_750_000_000 * NANO
@@ -33,6 +40,9 @@ OBSERVABLES = (
 )  # fmt: skip
 TRUTH = np.array([1.19, 0.041, 2.47, 0.67, -0.3, 0.01, -0.46, 0.02, 0.24, 0.016, 0.92, 0.25])
 STD = 0.3 * np.abs(TRUTH) + 0.05
+SLOW = np.array([name.endswith('depth') for name in OBSERVABLES], dtype=float)
+"""The closed form comes to rest with doors and net sinking alike."""
+
 SIZES = np.array([130, 200, 200, 2e5, 2e5, 220, 0.2, 0.2, 0.2, 0.2, 40, 100.0])
 
 
@@ -40,6 +50,7 @@ SIZES = np.array([130, 200, 200, 2e5, 2e5, 220, 0.2, 0.2, 0.2, 0.2, 40, 100.0])
 class Answer:
     values: np.ndarray
     jacobian: np.ndarray
+    slow: np.ndarray
     state: Any = None
 
 
@@ -78,7 +89,7 @@ class ClosedForm:
         by_length = (slope * (self.sensitivity[:, :, 1] @ z) + 0.4 * SIZES) / 1000.0
         by_speed = (slope * (self.sensitivity[:, :, 2] @ z) + 0.5 * SIZES) / 2.0
         jacobian = np.column_stack((slope[:, None] * by_z / STD, by_length, by_length, by_speed))
-        return Answer(values, jacobian)
+        return Answer(values, jacobian, SLOW)
 
 
 def pressure_to_depth(pressure: float) -> float:
@@ -225,3 +236,83 @@ def sea() -> SimpleNamespace:
         pressure_to_depth=pressure_to_depth,
         depth_to_pressure=depth_to_pressure,
     )
+
+
+TOW_STATES = ((450.0, 2.1, 0.3), (300.0, 2.1, 0.3), (300.0, 2.3, 1.9))
+"""Warp length (m), speed (m/s) and heading (rad)."""
+
+LEG_S = 220
+
+CURRENT = np.array([-0.118, 0.382])
+"""East and north (m/s): across the first heading."""
+
+
+class Linear:
+    """A gear around some states that were solved, each with its sensitivities."""
+
+    def __init__(self, gear: GearRecord) -> None:
+        predictor, start = Predictor(build_model(gear)), np.array(gear.identification.start)
+        self.points, self.found = [], []
+        for length, speed, _ in TOW_STATES:
+            state = self.found[-1].state if self.found else None
+            self.found.append(predictor.predict(start, length, length, speed, state))
+            self.points.append(np.array([*start, length, length, speed]))
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Any = None,
+    ) -> Answer:
+        point = np.array([*coefficients, port_length, starboard_length, speed])
+        off = [np.hypot((port_length - p[12]) / 100.0, (speed - p[14]) / 0.1) for p in self.points]
+        nearest = int(np.argmin(off))
+        found = self.found[nearest]
+        values = found.values + found.jacobian @ (point - self.points[nearest])
+        return Answer(values, found.jacobian, found.slow, nearest)
+
+
+@pytest.fixture(scope='session')
+def clean_tow(coarse_gear: Path) -> SimpleNamespace:
+    """A tow of the coarse gear, its model around the states of the tow, and what is known."""
+    gear = load_gear(coarse_gear)
+    linear, prior = Linear(gear), board_prior(gear)
+    return SimpleNamespace(
+        prior=prior,
+        linear=linear,
+        depth=build_model(gear).water.depth,
+        samples=list(clean_samples(linear, prior, build_model(gear).water.pressure)),
+    )
+
+
+def clean_samples(
+    linear: Linear, prior: BoardPrior, pressure: Callable[[float], float]
+) -> Iterator[Sample]:
+    """A tow through all states in a current, with the noise of the default instruments."""
+    draw = np.random.default_rng(4).standard_normal
+    truth = prior.start + 0.3 * prior.std * np.where(np.arange(12) % 3, 1.0, -1.0)
+    for second in range(LEG_S * len(TOW_STATES)):
+        length, speed, heading = TOW_STATES[second // LEG_S]
+        seen = linear.predict(truth, length, length, speed).values
+        y = dict(zip(GEAR_OBSERVABLES, seen, strict=True))
+        stamp = EPOCH + second * NANO
+        yield HeadingSample(stamp, heading + 0.002 * draw(), 0.002)
+        ground = speed * np.array([math.cos(heading), math.sin(heading)]) + CURRENT
+        yield VelocitySample(stamp, 'ground', np.array([*(ground + 0.03 * draw(2)), 0.0]), math.nan)
+        water = np.array([speed + 0.03 * draw(), 0.0, 0.0])
+        yield VelocitySample(stamp, 'water', water, 0.0003 * draw())
+        tensions = [y[f'{side}_tension'] + 1600.0 * draw() for side in SIDES]
+        yield WinchSample(stamp, tuple(length + 0.05 * draw(2)), (0.0, 0.0), tuple(tensions))
+        depths = {'sonar': y['net_depth']} | {side: y[f'{side}_door_depth'] for side in SIDES}
+        for place, depth in depths.items():
+            yield PressureSample(stamp, place, pressure(depth + 0.2 * draw()), 2000.0)
+        if second % 2 == 0:
+            for side in SIDES:
+                pitch, roll = (y[f'{side}_{angle}'] + 0.009 * draw() for angle in ('pitch', 'roll'))
+                yield AttitudeSample(stamp, side, pitch, roll, 0.009)
+            yield RangeSample(stamp, 'spread', y['door_spread'] + 0.7 * draw(), 0.7, 5.0, 600.0)
+        if second % 10 == 0:
+            opening = y['vertical_opening'] + 0.1 * draw()
+            yield RangeSample(stamp, 'opening_height', opening, 0.05, 1.0, 300.0)

@@ -124,18 +124,16 @@ def test_not_finite_readings_never_enter_a_mean(sea, calm, bad):
     assert all(math.isfinite(window.means['door_spread']) for window in windows)
 
 
-def test_readings_out_of_range_are_refused(sea, calm):
-    limit = 300.0
-    spoilt = [
-        replace(s, distance=400.0, max_range=limit)
-        if isinstance(s, RangeSample) and s.stamp % 10 == 0
-        else s
-        for s in [*calm, calm[0]]
-    ]
-    finder, _ = run(sea, spoilt)
-    assert finder.rejected['out of range'] == sum(
-        isinstance(s, RangeSample) and s.distance > limit for s in spoilt
-    )
+@pytest.mark.parametrize(('share', 'used'), [(10, True), (2, False)])
+def test_readings_out_of_range_are_refused(sea, calm, share, used):
+    spreads = [i for i, s in enumerate(calm) if isinstance(s, RangeSample)]
+    spoilt = list(calm)
+    for i in spreads[::share]:
+        spoilt[i] = replace(spoilt[i], distance=400.0, max_range=300.0)
+    finder, windows = run(sea, spoilt)
+    # Where many are out of range, so is the channel: what is left of it is no fair sample.
+    assert finder.rejected['out of range'] == len(spreads[::share]) + (not used)
+    assert bool(windows) == used
 
 
 def test_outliers_are_left_out_of_the_mean(sea, calm):

@@ -57,9 +57,13 @@ class ChannelBuffer:
 
         Each one refused is counted by its reason.
         """
+        # Stamps first: a sensor that says nonsense in time is not silent.
+        return sum(self._plausible(one) and self._insert(one) for one in self.order.judge(reading))
+
+    def _plausible(self, reading: Reading) -> bool:
         if not math.isfinite(reading.value):
             self._rejections.add('not finite', f'{self._where} reads {reading.value}')
-            return 0
+            return False
         low = max(self.channel.low, reading.low if math.isfinite(reading.low) else -math.inf)
         high = min(self.channel.high, reading.high if math.isfinite(reading.high) else math.inf)
         if not low <= reading.value <= high:
@@ -68,8 +72,8 @@ class ChannelBuffer:
             self._rejections.add('out of range', found)
             self._outside.append((reading.stamp, reading.value))
             del self._outside[:-CAPACITY]
-            return 0
-        return sum(self._insert(one) for one in self.order.judge(reading))
+            return False
+        return True
 
     def _insert(self, reading: Reading) -> bool:
         place = bisect_left(self._stamps, reading.stamp)

@@ -60,9 +60,16 @@ class Screening:
         self._start: Any = None
         self._state: int | None = None
         self._judgement = Judgement()
+        self._tow: int | None = None
+        self._unit: Misreading | None = None
 
     def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Judgement:
-        """Judge a window around the present coefficients (12,); once for each steady state."""
+        """Judge a window around the present coefficients (12,); once for each steady state.
+
+        A unit that was found wrong stays so through the tow, unless a window says otherwise.
+        """
+        if window.tow != self._tow:
+            self._tow, self._unit = window.tow, None
         if window.state != self._state:
             self._judgement = self._judge(window, coefficients)
             self._state = window.state
@@ -71,6 +78,9 @@ class Screening:
     def _judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Judgement:
         distance = self._distance(window, coefficients)
         stated = distance(window.means)
+        known = self._unit
+        if known is not None and distance(known.repaired(window.means)) < stated:
+            return _unit_judgement(known, window)
         if stated <= SUSPICIOUS:
             return Judgement()
         tried = [
@@ -78,6 +88,7 @@ class Screening:
         ]
         best, unit = min(tried, key=lambda one: one[0])
         if best <= CREDIBLE:
+            self._unit = unit
             return _unit_judgement(unit, window)
         if not IMPLAUSIBLE < stated < np.inf:
             return Judgement()

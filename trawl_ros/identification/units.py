@@ -58,7 +58,7 @@ class Misreading:
 
     def sentence(self, means: Mapping[str, float]) -> str:
         """What was found."""
-        name = self.channels[0]
+        name = next(name for name in self.channels if name in means)
         row = CHANNELS[name]
         return (
             f'{" and ".join(self.channels)} ({row.topic}) look like {self.unit}, expected '
@@ -78,7 +78,9 @@ def misreadings(means: Mapping[str, float]) -> list[Misreading]:
 
 
 def unit_of(outside: np.ndarray, channel: Channel) -> str | None:
-    """The unit in which values (n,) outside a channel's range would be plausible."""
+    """The unit in which values (n,) would be plausible, all of them outside a channel's range."""
+    if np.any((outside >= channel.low) & (outside <= channel.high)):
+        return None
     for unit, factor in WRONG_UNITS.get(channel.unit, {}).items():
         if factor > 1.0 and np.all(
             (outside / factor >= channel.low) & (outside / factor <= channel.high)

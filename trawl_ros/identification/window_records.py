@@ -8,8 +8,8 @@ from trawl_ros.identification.over_ground import GroundTrack
 
 REASONS = {
     'not finite': 'readings that are NaN or infinite',
-    'out of range': 'readings outside what the channel or the sensor can say',
-    'outlier': 'readings far from the median of their window',
+    'out of range': 'readings outside what channel or sensor can say, and stretches full of them',
+    'outlier': 'readings far from the median of their window, and stretches full of them',
     'out of order': 'readings stamped before others of their channel that came earlier',
     'duplicate stamp': 'readings with the stamp of another of their channel',
     'late': 'readings that came when the windows they belong to were decided',
@@ -28,7 +28,9 @@ REASONS = {
 """Every reason for a rejection, and what its count counts."""
 
 
-MAY_BE_ZERO = ('settle_s', 'settle_passages', 'net_length', 'longest_settle_s', 'slow_s', 'reorder_s')
+MAY_BE_ZERO = (
+    'settle_s', 'settle_passages', 'net_length', 'longest_settle_s', 'slow_s', 'reorder_s',
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
