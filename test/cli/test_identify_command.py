@@ -60,14 +60,26 @@ def test_writes_the_result_and_figures_and_prints_tables(identify, bag, trial, t
     assert 'Objective of eq. 35' in done.stdout
 
 
-def test_of_several_bags_each_is_left_out(identify, steady_tow, bag, tmp_path):
-    other = steady_tow.bag(tmp_path / 'other', seed=1)
+def test_of_several_bags_each_is_left_out_and_what_is_readable_of_a_damaged_one_is_used(
+    identify, steady_tow, bag, tmp_path
+):
+    other = steady_tow.bag(tmp_path / 'other', seed=1, leg_s=600)  # long enough for several chunks
+    whole = (other / 'other_0.mcap').read_bytes()
+    cut = tmp_path / 'cut.mcap'
+    cut.write_bytes(whole[: len(whole) * 3 // 4])
     out = tmp_path / 'out'
-    done = identify(bag, other, '--out', out)
+    out.mkdir()
+    (out / 'identification.json').write_text('mine')
+    done = identify(bag, cut, '--out', out)
+    assert done.exit_code == 1
+    assert f'{out}: holds files already' in done.stderr
+    assert (out / 'identification.json').read_text() == 'mine'
+    done = identify(bag, cut, '--out', out, '--force')
     assert done.exit_code == 0, done.output
+    assert f'Damaged: {cut}: cut short' in done.stderr
     found = result_in(out)
     assert found['held_out_by'] == 'tow'
-    assert [tow['name'] for tow in found['tows']] == [str(bag), str(other)]
+    assert [tow['name'] for tow in found['tows']] == [str(bag), str(cut)]
     assert sum(tow['windows'] for tow in found['tows']) == found['windows']
     for tow in found['tows']:
         assert all(math.isfinite(error) for error in tow['mnae_held_out'].values())
@@ -85,27 +97,6 @@ def test_bags_read_at_once_and_in_turn_hold_the_same(steady_tow, bag, coarse_gea
         assert len(one.windows) >= 2
         assert one.rejections.counts == other.rejections.counts
         assert one.readings == other.readings
-
-
-def test_results_are_not_written_over_unless_asked(identify, bag, tmp_path):
-    (tmp_path / 'identification.json').write_text('mine')
-    done = identify(bag, '--out', tmp_path)
-    assert done.exit_code == 1
-    assert f'{tmp_path}: holds files already' in done.stderr
-    assert (tmp_path / 'identification.json').read_text() == 'mine'
-    assert identify(bag, '--out', tmp_path, '--force').exit_code == 0
-    assert json.loads((tmp_path / 'identification.json').read_text())
-
-
-def test_what_is_readable_of_a_damaged_bag_is_used_and_said(identify, steady_tow, tmp_path):
-    bag = steady_tow.bag(tmp_path / 'bag', leg_s=600)  # long enough for several chunks
-    whole = (bag / 'bag_0.mcap').read_bytes()
-    cut = tmp_path / 'cut.mcap'
-    cut.write_bytes(whole[: len(whole) * 3 // 4])
-    done = identify(cut, '--out', tmp_path / 'out')
-    assert done.exit_code == 0, done.output
-    assert f'Damaged: {cut}: cut short' in done.stderr
-    assert json.loads((tmp_path / 'out' / 'identification.json').read_text())['windows'] >= 1
 
 
 def test_a_bag_without_windows_is_named_and_without_the_prior_all_is_less_known(

@@ -102,7 +102,7 @@ def test_numbers_that_do_not_exist_are_null(sea, model, prior, windows):
 def test_a_tow_with_false_readings_is_predicted_as_if_never_seen(sea, model, prior, windows):
     false = []
     for window in three_tows(windows):
-        wrong = 1.3 if window.tow == 1 else 1.0
+        wrong = 1.05 if window.tow == 1 else 1.0
         means = {**window.means, 'door_spread': wrong * window.means['door_spread']}
         false.append(replace(window, means=means))
     exact = fitted(sea, model, prior, three_tows(windows))
