@@ -100,7 +100,7 @@ def test_a_wild_reading_loses_weight_and_its_neighbours_do_not(fit):
 
 
 def test_what_an_instrument_reads_too_high_is_found_per_tow(sea, model, prior):
-    options = EstimatorOptions()
+    options = EstimatorOptions(unsettled=0.0)
     windows = [
         replace(window, index=15 * tow + window.index, state=15 * tow + window.index, tow=tow)
         for tow in (0, 1)

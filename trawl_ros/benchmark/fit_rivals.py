@@ -16,6 +16,7 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.predict import Prediction, Predictor
 from trawl_ros.solver.sensitivity import PARAMETERS
+from trawl_ros.solver.slow_mode import slow_mode
 
 DIFFERENCE = 1e-4
 """Step of the differences: of a coefficient's std, of a metre, of a metre per second."""
@@ -68,7 +69,8 @@ class Differences(Counting):
             moved = at.copy()
             moved[index] += step
             jacobian[:, index] = (self._solve(moved, found).observables.array() - values) / step
-        return Prediction(values, jacobian, found)
+        model = self.model.with_coefficients(at[:-3])
+        return Prediction(values, jacobian, slow_mode(model, found).shape, found)
 
     def _solve(self, at: np.ndarray, start: Equilibrium | None) -> Equilibrium:
         self.solves += 1

@@ -2,7 +2,7 @@
 
 Four kinds of error stand between a reading and the model: those of the single reading (scatter,
 and what changes from one steady state to the next), those of the window's measured warp
-lengths and speed, calibration, which is wrong alike throughout a tow, and the model's own, alike
+lengths and speed and of a gear not quite at rest, calibration, which is wrong alike throughout a tow, and the model's own, alike
 in all tows.
 """
 
@@ -44,10 +44,14 @@ class Scheme:
         rest stays through the tow.
     model_error
         Factor on the model's own errors; 0 is a model taken to be exact.
+    unsettled
+        Std, as a part of the net's depth, of what is still to come of the gear's slowest motion
+        in a window that is steady to the eye.
     """
 
     state_share: float = 0.3
     model_error: float = 1.0
+    unsettled: float = 0.05
 
     @property
     def tow_share(self) -> float:
@@ -91,8 +95,8 @@ class TowErrors:
     numbers : (n, k) array
         How many independent readings each stands for: all windows of a state share what
         changes with the state.
-    inputs : (n, k, 3) array
-        What one std in warp lengths and speed of this window does.
+    inputs : (n, k, 4) array
+        What one std in warp lengths, speed and rest of this window does.
     calibration : (n, k, p) array
         What one std of each of `TERMS` does.
     model : (n, k, m) array
@@ -162,12 +166,13 @@ def _of_one_tow(
     input_std = np.array(
         [[_own_std(part, name, in_state, scheme) for name in INPUTS] for part in parts]
     )
+    slow = np.array([_unsettled(part, in_state, scheme) for part in parts])
     return TowErrors(
         rows=np.array(rows),
         present=present,
         noise=own,
         numbers=present * alone**2 / own**2,
-        inputs=by_inputs * input_std[:, None, :],
+        inputs=np.concatenate((by_inputs * input_std[:, None, :], slow[:, :, None]), axis=2),
         calibration=np.array([_calibration(part, scheme) for part in parts]),
         model=np.array([_model(part, scheme) for part in parts]),
     )
@@ -180,6 +185,13 @@ def _own_std(part: Linearised, name: str, in_state: Mapping[int, int], scheme: S
     # All windows of a state share what changes with it, so their number must not wear it down.
     changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
     return float(np.sqrt(window.noise[name] ** 2 + changing))
+
+
+def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> np.ndarray:
+    depth = part.window.means.get('net_depth', 0.0)
+    # The windows of one state come to rest together.
+    size = scheme.unsettled * abs(depth) * np.sqrt(in_state[part.window.state])
+    return spread(part, size * part.slow)
 
 
 def _calibration(part: Linearised, scheme: Scheme) -> np.ndarray:

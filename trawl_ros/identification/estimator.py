@@ -216,7 +216,7 @@ class Estimator:
         for iteration in range(1, limit + 1):
             step = self._step(self.options.relinearise_final)
             if step.obstacle:
-                if step.gain > NEGLIGIBLE_GAIN:
+                if step.gain > NEGLIGIBLE_GAIN and step.size >= self.options.tolerance:
                     return False, f'{step.obstacle}, {step.size:.2g} std from rest'
                 return True, f'after {iteration} iterations no step can lower the cost noticeably'
             before = np.array(self._fit.scales)

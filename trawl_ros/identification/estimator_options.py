@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 from trawl_ros.errors import TrawlError
 
-MAY_BE_ZERO = ('prior_weight', 'state_share', 'model_error')
+MAY_BE_ZERO = ('prior_weight', 'state_share', 'model_error', 'unsettled')
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class EstimatorOptions:
     alike_readings
         How many imagined readings of each channel group speak for the noise being wrong by the
         same factor in all of them.
-    state_share, model_error
+    state_share, model_error, unsettled
         How errors are divided, as in `trawl_ros.identification.error_terms.Scheme`.
     iterations_per_window, iterations_final
         Gauss–Newton steps at most after each window and at the end.
@@ -47,6 +47,7 @@ class EstimatorOptions:
     alike_readings: float = 12.0
     state_share: float = 0.3
     model_error: float = 1.0
+    unsettled: float = 0.05
     iterations_per_window: int = 3
     iterations_final: int = 25
     halvings: int = 6

@@ -46,7 +46,8 @@ class Fit:
     @cached_property
     def errors(self) -> tuple[TowErrors, ...]:
         """What can be wrong with the readings, tow by tow."""
-        scheme = Scheme(self.options.state_share, self.options.model_error)
+        options = self.options
+        scheme = Scheme(options.state_share, options.model_error, options.unsettled)
         return tow_errors(self.windows, scheme)
 
     @cached_property

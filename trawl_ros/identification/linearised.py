@@ -27,6 +27,7 @@ class Linearised:
     values: np.ndarray
     by_coefficients: np.ndarray
     by_inputs: np.ndarray
+    slow: np.ndarray
     state: Any
 
     def predicted(self, coefficients: np.ndarray) -> np.ndarray:
@@ -71,6 +72,7 @@ def linearise(
             values=prediction.values[rows],
             by_coefficients=jacobian[:, :-3],
             by_inputs=jacobian[:, -3:],
+            slow=prediction.slow[rows],
             state=prediction.state,
         )
     raise failure or NoSteadyState('no start was given to look for a steady state from')

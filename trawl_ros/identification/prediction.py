@@ -19,6 +19,11 @@ class Prediction(Protocol):
         ...
 
     @property
+    def slow(self) -> np.ndarray:
+        """What each observable (n,) shows of the gear's coming to rest, per m of net depth."""
+        ...
+
+    @property
     def state(self) -> Any:
         """Where a near-by solution may start from."""
         ...

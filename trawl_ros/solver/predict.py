@@ -8,16 +8,19 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
+from trawl_ros.solver.slow_mode import slow_mode
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """``values`` (n_observables,) and ``jacobian`` (n_observables, 15) by `PARAMETERS`;
-    ``state`` is what the next prediction nearby may start from.
+    """``values`` (n_observables,) and ``jacobian`` (n_observables, 15) by `PARAMETERS`; ``slow``
+    (n_observables,) is how the gear comes to rest, per metre of net depth; ``state`` is what the
+    next prediction nearby may start from.
     """
 
     values: np.ndarray
     jacobian: np.ndarray
+    slow: np.ndarray
     state: Equilibrium
 
 
@@ -62,6 +65,7 @@ class Predictor:
         model = self.model.with_coefficients(coefficients)
         point = OperatingPoint(port_length, starboard_length, speed)
         found = find_equilibrium(model, point, start)
-        answer = Prediction(found.observables.array(), sensitivities(model, found), found)
+        values, jacobian = found.observables.array(), sensitivities(model, found)
+        answer = Prediction(values, jacobian, slow_mode(model, found).shape, found)
         self._last = question, answer
         return answer

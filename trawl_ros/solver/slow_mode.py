@@ -1,0 +1,73 @@
+"""How a gear comes to rest: the slowest of its motions, seen by the observables.
+
+After a change of warp length or speed the gear sinks or rises for minutes, doors and net alike,
+while tension and spread have long settled. What is still to come of that in a window is one
+amplitude times one shape.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
+
+from trawl_ros.model.assembly import linearised, mass
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import STEP
+from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.factor import factorised
+
+SHIFT = 1e-3
+"""Point (1/s) around which eigenvalues are sought."""
+
+MODES = 4
+NET, PORT, STARBOARD = map(
+    OBSERVABLES.index, ('net_depth', 'port_door_depth', 'starboard_door_depth')
+)
+LOPSIDED = 0.2
+"""Motions in which the doors' depths differ by more than this part of the net's do not come of
+warp length and speed."""
+
+
+@dataclass(frozen=True)
+class SlowMode:
+    """Its decay time (s) to 1/e and what each observable shows per metre of net depth (SI).
+
+    Where a gear has none that moves the net, the time is 0 and so is the shape.
+    """
+
+    decay_s: float
+    shape: np.ndarray
+
+
+def slow_mode(model: GearModel, found: Equilibrium) -> SlowMode:
+    """Find the slowest symmetric motion of M ẍ + C ẋ + K x = 0 by shift and invert."""
+    here = linearised(model, found.state, found.tow)
+    inertia = mass(model, found.state, found.tow)
+    m, c = model.pattern.matrix(inertia), model.pattern.matrix(here.damping)
+    n = model.dof
+    data = SHIFT**2 * inertia + SHIFT * here.damping + here.stiffness
+    solve = factorised(model.pattern, data).solve
+
+    def apply(y: np.ndarray) -> np.ndarray:
+        x, v = y[:n], y[n:]
+        new = -solve(m @ (SHIFT * x + v) + c @ x)
+        return np.concatenate([new, SHIFT * new + x])
+
+    operator = LinearOperator((2 * n, 2 * n), matvec=apply, dtype=float)
+    start = np.concatenate([np.ones(n), np.zeros(n)])
+    try:
+        values, vectors = eigs(operator, MODES, which='LM', v0=start, tol=1e-4)
+    except ArpackNoConvergence as partial:
+        values, vectors = partial.eigenvalues, partial.eigenvectors
+    best = SlowMode(0.0, np.zeros(len(OBSERVABLES)))
+    for value, vector in zip(values, vectors.T, strict=True):
+        rate = SHIFT + 1.0 / value
+        if abs(rate.imag) > 1e-6 * abs(rate) or rate.real >= 0.0:
+            continue
+        along = found.state.moved(1j * STEP * vector[:n].real)
+        shape = observe(model, along, found.tow).array().imag / STEP
+        lopsided = abs(shape[PORT] - shape[STARBOARD]) > LOPSIDED * abs(shape[NET])
+        if not lopsided and shape[NET] != 0.0 and -1.0 / rate.real > best.decay_s:
+            best = SlowMode(float(-1.0 / rate.real), shape / shape[NET])
+    return best
