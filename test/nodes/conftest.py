@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -135,3 +136,80 @@ def scenario_path(gear_path: Path) -> Path:
     path = gear_path.parent / 'short.yaml'
     path.write_text(SCENARIO)
     return path
+
+
+@pytest.fixture(scope='session')
+def estimate_listener():
+    """Give the class of a node that looks at what the identification says."""
+    from trawl_ros.messages.diagnostics import read_statuses
+    from trawl_ros.messages.estimates import read_covariance, read_estimate, read_innovations
+    from trawl_ros.nodes.node import TrawlNode
+    from trawl_ros.nodes.qos import CONSUMER, LATCHED
+
+    class EstimateListener(TrawlNode):
+        def __init__(self, name='listener', **kwargs):
+            super().__init__(name, **kwargs)
+            self.estimates = []
+            self.covariances = []
+            self.summaries = []
+            self.innovations = []
+            self.reports = {}
+            for topic, read, found, profile in (
+                ('estimate', read_estimate, self.estimates, LATCHED),
+                ('covariance', read_covariance, self.covariances, LATCHED),
+                ('status', read_statuses, self.summaries, LATCHED),
+                ('innovation', read_innovations, self.innovations, CONSUMER),
+            ):
+                self.listen(f'identification/{topic}', self._keeper(read, found), profile)
+            self.listen('/diagnostics', self._hear, CONSUMER)
+
+        @staticmethod
+        def _keeper(read, found):
+            return lambda message: found.append(read(message))
+
+        def _hear(self, message):
+            self.reports.update({status.name: status for status in read_statuses(message)})
+
+        def report(self, subsystem='estimate'):
+            return self.reports.get(f'/trawl/identification_node: {subsystem}')
+
+        @property
+        def status(self):
+            """The newest statuses by the last word of their names."""
+            newest = self.summaries[-1] if self.summaries else ()
+            return {status.name.split(': ')[1]: status for status in newest}
+
+    return EstimateListener
+
+
+@pytest.fixture(scope='session')
+def steady_samples(steady_tow):
+    """Give a function that makes the samples of steady legs, in which every channel speaks.
+
+    A channel that never does is waited for, and windows then come in bunches.
+    """
+    from dataclasses import replace
+
+    from trawl_ros.instruments.samples import HeadingSample, RangeSample, VelocitySample
+
+    second = 1_000_000_000
+
+    def samples(start: int, leg_s: int, **kwargs: int) -> list:
+        found = []
+        for sample in steady_tow.samples(start=start, leg_s=leg_s, **kwargs):
+            if isinstance(sample, VelocitySample):
+                found.append(replace(sample, yaw_rate=0.0))
+                found.append(HeadingSample(sample.stamp, 0.5, 0.01))
+                # A current from ahead, by which a log and GPS are told apart.
+                ahead = np.array([np.cos(0.5), np.sin(0.5), 0.0])
+                over_ground = (sample.velocity[0] - 0.3) * ahead
+                nan = float('nan')
+                found.append(VelocitySample(sample.stamp, 'ground', over_ground, nan))
+                if (sample.stamp - start) % (10 * second) == 0:
+                    height = RangeSample(sample.stamp, 'opening_height', 40.0, 1.0, 1.0, 300.0)
+                    found.append(height)
+            else:
+                found.append(sample)
+        return found
+
+    return samples

@@ -18,20 +18,15 @@ from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
 from trawl_ros.instruments.surroundings import Surroundings  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
-from trawl_ros.messages.diagnostics import ERROR, WARN, read_statuses  # noqa: E402
+from trawl_ros.messages.diagnostics import ERROR, WARN  # noqa: E402
 from trawl_ros.messages.estimates import (  # noqa: E402
     COEFFICIENTS,
-    read_covariance,
-    read_estimate,
-    read_innovations,
 )
 from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER, LATCHED  # noqa: E402
 from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -44,30 +39,6 @@ HAUL_MAPPING = ROOT / 'config/logs/door_test_haul_log.yaml'
 SETTLE_S, WINDOW_S = 10.0, 20.0
 LENGTH_S = 46
 """One window's worth of steady towing, and as much more as late readings may take."""
-
-
-class Listener(TrawlNode):
-    """Whoever looks at estimates."""
-
-    def __init__(self, name='listener', **kwargs):
-        super().__init__(name, **kwargs)
-        self.estimates = []
-        self.covariances = []
-        self.summaries = []
-        self.innovations = []
-        self.reports = {}
-        self.listen('identification/estimate', self.estimates.append, LATCHED)
-        self.listen('identification/covariance', self.covariances.append, LATCHED)
-        self.listen('identification/status', self.summaries.append, LATCHED)
-        self.listen('identification/innovation', self.innovations.append, CONSUMER)
-        self.listen('/diagnostics', self._hear, CONSUMER)
-
-    def _hear(self, message):
-        for status in read_statuses(message):
-            self.reports[status.name] = status
-
-    def report(self):
-        return self.reports.get('/trawl/identification_node: estimate')
 
 
 @pytest.fixture(scope='module')
@@ -88,7 +59,7 @@ def steady_bag(model, tmp_path_factory):
 
 
 @pytest.fixture(scope='module')
-def session(open_graph, steady_bag, gear_path, tmp_path_factory):
+def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_factory):
     """One identification from the first sample to the report, looked at on the way."""
 
     class Session:
@@ -103,15 +74,18 @@ def session(open_graph, steady_bag, gear_path, tmp_path_factory):
             window_s=WINDOW_S,
             output=str(Session.output),
         )
-        listener = graph.add(Listener)
+        listener = graph.add(estimate_listener)
         graph.until(lambda: listener.report() is not None)
         Session.before = listener.report()
         follower = ['identification_node']
         player = graph.add(BagPlayer, bag=str(steady_bag), rate=0.0, wait_for=follower)
         graph.until(lambda: player.exit_code is not None)
         graph.until(lambda: listener.innovations)
+        graph.until(lambda: node._worker.idle)
         graph.settle()
-        late = graph.add(partial(Listener, 'late'))
+        Session.first_status = listener.status
+        Session.before_finish = listener.estimates[-1]
+        late = graph.add(partial(estimate_listener, 'late'))
         graph.until(lambda: late.estimates and late.covariances and late.summaries)
         Session.listener, Session.late = listener, late
         Session.answer = graph.call(listener, 'identification/finish')
@@ -123,7 +97,7 @@ def session(open_graph, steady_bag, gear_path, tmp_path_factory):
         graph.until(lambda: len(listener.innovations) > 1)
         graph.settle()
         Session.resets_after = node._resets
-        Session.last_status = read_statuses(listener.summaries[-1])[0]
+        Session.last_status = listener.status['coefficients']
     return Session
 
 
@@ -133,25 +107,24 @@ def test_before_any_sample_it_says_what_is_needed(session):
 
 
 def test_a_window_brings_estimate_covariance_status_and_innovation(session):
-    values = read_estimate(session.listener.estimates[0])
-    covariance = read_covariance(session.listener.covariances[0])
+    values = session.listener.estimates[0]
+    covariance = session.listener.covariances[0]
     assert values.shape == (12,)
     np.testing.assert_allclose(covariance, covariance.T)
     assert np.all(np.linalg.eigvalsh(covariance) > 0.0)
-    (status,) = read_statuses(session.listener.summaries[0])
+    status = session.first_status['coefficients']
     assert status.values['windows'] == '1'
     for name, value in zip(COEFFICIENTS, values, strict=True):
         assert float(status.values[name]) == pytest.approx(value, rel=1e-6)
         low, high = (float(status.values[f'{name} {end}']) for end in ('low', 'high'))
         assert low <= value <= high
-    channels = {item.channel for item in read_innovations(session.listener.innovations[0])}
+    channels = {item.channel for item in session.listener.innovations[0]}
     assert {'door_spread', 'net_depth', 'port_tension'} <= channels
 
 
 def test_who_comes_late_gets_the_latest_estimate(session):
     assert len(session.late.estimates) >= 1
-    first = read_estimate(session.late.estimates[0])
-    np.testing.assert_array_equal(first, read_estimate(session.listener.estimates[0]))
+    np.testing.assert_array_equal(session.late.estimates[0], session.before_finish)
 
 
 def test_finishing_writes_the_report(session):
@@ -174,14 +147,16 @@ def test_results_of_an_earlier_run_are_not_written_over(open_graph, tmp_path):
     assert (tmp_path / 'identification.json').read_text() == '{}'
 
 
-def test_measurements_at_sea_without_speed_and_spread_are_not_enough(open_graph, tmp_path):
+def test_measurements_at_sea_without_speed_and_spread_are_not_enough(
+    open_graph, estimate_listener, tmp_path
+):
     if not HAUL_LOG.exists():
         pytest.skip(f'the measured log is not here: {HAUL_LOG.name}')
     bag = tmp_path / 'hauls'
     import_log(HAUL_LOG, HAUL_MAPPING, bag)
     with open_graph(DOMAIN + 1) as graph:
         graph.add(IdentificationNode)
-        listener = graph.add(Listener)
+        listener = graph.add(estimate_listener)
         player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['identification_node'])
         graph.until(lambda: player.exit_code is not None)
         assert player.exit_code == 0

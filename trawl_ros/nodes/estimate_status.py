@@ -1,14 +1,41 @@
-"""An estimate as statuses, for ``identification/status`` and ``/diagnostics``."""
-
-from collections.abc import Mapping
+"""An identification as statuses, for ``identification/status``."""
 
 from trawl_ros.identification.estimate import Estimate
+from trawl_ros.identification.estimate import Innovation as Innovations
 from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.estimates import Innovation
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.nodes.outcome import Outcome
 
 
-def estimate_status(estimate: Estimate, rejected: Mapping[str, int]) -> Status:
+def innovations_of(found: Innovations) -> list[Innovation]:
+    """Give the innovations of a window channel by channel."""
+    rows = zip(found.channels, found.values, found.stds, found.test_ratios, strict=True)
+    return [Innovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
+
+
+def identification_statuses(outcome: Outcome) -> list[Status]:
+    """Give what is estimated, what the channels say, and what is wrong with instruments.
+
+    The coefficients always come first; before there is an estimate, with the reason why.
+    """
+    statuses = [coefficients_status(outcome), channels_status(outcome)]
+    if outcome.estimate is not None:
+        statuses.append(instruments_status(outcome.estimate))
+    return statuses
+
+
+def coefficients_status(outcome: Outcome) -> Status:
     """Give the coefficients by name, with intervals, counts by reason, and how sure they are."""
+    name = 'identification: coefficients'
+    estimate = outcome.estimate
+    rejected = {f'rejected {reason}': str(count) for reason, count in outcome.rejected.items()}
+    rejected |= {f'found {reason}': sentence for reason, sentence in outcome.found.items()}
+    if estimate is None:
+        values = {'stamp': f'{outcome.stamp / 1e9:.3f}', 'revision': '0', 'windows': '0'}
+        why_not = outcome.why_not or ''
+        values |= {'converged': 'false', 'reason': why_not, **rejected}
+        return Status(name, WARN, why_not, values)
     values = {
         'stamp': f'{estimate.stamp / 1e9:.3f}',
         'revision': str(estimate.revision),
@@ -20,19 +47,55 @@ def estimate_status(estimate: Estimate, rejected: Mapping[str, int]) -> Status:
         'undetermined': '; '.join(map(str, estimate.undetermined)),
         'active bounds': ', '.join(estimate.active_bounds),
     }
-    for i, name in enumerate(COEFFICIENTS):
+    for i, coefficient in enumerate(COEFFICIENTS):
         values |= {
-            name: f'{estimate.values[i]:.9g}',
-            f'{name} std': f'{estimate.std[i]:.6g}',
-            f'{name} low': f'{estimate.low[i]:.6g}',
-            f'{name} high': f'{estimate.high[i]:.6g}',
-            f'{name} determined': str(estimate.determined[i]).lower(),
+            coefficient: f'{estimate.values[i]:.9g}',
+            f'{coefficient} std': f'{estimate.std[i]:.6g}',
+            f'{coefficient} low': f'{estimate.low[i]:.6g}',
+            f'{coefficient} high': f'{estimate.high[i]:.6g}',
+            f'{coefficient} shrink': f'{estimate.shrink[i]:.4f}',
+            f'{coefficient} determined': str(estimate.determined[i]).lower(),
         }
-    values |= {f'rejected {reason}': str(count) for reason, count in rejected.items()}
-    determined = sum(estimate.determined)
     level = OK if estimate.converged else WARN
     message = (
-        f'{determined} of {len(COEFFICIENTS)} coefficients determined by {estimate.windows} '
-        f'windows; {estimate.reason}'
+        f'{sum(estimate.determined)} of {len(COEFFICIENTS)} coefficients determined by '
+        f'{estimate.windows} windows; {estimate.reason}'
     )
-    return Status('identification: coefficients', level, message, values)
+    return Status(name, level, message, values | rejected)
+
+
+def channels_status(outcome: Outcome) -> Status:
+    """Give per channel its readings, and innovation and whiteness where it is compared."""
+    values = {}
+    for name, count in outcome.readings.items():
+        values[f'{name} arrived'] = str(count.arrived)
+        values[f'{name} accepted'] = str(count.accepted)
+    beyond = []
+    if outcome.estimate is not None and (found := outcome.estimate.innovation) is not None:
+        for seen in innovations_of(found):
+            values |= {
+                f'{seen.channel} innovation': f'{seen.innovation:.6g}',
+                f'{seen.channel} std': f'{seen.std:.6g}',
+                f'{seen.channel} test ratio': f'{seen.ratio:.4g}',
+            }
+            if seen.ratio > 1.0:
+                beyond.append(f'{seen.channel} is beyond what its stated errors allow')
+    for name, white in outcome.whiteness.items():
+        values[f'{name} whiteness'] = 'too few windows' if white is None else f'{white.p_value:.3g}'
+        if white is not None and not white.white:
+            beyond.append(f'the innovations of {name} are not white')
+    message = '; '.join(beyond) or 'innovations are within what stated errors allow'
+    return Status('identification: channels', WARN if beyond else OK, message, values)
+
+
+def instruments_status(estimate: Estimate) -> Status:
+    """Give what the fit says of the instruments: noise against what was stated, and biases."""
+    values = {
+        f'noise scale {group}': f'{scale:.4g}' for group, scale in estimate.noise_scales.items()
+    }
+    for found in estimate.tow_biases:
+        values[f'tow {found.tow + 1} {found.channel} bias'] = (
+            f'{found.value:.4g} ± {found.std:.2g} {found.unit}'
+        )
+    message = 'noise as found over noise as stated, and what each tow reads too high by'
+    return Status('identification: instruments', OK, message, values)

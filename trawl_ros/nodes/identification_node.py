@@ -9,29 +9,35 @@ from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from std_srvs.srv import Trigger
 
+from trawl_ros.errors import TrawlError
 from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
+from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.from_gear import identification_for
+from trawl_ros.identification.pipeline import Identification
+from trawl_ros.identification.report import report
+from trawl_ros.identification.saving import load_state, save_state
 from trawl_ros.identification.window_records import WindowOptions
+from trawl_ros.identification.writing import write_report
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
     COVARIANCE,
     ESTIMATE,
     INNOVATION,
-    Innovation,
     covariance_message,
     estimate_message,
     innovation_message,
 )
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.nodes.estimate_status import estimate_status
-from trawl_ros.nodes.identification_worker import IdentificationWorker, Outcome
+from trawl_ros.nodes.estimate_status import identification_statuses, innovations_of
+from trawl_ros.nodes.identification_worker import IdentificationWorker
 from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.outcome import Outcome
 from trawl_ros.nodes.parameters import Flag, Number, Text
 from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.rewinding import Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.scenario.scenario import true_coefficients
@@ -42,16 +48,13 @@ FINISH = 'identification/finish'
 SAMPLES = tuple(dict.fromkeys(channel.topic for channel in CHANNELS.values()))
 """Topics that feed a channel."""
 
-BACK_NS = 10 * SECOND
-"""A topic whose stamps go back by more than this plays anew; less is a message that is late."""
-
 
 class IdentificationNode(TrawlNode):
     """Finds steady windows in what the instruments report and refits the gear's model to them.
 
     After each accepted window it publishes the estimate, its covariance, a status and the
-    innovation. ``identification/finish``, or the signal to end, brings the estimate to rest
-    and writes the report.
+    innovation, and saves its state. ``identification/finish``, or the signal to end, brings
+    the estimate to rest and writes the report.
     """
 
     SPECS: ClassVar = (
@@ -61,6 +64,8 @@ class IdentificationNode(TrawlNode):
              'always do.'),
         Text('output', '', 'Folder for identification.json and figures, new or empty; none if '
              'empty.'),
+        Text('state', '', 'File that takes the state after each window, and from which a node that '
+             'is started anew goes on; none if empty.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
         Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Least time the gear is '
@@ -75,29 +80,23 @@ class IdentificationNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('identification_node', **kwargs)
         parameters = self.parameters
-        output, truth = parameters['output'], parameters['truth']
-        folder = empty_folder(Path(output), force=False) if output else None
-        identification = identification_for(
-            load_gear(parameters['gear']),
-            window_options=WindowOptions(
-                settle_s=parameters['settle_s'],
-                settle_passages=parameters['settle_passages'],
-                window_s=parameters['window_s'],
-            ),
-            estimator_options=None if parameters['prior'] else EstimatorOptions(prior_weight=0.0),
-        )
+        output, truth, state = parameters['output'], parameters['truth'], parameters['state']
+        self._folder = empty_folder(Path(output), force=False) if output else None
+        self._truth = true_coefficients(packaged(Path(truth), 'scenarios')) if truth else None
+        self._state = Path(state) if state else None
+        self._gear = load_gear(parameters['gear'])
+        identification = self._identification()
         for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
             self.advertise(topic)
         self._progress = Progress(self, idle=lambda: self._worker.idle)
-        self._newest: dict[str, int] = {}
         self._resets = 0
+        self._rewinding = Rewinding(identification.finder.newest('port_length'))
+        self._sent: Estimate | None = None
         self._worker = IdentificationWorker(
-            identification,
-            folder,
-            true_coefficients(packaged(Path(truth), 'scenarios')) if truth else None,
-            self._publish,
-            self._progress.done,
+            identification, self._publish, self._progress.done, self._save, self._report
         )
+        # Before any sample it publishes what it knows: nothing yet, or what it goes on from.
+        self._publish(self._worker.outcome)
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
         self._jump = self.get_clock().create_jump_callback(
@@ -111,6 +110,25 @@ class IdentificationNode(TrawlNode):
         self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
         self._worker.start()
 
+    def _identification(self) -> Identification:
+        parameters = self.parameters
+        fresh = identification_for(
+            self._gear,
+            window_options=WindowOptions(
+                settle_s=parameters['settle_s'],
+                settle_passages=parameters['settle_passages'],
+                window_s=parameters['window_s'],
+            ),
+            estimator_options=None if parameters['prior'] else EstimatorOptions(prior_weight=0.0),
+        )
+        if self._state is None or not self._state.exists():
+            return fresh
+        found = load_state(self._state, fresh, self._gear)
+        self.get_logger().info(
+            f'{self._state}: goes on after {len(found.estimator.windows)} windows'
+        )
+        return found
+
     def statuses(self) -> list[Status]:
         """What is estimated, or why nothing is."""
         self._worker.look()
@@ -121,14 +139,28 @@ class IdentificationNode(TrawlNode):
             'resets': str(self._resets),
             'windows': str(estimate.windows if estimate else 0),
             'revision': str(estimate.revision if estimate else 0),
-            **{f'rejected {reason}': str(count) for reason, count in outcome.rejected},
+            **{f'rejected {reason}': str(count) for reason, count in outcome.rejected.items()},
         }
+        return [self._about_estimate(outcome, values), *self._about_state(outcome)]
+
+    def _about_estimate(self, outcome: Outcome, values: dict[str, str]) -> Status:
+        level, message = OK, 'estimating'
         if outcome.finished is not None:
-            level = ERROR if outcome.failed else OK
-            return [Status('estimate', level, outcome.finished, values)]
-        if outcome.why_not is not None:
-            return [Status('estimate', WARN, outcome.why_not, values)]
-        return [Status('estimate', OK, 'estimating', values)]
+            level, message = ERROR if outcome.failed else OK, outcome.finished
+        elif trouble := outcome.troubles.get('estimating'):
+            level, message = ERROR, trouble
+        elif outcome.why_not is not None:
+            level, message = WARN, outcome.why_not
+        return Status('estimate', level, message, values)
+
+    def _about_state(self, outcome: Outcome) -> list[Status]:
+        if self._state is None:
+            return []
+        trouble = outcome.troubles.get('saving')
+        windows = str(outcome.estimate.windows if outcome.estimate else 0)
+        values = {'file': str(self._state), 'windows': windows}
+        message = trouble or 'saved after each window'
+        return [Status('state', ERROR if trouble else OK, message, values)]
 
     def finish_work(self) -> None:
         """Bring the estimate to rest, write the report, and end the thread."""
@@ -139,32 +171,46 @@ class IdentificationNode(TrawlNode):
 
     def _feeder(self, topic: str) -> Callable[[Any], None]:
         def feed(message: Any) -> None:
-            sample = to_sample(topic, message)
-            if sample.stamp < self._newest.get(topic, sample.stamp) - BACK_NS:
-                self._reset(f'stamps on {topic} went back')
-            self._newest[topic] = max(sample.stamp, self._newest.get(topic, sample.stamp))
-            self._worker.feed(sample)
+            anew, samples = self._rewinding.take(to_sample(topic, message))
+            if anew:
+                self._forget('stamps of the winch went back')
+            for sample in samples:
+                self._worker.feed(sample)
 
         return feed
 
     def _reset(self, reason: str) -> None:
-        self._newest.clear()
+        self._rewinding.forget()
+        self._forget(reason)
+
+    def _forget(self, reason: str) -> None:
         self._resets += 1
         self._worker.reset()
         self.get_logger().warning(f'{reason}; the estimate begins anew')
 
+    def _save(self, identification: Identification) -> None:
+        if self._state is not None:
+            save_state(self._state, identification, self._gear)
+
+    def _report(self, identification: Identification) -> str:
+        found = identification.estimate
+        if found is None:
+            raise TrawlError(identification.why_not() or 'nothing is estimated')
+        if self._folder is None:
+            return f'{found.windows} windows used; {found.reason}'
+        write_report(report(identification, self._truth), self._folder)
+        return f'{self._folder}: identification.json of {found.windows} windows'
+
     def _publish(self, outcome: Outcome) -> None:
         estimate = outcome.estimate
-        if estimate is None:
-            return
-        self.send(*estimate_message(estimate.values))
-        self.send(*covariance_message(estimate.covariance))
-        status = estimate_status(estimate, dict(outcome.rejected))
-        self.send(STATUS, diagnostic_array(estimate.stamp, [status]))
-        if (seen := estimate.innovation) is not None:
-            rows = zip(seen.channels, seen.values, seen.stds, seen.test_ratios, strict=True)
-            innovations = [Innovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
-            self.send(*innovation_message(estimate.stamp, innovations))
+        if estimate is not None and estimate is not self._sent:
+            self.send(*estimate_message(estimate.values))
+            self.send(*covariance_message(estimate.covariance))
+            if estimate.innovation is not None:
+                self.send(*innovation_message(estimate.stamp, innovations_of(estimate.innovation)))
+        self._sent = estimate
+        stamp = estimate.stamp if estimate else outcome.stamp
+        self.send(STATUS, diagnostic_array(stamp, identification_statuses(outcome)))
 
     async def _finish(self, request: Any, response: Any) -> Any:
         wish = self._worker.finish()

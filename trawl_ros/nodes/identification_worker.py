@@ -4,41 +4,24 @@ Only this thread ever touches the `Identification`. Work comes in through one qu
 what others may know of it goes out as immutable records.
 """
 
-from collections.abc import Callable, Generator
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, replace
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
-
-import numpy as np
+from traceback import format_exc
 
 from trawl_ros.errors import TrawlError
-from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.pipeline import Identification, WindowUsed
-from trawl_ros.identification.report import report
-from trawl_ros.identification.writing import write_report
+from trawl_ros.identification.whiteness import Whiteness
 from trawl_ros.instruments.samples import Sample
+from trawl_ros.nodes.outcome import Outcome, readings_of, whiteness_of
+from trawl_ros.nodes.rewinding import Reached
 
 QUIET_S = 0.5
 """A wish to finish is granted when no sample has come for this long."""
 
 POLL_S = 0.005
 """How long an executor is held up when it asks whether a wish is granted."""
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a step of the estimator has led to.
-
-    ``why_not`` says why there is no estimate yet; ``finished`` is the sentence with which a
-    finished identification ends, None while it goes on.
-    """
-
-    estimate: Estimate | None = None
-    rejected: tuple[tuple[str, int], ...] = ()
-    why_not: str | None = None
-    finished: str | None = None
-    failed: bool = False
 
 
 @dataclass(frozen=True)
@@ -84,38 +67,44 @@ class IdentificationWorker(Thread):
     ----------
     identification
         Nobody else may use it from now on.
-    output
-        Folder for the report; None for none.
-    truth
-        True coefficients (12,) where known, for the report.
-    estimated
-        Called, in this thread, after each accepted window and at the end.
+    told
+        Called with what is new: after each window, used or not, at the end, and after `look`
+        where counts have changed.
     dealt_with
-        Called, in this thread, with the newest stamp (ns) so far after each sample was used. A
-        sonar's reading is as old as its sweep is long, so stamps do not rise from one sample to
-        the next.
+        Called with the newest stamp (ns) so far after each sample was used. A sonar's reading is
+        as old as its sweep is long, so stamps do not rise from one sample to the next.
+    save
+        Called after each window, and before the estimate is brought to rest, to save the state.
+    report
+        Called at the end to write the report; gives the sentence with which all ends.
+
+    All of these are called in this thread.
     """
 
     def __init__(
         self,
         identification: Identification,
-        output: Path | None,
-        truth: np.ndarray | None,
-        estimated: Callable[[Outcome], None],
+        told: Callable[[Outcome], None],
         dealt_with: Callable[[int], None],
+        save: Callable[[Identification], None],
+        report: Callable[[Identification], str],
     ) -> None:
         super().__init__(name='identification', daemon=True)
         self._identification = identification
-        self._output = output
-        self._truth = truth
-        self._estimated = estimated
+        self._told = told
         self._dealt_with = dealt_with
+        self._save = save
+        self._report = report
         self._queue: SimpleQueue[Work] = SimpleQueue()
         self._wishes: list[Finish] = []
-        self._fed = 0
-        self._newest = 0
         self._handed_over = 0
         self._dealt = 0
+        self._fed = 0
+        self._reached = Reached(
+            max((event.window.end_ns for event in identification.course), default=0)
+        )
+        self._troubles: dict[str, str] = {}
+        self._whiteness: Mapping[str, Whiteness | None] = whiteness_of(identification)
         self.outcome = self._outcome()
 
     @property
@@ -167,58 +156,94 @@ class IdentificationWorker(Thread):
                 self._wishes.append(work)
             case _Reset():
                 self._identification.reset()
-                self._fed = 0
-                self._newest = 0
-                self.outcome = self._outcome()
+                self._fed, self._reached = 0, Reached()
+                self._troubles, self._whiteness = {}, {}
+                self._tell()
             case _Look():
-                if self.outcome.finished is None:
-                    self.outcome = self._outcome()
+                self._look()
             case _Stop():
                 pass
             case _:
-                self._fed += 1
-                for event in self._identification.feed(work):
-                    if isinstance(event, WindowUsed):
-                        self.outcome = self._outcome()
-                        self._estimated(self.outcome)
-                self._newest = max(work.stamp, self._newest)
+                self._attempt('estimating', lambda: self._use(work))
                 self._dealt += 1
-                self._dealt_with(self._newest)
+                self._dealt_with(self._reached.stamp)
+
+    def _look(self) -> None:
+        if self.outcome.finished is None:
+            before, self.outcome = self.outcome, self._outcome()
+            if self.outcome.rejected != before.rejected:
+                self._told(self.outcome)
+
+    def _use(self, sample: Sample) -> None:
+        self._fed += 1
+        events = self._identification.feed(sample)
+        self._reached.take(sample.stamp)
+        used = [event for event in events if isinstance(event, WindowUsed)]
+        if events:
+            self._whiteness = whiteness_of(self._identification)
+        # One sample may decide several windows, and each brings an estimate.
+        for event in used[:-1]:
+            self._told(replace(self._outcome(), estimate=event.estimate))
+        if events:
+            self._tell()
+        if used:
+            self._keep()
+
+    def _keep(self) -> None:
+        self._troubles.pop('saving', None)
+        self._attempt('saving', lambda: self._save(self._identification))
+
+    def _attempt(self, what: str, act: Callable[[], None]) -> None:
+        """Do something; what goes wrong is said, and the thread lives on."""
+        try:
+            act()
+        except TrawlError as reason:
+            self._troubles[what] = str(reason)
+        except Exception:
+            # Unsaid, it would end the thread: the node would look alive and estimate nothing.
+            self._troubles[what] = f'an error of the program; {format_exc()}'
+
+    def _tell(self, finished: str | None = None, failed: bool = False) -> None:
+        self.outcome = self._outcome(finished, failed)
+        self._told(self.outcome)
 
     def _grant(self) -> None:
         wishes, self._wishes = self._wishes, []
-        failed = False
         if self._fed:
-            self._identification.finish()
+            # Saved before: brought to rest it would go on otherwise than without an interruption.
+            self._keep()
             self._fed = 0
-            try:
-                sentence = self._report()
-            except TrawlError as reason:
-                sentence, failed = str(reason), True
-            self.outcome = self._outcome(sentence, failed)
-            if self.outcome.estimate is not None:
-                self._estimated(self.outcome)
+            sentence, failed = self._end()
+            self._tell(sentence, failed)
         elif self.outcome.finished is None:
             why_not = self._identification.why_not() or 'no samples were there to finish with'
             self.outcome = self._outcome(why_not, True)
         for wish in wishes:
             wish.grant(self.outcome)
 
-    def _report(self) -> str:
-        estimate = self._identification.estimate
-        if estimate is None:
-            raise TrawlError(self._identification.why_not() or 'nothing is estimated')
-        if self._output is None:
-            return f'{estimate.windows} windows used; {estimate.reason}'
-        write_report(report(self._identification, self._truth), self._output)
-        return f'{self._output}: identification.json of {estimate.windows} windows'
+    def _end(self) -> tuple[str, bool]:
+        sentences: list[str] = []
+
+        def end() -> None:
+            self._identification.finish()
+            self._whiteness = whiteness_of(self._identification)
+            sentences.append(self._report(self._identification))
+
+        self._troubles.pop('finishing', None)
+        self._attempt('finishing', end)
+        return (sentences[0], False) if sentences else (self._troubles.pop('finishing'), True)
 
     def _outcome(self, finished: str | None = None, failed: bool = False) -> Outcome:
         identification = self._identification
         return Outcome(
+            stamp=self._reached.stamp,
             estimate=identification.estimate,
-            rejected=tuple(identification.rejected.items()),
+            rejected=identification.rejected,
+            found=identification.found,
+            readings=readings_of(identification),
+            whiteness=self._whiteness,
             why_not=identification.why_not(),
+            troubles=dict(self._troubles),
             finished=finished,
             failed=failed,
         )
