@@ -22,10 +22,11 @@ from trawl_ros.identification.planning_search import MOST_VISITS, Designer, shor
 from trawl_ros.identification.planning_states import Explorer, Limits, Manoeuvre
 from trawl_ros.identification.planning_time import (
     Ability,
+    Timetable,
     arranged,
     holding_time,
-    legs_of,
     minutes_of,
+    rest_of,
     winch_time,
 )
 from trawl_ros.identification.planning_windows import imagined_windows
@@ -172,13 +173,32 @@ def test_the_winch_takes_as_long_as_the_simulated_one():
         assert winch_time(ABILITY, metres) == pytest.approx(seconds, abs=0.7)
 
 
-def test_warp_runs_out_at_a_speed_that_keeps_the_boards_up():
-    slow, longer = Manoeuvre(200.0, 200.0, 1.9), Manoeuvre(300.0, 300.0, 1.9)
-    options = WindowOptions()
-    out = legs_of([slow, longer], ABILITY, options)[1]
-    assert out.veering_speed == pytest.approx(2.3)
-    assert 60.0 * out.veering_minutes >= winch_time(ABILITY, 100.0) + 0.4 / 0.02
-    assert 60.0 * out.minutes >= holding_time(longer, options) + 0.4 / 0.02
-    back = legs_of([longer, slow], ABILITY, options)[1]
+def test_warp_runs_out_at_a_speed_that_keeps_the_boards_up(plan):
+    options, ability = WindowOptions(), plan.question.ability
+    timetable = Timetable(ability, options, plan.choice.candidates)
+    short, longer = Manoeuvre(200.0, 200.0, 2.1), Manoeuvre(500.0, 500.0, 2.1)
+    out = timetable.legs([short, longer])[1]
+    faster = ability.veering_speed - 2.1
+    assert faster == pytest.approx(min(0.4, 2.5 - 2.1))
+    assert out.veering_speed == pytest.approx(ability.veering_speed)
+    assert 60.0 * out.veering_minutes >= winch_time(ability, 300.0) + faster / 0.02
+    assert 60.0 * out.minutes >= holding_time(longer, options) + faster / 0.02
+    back = timetable.legs([longer, short])[1]
     assert back.veering_minutes == 0.0
+    assert 60.0 * back.minutes >= holding_time(short, options) + winch_time(ability, 300.0)
     assert minutes_of([out, back]) == out.minutes + out.veering_minutes + back.minutes
+
+
+def test_a_leg_is_held_until_the_net_sinks_slowly_enough(plan):
+    for candidate in plan.choice.candidates:
+        rest = rest_of(candidate, WindowOptions())
+        assert rest.time(0.0, 100.0) == 0.0
+        for change, moving in ((20.0, 0.0), (20.0, 300.0), (80.0, 700.0)):
+            seconds = rest.time(change, moving)
+            # Integrated: what is to come grows with the change and decays all the time.
+            left, step = 0.0 if moving else change, 0.5
+            for _ in np.arange(0.0, moving, step):
+                left += step * (change / moving - left / rest.decay)
+            left *= np.exp(-seconds / rest.decay)
+            drift = left * (1.0 - np.exp(-rest.window / rest.decay))
+            assert drift == pytest.approx(rest.drift, rel=0.01)

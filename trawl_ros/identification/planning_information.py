@@ -17,9 +17,6 @@ from trawl_ros.identification.error_terms import (
     GROUP_OF,
     GROUPS,
     TERMS,
-    Scheme,
-    spread,
-    tow_errors,
 )
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.fit import AS_STATED, Fit
@@ -49,12 +46,12 @@ def information_of(
     scales
         Factors on the stated noise, by group of channels.
     """
-    (errors,) = tow_errors(parts, Scheme(options.state_share, options.model_error))
-    jacobian = np.array([spread(part, part.by_coefficients * prior.std) for part in parts])
+    fit = Fit(tuple(parts), parts[0].at, tuple(scales), prior, options)
+    (errors,) = fit.errors
     std = np.where(errors.present, errors.noise * np.array(scales)[GROUP_OF], 1.0)
     variance = std[:, :, None] ** 2 * np.eye(std.shape[1])
     root = np.linalg.cholesky(variance + errors.inputs @ errors.inputs.transpose(0, 2, 1))
-    rows = np.concatenate((errors.calibration, errors.model, jacobian), axis=2)
+    rows = np.concatenate((errors.calibration, errors.model, fit.jacobian), axis=2)
     rows = np.linalg.solve(root, rows).reshape(-1, rows.shape[2])
     return rows.T @ rows
 

@@ -32,7 +32,7 @@ from trawl_ros.identification.planning_states import (
     Manoeuvre,
     Refused,
 )
-from trawl_ros.identification.planning_time import ability_of, legs_of, minutes_of
+from trawl_ros.identification.planning_time import Timetable, ability_of, minutes_of
 from trawl_ros.identification.planning_windows import imagined_windows
 from trawl_ros.identification.window_records import WindowOptions
 from trawl_ros.solver.predict import Predictor
@@ -162,12 +162,13 @@ class Adviser:
         question = _Question.of(fit, self._gear)
         before = shortfall(question.quantities(fit.knowledge.covariance))
         information = information_in(fit)
+        timetable = self._timetable()
         best, most = None, -np.inf
         for manoeuvre, candidate in sorted(self._known.items()):
             parts = expected_windows(fit, candidate, self._windows.max_windows_per_state)
             taught = information_of(parts, fit.prior, fit.options, fit.scales)
             after = shortfall(question.quantities(covariance_from(information + taught, fit.prior)))
-            rate = (before - after) / self._minutes(fit, manoeuvre)
+            rate = (before - after) / _minutes(timetable, fit, manoeuvre)
             if rate > most:
                 best, most = manoeuvre, rate
         return None if best is None else self.promise(fit, best)
@@ -189,17 +190,16 @@ class Adviser:
         then = replace(fit, windows=(*fit.windows, *parts)).knowledge.covariance
         return Advice(
             manoeuvre=manoeuvre,
-            minutes=self._minutes(fit, manoeuvre),
+            minutes=_minutes(self._timetable(), fit, manoeuvre),
             before=question.quantities(now),
             after=question.quantities(then),
             nats=float(0.5 * (np.linalg.slogdet(now)[1] - np.linalg.slogdet(then)[1])),
             looked_up=self.looked_up,
         )
 
-    def _minutes(self, fit: Fit, manoeuvre: Manoeuvre) -> float:
+    def _timetable(self) -> Timetable:
         ability = ability_of(self._gear, tuple(self._known))
-        legs = legs_of((_manoeuvre_of(fit), manoeuvre), ability, self._windows)
-        return minutes_of(legs[1:])
+        return Timetable(ability, self._windows, self._known.values())
 
     def _moved(self, before: np.ndarray, now: np.ndarray) -> bool:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)
@@ -233,6 +233,12 @@ def _noise_of(fit: Fit) -> Mapping[str, float]:
         for name in sorted(heard)
         if 2 * sum(name in window.noise for window in windows) >= len(windows)
     }
+
+
+def _minutes(timetable: Timetable, fit: Fit, manoeuvre: Manoeuvre) -> float:
+    """Time from a fit's newest window until those of a manoeuvre are taken."""
+    depth = fit.windows[-1].window.means['net_depth']
+    return minutes_of(timetable.legs((_manoeuvre_of(fit), manoeuvre), depth)[1:])
 
 
 def _manoeuvre_of(fit: Fit) -> Manoeuvre:

@@ -27,9 +27,10 @@ from trawl_ros.identification.planning_states import (
 from trawl_ros.identification.planning_time import (
     Ability,
     Leg,
+    Timetable,
     arranged,
-    legs_of,
     minutes_of,
+    rest_of,
 )
 from trawl_ros.identification.planning_windows import TABLE_NOISE, imagined_windows
 from trawl_ros.identification.prior import BoardPrior
@@ -96,6 +97,7 @@ class Designer:
         self.question = question
         self.candidates = tuple(candidates)
         self.noise = noise
+        self.timetable = Timetable(question.ability, question.windows, self.candidates)
         self._number = {one.manoeuvre: index for index, one in enumerate(self.candidates)}
         self._before = information_before(question.estimator)
         self._taught = [
@@ -110,7 +112,7 @@ class Designer:
         ordered = arranged(manoeuvres)
         if ordered is None:
             return None
-        legs = legs_of(ordered, self.question.ability, self.question.windows)
+        legs = self.timetable.legs(ordered)
         return legs if minutes_of(legs) <= self.question.minutes else None
 
     def _windows(self, candidate: Candidate, state: int) -> tuple[Linearised, ...]:
@@ -121,6 +123,7 @@ class Designer:
             state=state,
             number=question.windows.max_windows_per_state,
             noise=self.noise,
+            to_come=rest_of(candidate, question.windows).to_come(question.windows),
         )
 
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> np.ndarray:

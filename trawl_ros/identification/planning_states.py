@@ -22,6 +22,9 @@ from trawl_ros.solver.predict import Predictor
 PLANNED = tuple(name for name in MEASURED if name in OBSERVABLES)
 """Channels that a planned window is imagined to have: all that the model predicts."""
 
+DEPTHS = tuple(name for name in PLANNED if name.endswith('depth'))
+"""Of these, those that come to rest last."""
+
 
 @dataclass(frozen=True, order=True)
 class Manoeuvre:
@@ -77,10 +80,13 @@ class Limits:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A manoeuvre the gear can be towed in, and the model there."""
+    """A manoeuvre the gear can be towed in, the model there, and how slowly (s, to 1/e) its
+    slowest motion comes to rest.
+    """
 
     manoeuvre: Manoeuvre
     part: Linearised
+    decay: float
 
 
 @dataclass(frozen=True)
@@ -183,12 +189,12 @@ class Explorer:
             part = linearise(
                 self.predictor, OBSERVABLES, _asked(manoeuvre), self.coefficients, (start,)
             )
-            require_usable(model, part.state)
+            steady = require_usable(model, part.state)
         except NoSteadyState as reason:
             return Refused(manoeuvre, reason.reason)
         if trouble := self._trouble(model, part):
             return Refused(manoeuvre, trouble)
-        return Candidate(manoeuvre, part)
+        return Candidate(manoeuvre, part, steady.stability.settling_time)
 
     def _trouble(self, model: GearModel, part: Linearised) -> str:
         limits, seen = self.limits, part.state.observables

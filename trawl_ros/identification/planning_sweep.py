@@ -8,7 +8,7 @@ from trawl_ros.identification.laws import LawQuantities
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.identification.planning_search import Designer
 from trawl_ros.identification.planning_states import Manoeuvre
-from trawl_ros.identification.planning_time import Leg, legs_of, minutes_of
+from trawl_ros.identification.planning_time import Leg, minutes_of
 from trawl_ros.identification.planning_windows import TABLE_NOISE
 
 
@@ -54,7 +54,6 @@ def best_sweep(designer: Designer) -> tuple[Leg, ...]:
 
 
 def _sweep(designer: Designer, speed: float) -> tuple[Leg, ...]:
-    question = designer.question
     out = sorted(
         one.manoeuvre
         for one in designer.candidates
@@ -66,8 +65,8 @@ def _sweep(designer: Designer, speed: float) -> tuple[Leg, ...]:
         # One length alone is one state, however long it is held.
         if done and manoeuvre == done[-1]:
             return legs
-        longer = legs_of([*done, manoeuvre], question.ability, question.windows)
-        if minutes_of(longer) > question.minutes:
+        longer = designer.timetable.legs([*done, manoeuvre])
+        if minutes_of(longer) > designer.question.minutes:
             return legs
         legs, done = longer, [*done, manoeuvre]
     return legs

@@ -7,15 +7,20 @@ boards lose their lift.
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.operation import Block, Operation
-from trawl_ros.identification.planning_states import Manoeuvre
+from trawl_ros.identification.planning_states import DEPTHS, Candidate, Manoeuvre
 from trawl_ros.identification.window_records import WindowOptions
+
+STEADY_SHARE = 0.25
+"""Part of the drift that a window may have which a planned one does have: readings' noise makes
+it seem more or less."""
 
 STEP_MINUTES = 0.5
 """To this a leg is rounded up: what one can say to a bridge."""
@@ -81,18 +86,75 @@ def winch_time(ability: Ability, metres: float) -> float:
     return metres / speed + speed / most
 
 
+@dataclass(frozen=True)
+class Rest:
+    """How a gear comes to rest in a steady state.
+
+    Tension and spread settle soon; net and doors sink or rise together for minutes. ``net_depth``
+    (m) of the net, ``decay`` (s) of its slowest motion to 1/e, and the ``drift`` (m) in one window
+    of ``window`` (s) at which that counts as steady.
+    """
+
+    net_depth: float
+    decay: float
+    drift: float
+    window: float
+
+    def time(self, change: float, moving: float) -> float:
+        """Time (s) until the net drifts by no more than that.
+
+        Parameters
+        ----------
+        change
+            By how much (m) the net's depth is to change.
+        moving
+            Time (s) that ship and winches take for it; in that the gear follows already.
+        """
+        shrunk = self.decay / moving * -math.expm1(-moving / self.decay) if moving else 1.0
+        first = change * shrunk * -math.expm1(-self.window / self.decay)
+        return self.decay * math.log(max(first / self.drift, 1.0))
+
+    def to_come(self, options: WindowOptions) -> float:
+        """What a window of that drift is taken to be away from rest, m of depth."""
+        return self.drift * options.slow_s / self.window
+
+
+def rest_of(candidate: Candidate, options: WindowOptions) -> Rest:
+    """How the gear comes to rest where a candidate is, by what windows ask of it."""
+    part = candidate.part
+    depths = {
+        name: float(value)
+        for name, value in zip(part.channels, part.values, strict=True)
+        if name in DEPTHS
+    }
+    steady = min(
+        max(options.drift_fraction * depth, CHANNELS[name].bias) for name, depth in depths.items()
+    )
+    return Rest(depths['net_depth'], candidate.decay, STEADY_SHARE * steady, options.window_s)
+
+
 @cache
-def holding_time(manoeuvre: Manoeuvre, options: WindowOptions) -> float:
+def holding_time(manoeuvre: Manoeuvre, options: WindowOptions, rest: float = 0.0) -> float:
     """Time (s) for which a steady state is held until all its windows are taken.
 
     Windows lie on a grid of blocks: one block more, since the change ends within one.
+
+    Parameters
+    ----------
+    manoeuvre
+        Warp lengths and speed.
+    options
+        When a window is steady.
+    rest
+        Time (s) until the gear drifts no more than a window may.
     """
     operation = Operation(options)
     inputs = (manoeuvre.port_length, manoeuvre.starboard_length, manoeuvre.speed)
     for index in range(operation.window_blocks):
         operation.add(Block(index, inputs, None, None))
     windows = options.max_windows_per_state * operation.window_blocks
-    return (operation.settle_blocks + windows + 1) * options.block_s
+    settle = max(operation.settle_blocks, math.ceil(rest / options.block_s))
+    return (settle + windows + 1) * options.block_s
 
 
 def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
@@ -116,37 +178,83 @@ def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
     return tuple(ordered)
 
 
-def legs_of(
-    manoeuvres: Sequence[Manoeuvre], ability: Ability, options: WindowOptions
-) -> tuple[Leg, ...]:
-    """Give the legs of manoeuvres in the order in which they stand; the trial starts in the
-    first.
+class Timetable:
+    """Says how long manoeuvres take one after the other.
+
+    Parameters
+    ----------
+    ability
+        Of ship and winches.
+    options
+        When a window is steady.
+    candidates
+        All manoeuvres that are asked for, but for the first.
     """
-    if not manoeuvres:
-        return ()
-    legs = [Leg(manoeuvres[0], _rounded(holding_time(manoeuvres[0], options)))]
-    for before, after in pairwise(manoeuvres):
-        legs.append(_leg(before, after, ability, options))
-    return tuple(legs)
 
+    def __init__(
+        self, ability: Ability, options: WindowOptions, candidates: Iterable[Candidate]
+    ) -> None:
+        self.ability = ability
+        self.options = options
+        self._rests = {one.manoeuvre: rest_of(one, options) for one in candidates}
 
-def _leg(before: Manoeuvre, after: Manoeuvre, ability: Ability, options: WindowOptions) -> Leg:
-    out = max(
-        after.port_length - before.port_length, after.starboard_length - before.starboard_length
-    )
-    change = max(
-        abs(after.port_length - before.port_length),
-        abs(after.starboard_length - before.starboard_length),
-    )
-    moving = winch_time(ability, change)
-    hold = holding_time(after, options)
-    speed = ability.veering_speed
-    if out <= 0.0 or after.speed >= speed:
-        slowing = abs(after.speed - before.speed) / ability.ship_acceleration
-        return Leg(after, _rounded(max(moving, slowing) + hold))
-    running = _rounded(moving + max(speed - before.speed, 0.0) / ability.ship_acceleration)
-    slowing = (max(speed, before.speed) - after.speed) / ability.ship_acceleration
-    return Leg(after, _rounded(slowing + hold), max(speed, before.speed), running)
+    def legs(
+        self, manoeuvres: Sequence[Manoeuvre], first_depth: float | None = None
+    ) -> tuple[Leg, ...]:
+        """Give the legs of manoeuvres in the order in which they stand.
+
+        Parameters
+        ----------
+        manoeuvres
+            The gear is at rest in the first when it begins.
+        first_depth
+            Depth (m) of the net in the first, if that is not among the candidates.
+        """
+        if not manoeuvres:
+            return ()
+        first = manoeuvres[0]
+        depth = self._rests[first].net_depth if first_depth is None else first_depth
+        legs = [Leg(first, _rounded(holding_time(first, self.options)))]
+        for before, after in pairwise(manoeuvres):
+            legs.append(self._leg(before, after, depth))
+            depth = self._rests[after].net_depth
+        return tuple(legs)
+
+    def _leg(self, before: Manoeuvre, after: Manoeuvre, depth: float) -> Leg:
+        ability, rest = self.ability, self._rests[after]
+        out = max(
+            after.port_length - before.port_length,
+            after.starboard_length - before.starboard_length,
+        )
+        moving = winch_time(
+            ability,
+            max(
+                out,
+                abs(after.port_length - before.port_length),
+                abs(after.starboard_length - before.starboard_length),
+            ),
+        )
+        change = abs(rest.net_depth - depth)
+        speed = max(ability.veering_speed, before.speed)
+        if out <= 0.0 or after.speed >= ability.veering_speed:
+            moving = max(moving, abs(after.speed - before.speed) / ability.ship_acceleration)
+            hold = holding_time(after, self.options, rest.time(change, moving))
+            return Leg(after, _rounded(moving + hold))
+        running = _rounded(moving + (speed - before.speed) / ability.ship_acceleration)
+        # Slowed down at the end, the gear sinks from where it was towed on the way.
+        change = max(change, abs(rest.net_depth - self._depth_at(after, speed)))
+        slowing = (speed - after.speed) / ability.ship_acceleration
+        hold = holding_time(after, self.options, rest.time(change, slowing))
+        return Leg(after, _rounded(slowing + hold), speed, running)
+
+    def _depth_at(self, manoeuvre: Manoeuvre, speed: float) -> float:
+        """Depth (m) of the net at these lengths and about this speed."""
+        there = replace(manoeuvre, speed=speed)
+        near = min(
+            (one for one in self._rests if replace(one, speed=speed) == there),
+            key=lambda one: abs(one.speed - speed),
+        )
+        return self._rests[near].net_depth
 
 
 def minutes_of(legs: Sequence[Leg]) -> float:

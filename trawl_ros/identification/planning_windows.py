@@ -1,5 +1,6 @@
 """The windows that a manoeuvre would give."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -8,7 +9,7 @@ import numpy as np
 
 from trawl_ros.identification.channels import CHANNELS, INPUTS
 from trawl_ros.identification.linearised import Linearised
-from trawl_ros.identification.planning_states import PLANNED, Candidate
+from trawl_ros.identification.planning_states import DEPTHS, PLANNED, Candidate
 from trawl_ros.identification.window_records import SteadyWindow
 
 WINDOW_S = 60.0
@@ -32,6 +33,7 @@ def imagined_windows(
     number: int,
     tow: int = 0,
     noise: Mapping[str, float] = TABLE_NOISE,
+    to_come: float = 0.0,
 ) -> tuple[Linearised, ...]:
     """What windows in a steady state would show if all were as it is believed to be.
 
@@ -47,6 +49,8 @@ def imagined_windows(
         How many windows.
     noise
         Standard error of each channel's mean; channels that are not in it are not heard.
+    to_come
+        By how much (m) depths are still to change; it counts as noise of each.
     """
     part = candidate.part
     rows = [row for row, name in enumerate(part.channels) if name in noise]
@@ -57,6 +61,7 @@ def imagined_windows(
     bias = {name: CHANNELS[name].bias_std(value) for name, value in means.items()}
     counts = dict.fromkeys(means, 1)
     chosen = {name: noise[name] for name in means}
+    chosen |= {name: math.hypot(chosen[name], to_come) for name in DEPTHS if name in chosen}
     return tuple(
         replace(
             part,
@@ -66,6 +71,7 @@ def imagined_windows(
             values=part.values[rows],
             by_coefficients=part.by_coefficients[rows],
             by_inputs=part.by_inputs[rows],
+            slow=part.slow[rows],
         )
         for index in range(number)
     )
