@@ -13,16 +13,8 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from trawl_ros.errors import NoSteadyState
-from trawl_ros.identification.calibration import tow_biases
-from trawl_ros.identification.error_terms import GROUP_OF, GROUPS
-from trawl_ros.identification.estimate import (
-    Estimate,
-    Innovation,
-    active_bounds,
-    interval,
-    is_determined,
-    undetermined,
-)
+from trawl_ros.identification.conclusion import conclude, innovation_of
+from trawl_ros.identification.estimate import Estimate, Innovation
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.fit import AS_STATED, Fit
 from trawl_ros.identification.linearised import Linearised, linearise
@@ -30,9 +22,6 @@ from trawl_ros.identification.objective import PAPER_CHANNELS, paper_values, sta
 from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
-
-GATE = 3.0
-"""Standard deviations at which an innovation's test ratio is 1."""
 
 NEGLIGIBLE_GAIN = 1e-4
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
@@ -275,44 +264,9 @@ class Estimator:
 
     def _innovation(self, part: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
-        (errors,) = replace(self._fit, windows=(part,)).errors
-        there = errors.present[0]
-        own = (errors.noise[0] * np.array(self._fit.scales)[GROUP_OF])[there]
-        shared = np.hstack(
-            [errors.inputs[0][there], errors.calibration[0][there], errors.model[0][there]]
-        )
-        spread = part.by_coefficients @ known @ part.by_coefficients.T
-        std = np.sqrt(own**2 + np.sum(shared**2, axis=1) + np.diag(spread))
-        difference = part.measured - part.values
-        return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
+        return innovation_of(part, self._fit, known)
 
     def _publish(self, innovation: Innovation | None, converged: bool, reason: str) -> Estimate:
-        fit, prior = self._fit, self.prior
-        values = np.array(fit.coefficients)
-        freedom = fit.freedom + self.options.stated_noise_readings
-        low, high = interval(values, fit.std, freedom, self.options.confidence, prior)
         self._revision += 1
-        self.estimate = Estimate(
-            revision=self._revision,
-            stamp=max(part.window.end_ns for part in fit.windows),
-            windows=len(fit.windows),
-            values=values,
-            std=fit.std,
-            covariance=fit.knowledge.covariance,
-            low=low,
-            high=high,
-            shrink=1.0 - fit.std / prior.std,
-            determined=is_determined(values, fit.std, prior),
-            active_bounds=active_bounds(values, prior),
-            condition_number=fit.knowledge.condition_number,
-            undetermined=undetermined(fit.knowledge),
-            noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
-            tow_biases=tow_biases(fit),
-            freedom=freedom,
-            cost=fit.cost,
-            objective=fit.objective,
-            innovation=innovation,
-            converged=converged,
-            reason=reason,
-        )
+        self.estimate = conclude(self._fit, self._revision, innovation, converged, reason)
         return self.estimate

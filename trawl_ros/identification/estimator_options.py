@@ -48,11 +48,11 @@ class EstimatorOptions:
     state_share: float = 0.3
     model_error: float = 1.0
     unsettled: float = 0.05
-    iterations_per_window: int = 3
+    iterations_per_window: int = 1
     iterations_final: int = 25
     halvings: int = 6
     largest_step: float = 1.0
-    relinearise: float = 0.5
+    relinearise: float = 2.0
     relinearise_final: float = 0.02
     tolerance: float = 5e-3
 

@@ -1,0 +1,78 @@
+"""What a fit comes to: its estimate, and what a window says before it is used."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.identification.calibration import tow_biases
+from trawl_ros.identification.error_terms import GROUP_OF, GROUPS
+from trawl_ros.identification.estimate import (
+    Estimate,
+    Innovation,
+    active_bounds,
+    interval,
+    is_determined,
+    undetermined,
+)
+from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.linearised import Linearised
+
+GATE = 3.0
+"""Standard deviations at which an innovation's test ratio is 1."""
+
+
+def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
+    """What a window shows that was not expected.
+
+    Parameters
+    ----------
+    part
+        The window, solved at the coefficients of the fit.
+    fit
+        Of the windows before it.
+    known : (12, 12) array
+        Covariance of the coefficients before it.
+    """
+    (errors,) = replace(fit, windows=(part,)).errors
+    there = errors.present[0]
+    own = (errors.noise[0] * np.array(fit.scales)[GROUP_OF])[there]
+    shared = np.hstack(
+        [errors.inputs[0][there], errors.calibration[0][there], errors.model[0][there]]
+    )
+    spread = part.by_coefficients @ known @ part.by_coefficients.T
+    std = np.sqrt(own**2 + np.sum(shared**2, axis=1) + np.diag(spread))
+    difference = part.measured - part.values
+    return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
+
+
+def conclude(
+    fit: Fit, revision: int, innovation: Innovation | None, converged: bool, reason: str
+) -> Estimate:
+    """Sum up a fit; the arguments beside it go into the estimate as they are."""
+    prior, options = fit.prior, fit.options
+    values = np.array(fit.coefficients)
+    freedom = fit.freedom + options.stated_noise_readings
+    low, high = interval(values, fit.std, freedom, options.confidence, prior)
+    return Estimate(
+        revision=revision,
+        stamp=max(part.window.end_ns for part in fit.windows),
+        windows=len(fit.windows),
+        values=values,
+        std=fit.std,
+        covariance=fit.knowledge.covariance,
+        low=low,
+        high=high,
+        shrink=1.0 - fit.std / prior.std,
+        determined=is_determined(values, fit.std, prior),
+        active_bounds=active_bounds(values, prior),
+        condition_number=fit.knowledge.condition_number,
+        undetermined=undetermined(fit.knowledge),
+        noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
+        tow_biases=tow_biases(fit),
+        freedom=freedom,
+        cost=fit.cost,
+        objective=fit.objective,
+        innovation=innovation,
+        converged=converged,
+        reason=reason,
+    )
