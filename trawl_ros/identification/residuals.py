@@ -7,7 +7,8 @@ import numpy as np
 
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
-from trawl_ros.identification.estimator import GATE, Estimator
+from trawl_ros.identification.conclusion import GATE
+from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.linearised import Linearised, linearise
 from trawl_ros.identification.pipeline import WindowUsed
 from trawl_ros.identification.whiteness import Whiteness, ljung_box
