@@ -2,8 +2,8 @@
 
 Four kinds of error stand between a reading and the model: those of the single reading (scatter,
 and what changes from one steady state to the next), those of the window's measured warp
-lengths and speed and of a gear not quite at rest, calibration, which is wrong alike throughout a tow, and the model's own, alike
-in all tows.
+lengths and speed and of a gear not quite at rest, calibration, which is wrong alike throughout
+a tow, and the model's own, alike in all tows.
 """
 
 from collections.abc import Mapping, Sequence
