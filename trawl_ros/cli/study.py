@@ -1,8 +1,11 @@
 """``trawl study``: what takes long to find out, measured and reported."""
 
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from trawl_ros.cli.files import FOLDER
@@ -11,6 +14,11 @@ from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
+from trawl_ros.studies.identification.report import REPORT as IDENTIFICATION_REPORT
+from trawl_ros.studies.identification.report import write_identification
+from trawl_ros.studies.identification.study import Plan as IdentificationPlan
+from trawl_ros.studies.identification.study import Shown, run_study
+from trawl_ros.studies.row import Row
 from trawl_ros.studies.soak import Plan, run_soak
 from trawl_ros.studies.soak_report import REPORT, write_soak
 from trawl_ros.studies.sonar import CASES, SonarStudy
@@ -54,12 +62,7 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
             lambda: interruption.requested,
         )
         rows = write_soak(out, seen)
-    asked = [row for row in rows if row.target is not None]
-    for row in asked:
-        if not row.ok:
-            console.print(f'missed: {row.what}: {number(row.value)} {row.unit}', markup=False)
-    reached = sum(row.ok for row in asked)
-    click.echo(f'{reached} of {len(asked)} targets are reached: {out / REPORT}')
+    _say(rows, out / REPORT, console)
     if interruption.requested:
         raise SystemExit(INTERRUPTED)
 
@@ -95,3 +98,77 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
         raise SystemExit(INTERRUPTED) from None
     write_sonar(out, measured, sweeps)
     click.echo(f'{sweeps} sweeps of each of {len(CASES)} cases: {out / SONAR_REPORT}')
+
+
+@command.command('identification')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
+@click.option('--force', is_flag=True, help='Begin anew, whatever is there.')
+@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@click.option('--seed', default=IdentificationPlan.seed, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
+@click.option('--coverage', default=IdentificationPlan.coverage, show_default=True,
+              type=click.IntRange(1, 10_000), help='Trials with a finer plant.')  # fmt: skip
+@click.option('--bound', default=IdentificationPlan.bound, show_default=True,
+              type=click.IntRange(0, 10_000), help='Trials with the model as plant.')  # fmt: skip
+@click.option('--mouth', default=IdentificationPlan.mouth, show_default=True,
+              type=click.IntRange(0, 10_000), help='Trials with a finer mouth.')  # fmt: skip
+@click.option('--around', default=IdentificationPlan.around, show_default=True,
+              type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--scheduler', help='Address of a Dask cluster that makes the trials.')
+@click.option('--small', is_flag=True, help='Trials only: neither a planned trial, nor a replay, '
+              'nor the node in real time.')  # fmt: skip
+def identification(
+    out: Path,
+    force: bool,
+    gear: str,
+    seed: int,
+    coverage: int,
+    bound: int,
+    mouth: int,
+    around: int,
+    scheduler: str | None,
+    small: bool,
+) -> None:
+    """Ask of many trials what the intervals and predictions of identification are worth.
+
+    Writes identification.json, .md, .html and .png; a target that is missed is part of the
+    report. Trials that are in the folder already are not made again: after
+    Ctrl-C the same command goes on where it was.
+    """
+    plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around)
+    console = error_console()
+    try:
+        found = run_study(
+            plan,
+            out,
+            Shown(lambda title, number: _counted(title, number, console),
+                  lambda title, total_s: TimeProgress(title, total_s, console)),
+            scheduler=scheduler,
+            force=force,
+            small=small,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        console.print(f'stopped; the trials made so far are kept in {out}')
+        raise SystemExit(INTERRUPTED) from None
+    write_identification(out, plan, found.sections, found.figure)
+    rows = [row for _, section in found.sections for row in section]
+    _say(rows, out / IDENTIFICATION_REPORT, console)
+
+
+@contextmanager
+def _counted(title: str, number: int, console: Console) -> Iterator[Callable[[], None]]:
+    """Show how many of a number of steps are done."""
+    columns = TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn()
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task(title, total=number)
+        yield lambda: progress.advance(task)
+
+
+def _say(rows: Sequence[Row], report: Path, console: Console) -> None:
+    """Say which targets are missed, and how many are reached."""
+    asked = [row for row in rows if row.asked]
+    for row in asked:
+        if not row.ok:
+            console.print(f'missed: {row.what}: {number(row.value)} {row.unit}', markup=False)
+    reached = sum(row.ok for row in asked)
+    click.echo(f'{reached} of {len(asked)} targets are reached: {report}')

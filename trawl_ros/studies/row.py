@@ -19,9 +19,11 @@ class Row:
     unit
         Of the figures; '' for a pure number.
     target
-        What the value may be at most; None where it only informs.
+        What the value may be at most; None where there is no such limit.
     note
         How it was measured, or why the target is missed.
+    least
+        What the value must be at least; None where there is no such limit.
     """
 
     what: str
@@ -31,21 +33,32 @@ class Row:
     unit: str = ''
     target: float | None = None
     note: str = ''
+    least: float | None = None
+
+    @property
+    def asked(self) -> bool:
+        """Whether anything was asked of it; else it only informs."""
+        return self.target is not None or self.least is not None
 
     @property
     def ok(self) -> bool:
-        """Whether the target is met; true where there is none. NaN never meets one."""
-        return self.target is None or self.value <= self.target
+        """Whether what was asked is met; true where nothing was. NaN never meets anything."""
+        return (self.target is None or self.value <= self.target) and (
+            self.least is None or self.value >= self.least
+        )
 
     def record(self) -> dict[str, object]:
-        """The row as plain values; what could not be measured is null."""
+        """The row as plain values; what could not be measured is null.
+
+        A target with a lower end is the pair of its ends.
+        """
         numbers = {'value': self.value, 'low': self.low, 'high': self.high}
         known = {key: value if math.isfinite(value) else None for key, value in numbers.items()}
         return {
             'what': self.what,
             **known,
             'unit': self.unit,
-            'target': self.target,
+            'target': self.target if self.least is None else [self.least, self.target],
             'ok': bool(self.ok),
             'note': self.note,
         }

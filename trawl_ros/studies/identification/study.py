@@ -1,0 +1,216 @@
+"""The study of identification: which trials it makes, and how."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from trawl_ros.cli.progress import TimeProgress
+from trawl_ros.gear.load import load_gear
+from trawl_ros.identification.from_gear import board_prior
+from trawl_ros.studies.identification.costs import LIVE_S, live, live_rows, replay, replay_rows
+from trawl_ros.studies.identification.figure import trials_figure
+from trawl_ros.studies.identification.kept import KeptTrials
+from trawl_ros.studies.identification.knowledge import model_error_rows, planning_rows
+from trawl_ros.studies.identification.plant import Cut
+from trawl_ros.studies.identification.rows import (
+    board_rows,
+    coverage_rows,
+    held_out_rows,
+    spread_rows,
+)
+from trawl_ros.studies.identification.trial import Task, Trial, run_trial
+from trawl_ros.studies.row import Row
+
+SEED = 20
+"""Of the study as it is reported; what was chosen by looking at trials was chosen with 1."""
+
+FINER = Cut(around=24, lines=2, unjoined=True)
+"""Plant of the coverage; its net has more than twice as many nodes as the model's."""
+
+AS_MODEL = Cut(around=24)
+FAR_FINER = Cut(around=24, lines=2, net=1.5)
+DEFAULT_FINER = Cut(around=48, lines=2, unjoined=True)
+"""Plant beside the default model."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """Trials of one kind; ``stated`` as in `Task`."""
+
+    name: str
+    words: str
+    cut: Cut
+    stated: bool
+
+
+COVERAGE = Series('finer', 'a finer plant', FINER, stated=False)
+BOUND = Series('alike', 'the model as its own plant', AS_MODEL, stated=True)
+MOUTH = Series('mouth', 'a plant with a finer mouth', FAR_FINER, stated=False)
+SERIES = (COVERAGE, BOUND, MOUTH)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How large the study is.
+
+    Attributes
+    ----------
+    gear
+        File or name.
+    seed
+        Of all trials.
+    coverage, bound, mouth
+        How many trials of each series.
+    around
+        Meshes around the mouth of the model's net.
+    """
+
+    gear: str = 'kaifuha'
+    seed: int = SEED
+    coverage: int = 200
+    bound: int = 100
+    mouth: int = 30
+    around: int = FINER.around
+
+    def numbers(self) -> dict[str, int]:
+        """How many trials by the name of their series."""
+        return {COVERAGE.name: self.coverage, BOUND.name: self.bound, MOUTH.name: self.mouth}
+
+    def asked(self) -> dict[str, Any]:
+        """What each trial depends on, as plain values."""
+        gear = load_gear(self.gear).model_dump(mode='json')
+        return {'seed': self.seed, 'around': self.around, 'gear': gear}
+
+    def cut(self, series: Series) -> Cut:
+        """How fine model and plant of a series are."""
+        return Cut(**{**asdict(series.cut), 'around': self.around})
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Shows progress.
+
+    ``steps`` takes a title and their number, and gives what is called after each of them;
+    ``stretch`` takes a title and a time, s.
+    """
+
+    steps: Callable[[str, int], AbstractContextManager[Callable[[], None]]]
+    stretch: Callable[[str, float], AbstractContextManager[TimeProgress]]
+
+
+@dataclass(frozen=True)
+class Found:
+    """All rows, by section, and a figure of the trials."""
+
+    sections: tuple[tuple[str, tuple[Row, ...]], ...]
+    figure: Figure
+
+
+def run_study(
+    plan: Plan,
+    folder: Path,
+    shown: Shown,
+    *,
+    scheduler: str | None = None,
+    force: bool = False,
+    small: bool = False,
+) -> Found:
+    """Make the study, or what is missing to it.
+
+    Parameters
+    ----------
+    plan
+        How large it is.
+    folder
+        Takes the trials, and what nodes say.
+    shown
+        Shows progress.
+    scheduler
+        Address of a Dask cluster for the trials; what is timed runs on this machine.
+    force
+        Whether to begin anew.
+    small
+        Whether to leave out all but the trials.
+    """
+    kept = run_trials(plan, folder, shown, scheduler=scheduler, force=force)
+    coverage, bound, mouth = (trials_of(plan, kept, series) for series in SERIES)
+    prior = board_prior(load_gear(plan.gear))
+    sections: list[tuple[str, tuple[Row, ...]]] = [
+        ('Intervals', (*coverage_rows(coverage, COVERAGE.words, asked=True),
+                       *coverage_rows(mouth, MOUTH.words, asked=False))),
+        ('Spread of the estimates', tuple(spread_rows(bound, prior))),
+        ('Tows left out', tuple(held_out_rows(coverage))),
+        ('The trials', tuple(board_rows((*coverage, *bound, *mouth)))),
+    ]  # fmt: skip
+    if not small:
+        with shown.steps('model beside plant', 2) as done:
+            rows = []
+            for cut in (plan.cut(COVERAGE), DEFAULT_FINER):
+                rows += model_error_rows(plan.gear, cut)
+                done()
+        sections.append(('Model and plant', tuple(rows)))
+        with shown.steps('planning', 1) as done:
+            sections.append(('A planned trial', tuple(planning_rows(plan.gear))))
+            done()
+        with shown.steps('replay', 1) as done:
+            costs = replay_rows(replay())
+            done()
+        costs += live_rows(live(LIVE_S, folder / 'log', shown.stretch))
+        sections.append(('Cost', tuple(costs)))
+    return Found(tuple(sections), trials_figure(coverage, bound, prior))
+
+
+def run_trials(
+    plan: Plan,
+    folder: Path,
+    shown: Shown,
+    *,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    force: bool = False,
+) -> KeptTrials:
+    """Make the trials that are not there yet.
+
+    Parameters
+    ----------
+    plan
+        How many.
+    folder
+        Where they are kept, one by one.
+    shown
+        Shows how many are done.
+    scheduler, workers
+        As in `trawl_ros.parallel.run_tasks`.
+    force
+        Whether to begin anew.
+
+    Raises
+    ------
+    TrawlError
+        If trials of another plan are kept there, or one cannot be made.
+    """
+    # Dask takes a second to import, for which other commands need not wait.
+    from trawl_ros.parallel import run_tasks
+
+    kept = KeptTrials(folder, plan.asked(), force=force)
+    tasks = {task.name: task for task in _tasks(plan) if not kept.has(task.series, task.number)}
+    with shown.steps('trials', len(tasks)) as done:
+        for _, trial in run_tasks(run_trial, tasks, scheduler=scheduler, workers=workers):
+            kept.add(trial)
+            done()
+    return kept
+
+
+def trials_of(plan: Plan, kept: KeptTrials, series: Series) -> tuple[Trial, ...]:
+    """The trials of a series that a plan asks for; more may be kept."""
+    return kept.series(series.name)[: plan.numbers()[series.name]]
+
+
+def _tasks(plan: Plan) -> Iterator[Task]:
+    for series in SERIES:
+        for number in range(plan.numbers()[series.name]):
+            yield Task(series.name, number, plan.seed, plan.gear, plan.cut(series), series.stated)
