@@ -86,7 +86,7 @@ def drawings(report: Report) -> list[Drawing]:
         Drawing(
             'convergence.png', COURSE,
             'Each coefficient with its 95 % interval after each window, and at rest. Grey: the '
-            'prior. Dotted: the truth, where it is known.',
+            'prior. Dotted: the truth, where it is known. Upright lines: another tow begins.',
             convergence_figure(report),
         ),
     ]  # fmt: skip
