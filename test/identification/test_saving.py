@@ -118,7 +118,7 @@ def test_objects_that_share_something_share_it_afterwards(fresh, state, gear):
     finder = load_state(state, fresh(), gear).finder
     before = dict(finder.rejected)
     buffer = finder._buffers['door_spread']
-    buffer._rejected['outlier'] += 1
+    buffer._rejections.counts['outlier'] += 1
     assert finder.rejected['outlier'] == before.get('outlier', 0) + 1
 
 

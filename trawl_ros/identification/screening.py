@@ -15,7 +15,7 @@ from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.identification.operation import Unheld
 from trawl_ros.identification.prediction import Prediction, Predictor
 from trawl_ros.identification.prior import BoardPrior
-from trawl_ros.identification.units import PITCHES, ROLLS, Misreading, misreadings
+from trawl_ros.identification.units import PITCHES, ROLLS, Misreading, misreadings, towable
 from trawl_ros.identification.window_records import SteadyWindow
 
 MODEL_FRACTION, MODEL_ANGLE = 0.1, 0.05
@@ -83,13 +83,9 @@ class Screening:
             return _unit_judgement(known, window)
         if stated <= SUSPICIOUS:
             return Judgement()
-        tried = [
-            (distance(unit.repaired(window.means)), unit) for unit in misreadings(window.means)
-        ]
-        best, unit = min(tried, key=lambda one: one[0])
-        if best <= CREDIBLE:
-            self._unit = unit
-            return _unit_judgement(unit, window)
+        if units := _explanations(window.means, distance):
+            self._unit = units[0]
+            return _unit_judgement(units[0], window, units[1:])
         if not IMPLAUSIBLE < stated < np.inf:
             return Judgement()
         for channels in (('vertical_opening',), PITCHES, ROLLS, (*PITCHES, *ROLLS)):
@@ -153,11 +149,28 @@ class Screening:
         return None
 
 
-def _unit_judgement(unit: Misreading, window: SteadyWindow) -> Judgement:
-    found = Unheld('wrong unit', unit.sentence(window.means))
-    if unit.optional:
-        return Judgement(found, unit.channels)
-    return Judgement(found, refused=True)
+def _explanations(
+    means: Mapping[str, float], distance: Callable[[Mapping[str, float]], float]
+) -> list[Misreading]:
+    """The units that bring the channels together, the best first."""
+    tried = [
+        (distance(repaired), unit)
+        for unit in misreadings(means)
+        if towable(repaired := unit.repaired(means))
+    ]
+    credible = [one for one in tried if one[0] <= CREDIBLE]
+    return [unit for _, unit in sorted(credible, key=lambda one: one[0])]
+
+
+def _unit_judgement(
+    unit: Misreading, window: SteadyWindow, others: Sequence[Misreading] = ()
+) -> Judgement:
+    sentence = unit.sentence(window.means)
+    rivals = [other for other in others if not set(other.channels) & set(unit.channels)]
+    if rivals:
+        sentence += f' (or {" and ".join(rivals[0].channels)} are in {rivals[0].unit})'
+    found = Unheld('wrong unit', sentence)
+    return Judgement(found, unit.channels) if unit.optional else Judgement(found, refused=True)
 
 
 def without(window: SteadyWindow, channels: Sequence[str]) -> SteadyWindow:

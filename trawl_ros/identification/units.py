@@ -35,6 +35,9 @@ TOGETHER = (
 )  # fmt: skip
 """Channels that are set to a unit together."""
 
+TOWING = (1.2, 3.5)
+"""Speeds (m/s) at which mid-water trawls are towed."""
+
 
 @dataclass(frozen=True)
 class Misreading:
@@ -75,6 +78,11 @@ def misreadings(means: Mapping[str, float]) -> list[Misreading]:
         if all(name in means for name in channels)
         for unit, factor in WRONG_UNITS[CHANNELS[channels[0]].unit].items()
     ]
+
+
+def towable(means: Mapping[str, float]) -> bool:
+    """Whether a mid-water trawl is towed so; a false speed is not worth a solution."""
+    return TOWING[0] <= means['speed'] <= TOWING[1]
 
 
 def unit_of(outside: np.ndarray, channel: Channel) -> str | None:
