@@ -206,6 +206,7 @@ def test_what_speaks_against_a_fit_is_listed(tows):
     feet = {'wrong unit': 'door/port/pressure is plausible in feet'}
     bad = replace(good, estimate=estimate, residuals=(coloured,), found=feet)
     said = ' '.join(verdict(bad).concerns)
+    assert not verdict(bad).holds
     words = coloured.channel.replace('_', ' ')
     for part in (
         'Refused, wrong unit: door/port/pressure is plausible in feet.',

@@ -29,7 +29,8 @@ class Verdict:
     fit
         How well what was left out is predicted.
     holds
-        Whether that is at least as good as the paper's own fit in every channel.
+        Whether that is at least as good as the paper's own fit in every channel, and the
+        iteration at rest.
     knowledge
         How many coefficients the data determine, and which combinations they do not.
     concerns
@@ -48,7 +49,7 @@ def verdict(report: Report) -> Verdict:
     paper = np.array([channel.paper for channel in PAPER_CHANNELS])
     return Verdict(
         fit=_fit(report, held, paper),
-        holds=bool(np.all(held <= paper)),
+        holds=report.estimate.converged and bool(np.all(held <= paper)),
         knowledge=_knowledge(report),
         concerns=_concerns(report),
     )
