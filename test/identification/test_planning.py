@@ -192,9 +192,9 @@ def test_warp_runs_out_at_a_speed_that_keeps_the_boards_up(plan):
 def test_a_leg_is_held_until_the_net_sinks_slowly_enough(plan):
     for candidate in plan.choice.candidates:
         rest = rest_of(candidate, WindowOptions())
-        assert rest.time(0.0, 100.0) == 0.0
+        assert rest.time(0.0) == 0.0
         for change, moving in ((20.0, 0.0), (20.0, 300.0), (80.0, 700.0)):
-            seconds = rest.time(change, moving)
+            seconds = 100.0 + rest.time(rest.left(change, moving, 100.0))
             # Integrated: what is to come grows with the change and decays all the time.
             left, step = 0.0 if moving else change, 0.5
             for _ in np.arange(0.0, moving, step):

@@ -7,8 +7,8 @@ boards lose their lift.
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
@@ -100,18 +100,24 @@ class Rest:
     drift: float
     window: float
 
-    def time(self, change: float, moving: float) -> float:
-        """Time (s) until the net drifts by no more than that.
+    def left(self, change: float, moving: float, since: float = 0.0) -> float:
+        """How much (m) of a change of the net's depth is still to come.
 
         Parameters
         ----------
         change
-            By how much (m) the net's depth is to change.
+            By how much (m) the depth is to change.
         moving
             Time (s) that ship and winches take for it; in that the gear follows already.
+        since
+            Time (s) since they have done it.
         """
         shrunk = self.decay / moving * -math.expm1(-moving / self.decay) if moving else 1.0
-        first = change * shrunk * -math.expm1(-self.window / self.decay)
+        return abs(change) * shrunk * math.exp(-since / self.decay)
+
+    def time(self, left: float) -> float:
+        """Time (s) until the net, with so much (m) to come, drifts by no more than that."""
+        first = left * -math.expm1(-self.window / self.decay)
         return self.decay * math.log(max(first / self.drift, 1.0))
 
     def to_come(self, options: WindowOptions) -> float:
@@ -196,7 +202,12 @@ class Timetable:
     ) -> None:
         self.ability = ability
         self.options = options
-        self._rests = {one.manoeuvre: rest_of(one, options) for one in candidates}
+        self._by_lengths: dict[tuple[float, float], dict[float, Rest]] = {}
+        for one in candidates:
+            done = one.manoeuvre
+            lengths = (done.port_length, done.starboard_length)
+            self._by_lengths.setdefault(lengths, {})[done.speed] = rest_of(one, options)
+        self._legs: dict[tuple[Manoeuvre, Manoeuvre, float], Leg] = {}
 
     def legs(
         self, manoeuvres: Sequence[Manoeuvre], first_depth: float | None = None
@@ -213,48 +224,52 @@ class Timetable:
         if not manoeuvres:
             return ()
         first = manoeuvres[0]
-        depth = self._rests[first].net_depth if first_depth is None else first_depth
+        depth = self._rest(first).net_depth if first_depth is None else first_depth
         legs = [Leg(first, _rounded(holding_time(first, self.options)))]
         for before, after in pairwise(manoeuvres):
-            legs.append(self._leg(before, after, depth))
-            depth = self._rests[after].net_depth
+            change = (before, after, depth)
+            if change not in self._legs:
+                self._legs[change] = self._leg(*change)
+            legs.append(self._legs[change])
+            depth = self._rest(after).net_depth
         return tuple(legs)
 
+    def _rest(self, manoeuvre: Manoeuvre) -> Rest:
+        return self._at(manoeuvre)[manoeuvre.speed]
+
     def _leg(self, before: Manoeuvre, after: Manoeuvre, depth: float) -> Leg:
-        ability, rest = self.ability, self._rests[after]
-        out = max(
+        ability, rest = self.ability, self._rest(after)
+        moved = (
             after.port_length - before.port_length,
             after.starboard_length - before.starboard_length,
         )
-        moving = winch_time(
-            ability,
-            max(
-                out,
-                abs(after.port_length - before.port_length),
-                abs(after.starboard_length - before.starboard_length),
-            ),
-        )
-        change = abs(rest.net_depth - depth)
-        speed = max(ability.veering_speed, before.speed)
-        if out <= 0.0 or after.speed >= ability.veering_speed:
-            moving = max(moving, abs(after.speed - before.speed) / ability.ship_acceleration)
-            hold = holding_time(after, self.options, rest.time(change, moving))
-            return Leg(after, _rounded(moving + hold))
-        running = _rounded(moving + (speed - before.speed) / ability.ship_acceleration)
-        # Slowed down at the end, the gear sinks from where it was towed on the way.
-        change = max(change, abs(rest.net_depth - self._depth_at(after, speed)))
-        slowing = (speed - after.speed) / ability.ship_acceleration
-        hold = holding_time(after, self.options, rest.time(change, slowing))
+        winding = winch_time(ability, max(map(abs, moved)))
+        out = max(moved) > 0.0 and after.speed < ability.veering_speed
+        speed = max(ability.veering_speed, before.speed) if out else after.speed
+        # The ship changes her speed first: the net rises or sinks, and then with the warps.
+        changing = abs(speed - before.speed) / ability.ship_acceleration
+        between = self._depth_at(before, speed, depth)
+        there = self._depth_at(after, speed, rest.net_depth)
+        left = rest.left(between - depth, changing, max(winding - changing, 0.0))
+        left += rest.left(there - between, winding)
+        if not out:
+            hold = holding_time(after, self.options, rest.time(left))
+            return Leg(after, _rounded(max(winding, changing) + hold))
+        running = _rounded(changing + winding)
+        slowing = abs(speed - after.speed) / ability.ship_acceleration
+        left = rest.left(left, 0.0, slowing) + rest.left(rest.net_depth - there, slowing)
+        hold = holding_time(after, self.options, rest.time(left))
         return Leg(after, _rounded(slowing + hold), speed, running)
 
-    def _depth_at(self, manoeuvre: Manoeuvre, speed: float) -> float:
-        """Depth (m) of the net at these lengths and about this speed."""
-        there = replace(manoeuvre, speed=speed)
-        near = min(
-            (one for one in self._rests if replace(one, speed=speed) == there),
-            key=lambda one: abs(one.speed - speed),
-        )
-        return self._rests[near].net_depth
+    def _depth_at(self, manoeuvre: Manoeuvre, speed: float, known: float) -> float:
+        """Depth (m) of the net at these lengths and as near to a speed as is known."""
+        depths = {one: rest.net_depth for one, rest in self._at(manoeuvre).items()}
+        depths[manoeuvre.speed] = known
+        return depths[min(depths, key=lambda one: abs(one - speed))]
+
+    def _at(self, manoeuvre: Manoeuvre) -> Mapping[float, Rest]:
+        """What is known at these lengths, by speed."""
+        return self._by_lengths.get((manoeuvre.port_length, manoeuvre.starboard_length), {})
 
 
 def minutes_of(legs: Sequence[Leg]) -> float:
