@@ -114,6 +114,8 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
               type=click.IntRange(0, 10_000), help='Trials with a finer mouth.')  # fmt: skip
 @click.option('--around', default=IdentificationPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--tows', default=IdentificationPlan.tows, show_default=True,
+              type=click.IntRange(1, IdentificationPlan.tows), help='In a trial.')  # fmt: skip
 @click.option('--scheduler', help='Address of a Dask cluster that makes the trials.')
 @click.option('--small', is_flag=True, help='Trials only: neither a planned trial, nor a replay, '
               'nor the node in real time.')  # fmt: skip
@@ -126,6 +128,7 @@ def identification(
     bound: int,
     mouth: int,
     around: int,
+    tows: int,
     scheduler: str | None,
     small: bool,
 ) -> None:
@@ -135,7 +138,7 @@ def identification(
     report. Trials that are in the folder already are not made again: after
     Ctrl-C the same command goes on where it was.
     """
-    plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around)
+    plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around, tows)
     console = error_console()
     try:
         found = run_study(

@@ -53,11 +53,12 @@ def _draw_rows(axes: Axes, rows: Sequence[Row], asked: tuple[float, float]) -> N
 
 
 def _draw_errors(axes: Axes, trials: Sequence[Trial]) -> None:
-    rows = held_out_rows(trials)[::2]
+    found = held_out_rows(trials)
+    rows = found[::2]
     at = np.arange(len(rows))
     values, low, high = (np.array([getattr(row, key) for row in rows])
                          for key in ('value', 'low', 'high'))  # fmt: skip
-    floors = values / np.array([row.value for row in held_out_rows(trials)[1::2]])
+    floors = values / np.array([row.value for row in found[1::2]])
     below, above = np.maximum(values - low, 0.0), np.maximum(high - values, 0.0)
     axes.bar(at - 0.2, values, 0.4, color=style.MEASURED, label='fitted model')
     axes.errorbar(at - 0.2, values, (below, above), fmt='none', color='0.2', capsize=3)

@@ -50,8 +50,8 @@ class KeptTrials:
             ) from reason
         if asked != self._asked:
             raise TrawlError(
-                f'{self._path}: has trials made with {_words(asked)}, expected '
-                f'{_words(self._asked)}, another folder, or --force'
+                f'{self._path}: has trials made with {_words(asked, self._asked)}, expected '
+                f'{_words(self._asked, asked)}, another folder, or --force'
             )
         whole = [line for line in lines[:-1] if line]
         for number, line in enumerate(whole, 2):
@@ -83,5 +83,10 @@ class KeptTrials:
         return tuple(self._trials[key] for key in found)
 
 
-def _words(asked: Mapping[str, Any]) -> str:
-    return ', '.join(f'{key} {value}' for key, value in asked.items())
+def _words(asked: Mapping[str, Any], other: Mapping[str, Any]) -> str:
+    different = [key for key in asked if asked[key] != other.get(key)]
+    # Of a gear it is enough to know that it is another one.
+    short = {key: value for key, value in asked.items() if not isinstance(value, Mapping)}
+    return ', '.join(
+        f'{key} {short[key]}' if key in short else f'another {key}' for key in different
+    )

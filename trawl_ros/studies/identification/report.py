@@ -64,7 +64,7 @@ def _options(plan: Plan) -> str:
     usual = Plan()
     words = [
         f'--{key} {getattr(plan, key)}'
-        for key in ('gear', 'seed', 'coverage', 'bound', 'mouth', 'around')
+        for key in ('gear', 'seed', 'coverage', 'bound', 'mouth', 'around', 'tows')
         if getattr(plan, key) != getattr(usual, key)
     ]
     return ''.join(f' {word}' for word in words)
@@ -76,7 +76,7 @@ def _method(plan: Plan) -> str:
     return (
         f'A trial draws the twelve coefficients from the prior of the gear file, until the plant '
         f'can be towed with them in all its steady states: under water, with the boards within '
-        f'the range of their law, and stable in the first and the last. It has {len(TOWS)} tows of '
+        f'the range of their law, and stable in the first and the last. It has {plan.tows} tows of '
         f'{len(TOWS[0])} states, 300 to 900 m of warp at 2.0 to 2.4 m/s, and a further tow of '
         f'{len(HELD_OUT)} states that is predicted and not fitted. Windows are not towed but '
         f'worked out: readings of a minute are the observables of the plant with noise as in '

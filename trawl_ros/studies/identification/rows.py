@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from functools import partial
 
 import numpy as np
 from scipy.stats import binomtest
@@ -25,43 +24,42 @@ MOST_ERROR = {'door_spread': 2.4, 'door_depth': 2.2, 'net_depth': 3.7, 'warp_ten
 OVER_FLOOR = 1.2
 """How much larger than that of a perfect model they may be."""
 
-DRAWN_AGAIN = 2000
+DRAWN_AGAIN = 1000
+AGAIN = 'interval by drawing trials again'
 SEED = 7
 
 
 def coverage_rows(trials: Sequence[Trial], series: str, *, asked: bool) -> list[Row]:
     """Share of truths inside the intervals, of all coefficients together and of each."""
+    if not trials:
+        return [Row(f'{series}: 95 % intervals that cover the truth', np.nan, note='no trials')]
     least, most = COVERAGE if asked else (None, None)
     truth, low, high = (_array(trials, name) for name in ('truth', 'low', 'high'))
     inside = (low <= truth) & (truth <= high)
-    together = _interval(lambda some: 100.0 * inside[some].mean(), len(trials))
+    low_all, high_all = _interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
     rows = [
         Row(
             f'{series}: 95 % intervals that cover the truth',
-            100.0 * inside.mean() if len(trials) else np.nan,
-            low=together[0],
-            high=together[1],
+            float(100.0 * inside.mean()),
+            low=float(low_all),
+            high=float(high_all),
             unit='%',
             least=least,
             target=most,
-            note=f'all twelve of {len(trials)} trials; interval by drawing trials again',
+            note=f'all twelve of {len(trials)} trials; {AGAIN}',
         )
     ]
     if not asked:
         return rows
     for column, name in enumerate(COEFFICIENTS):
         count = int(inside[:, column].sum())
-        ends = (
-            binomtest(count, len(trials)).proportion_ci(method='exact')
-            if len(trials)
-            else (np.nan, np.nan)
-        )
+        ends = binomtest(count, len(trials)).proportion_ci(method='exact')
         rows.append(
             Row(
                 f'{series}: intervals of {name} that cover the truth',
-                100.0 * count / len(trials) if len(trials) else np.nan,
-                low=100.0 * ends[0],
-                high=100.0 * ends[1],
+                100.0 * count / len(trials),
+                low=100.0 * ends.low,
+                high=100.0 * ends.high,
                 unit='%',
                 least=least,
                 target=most,
@@ -83,80 +81,80 @@ def spread_rows(trials: Sequence[Trial], prior: BoardPrior) -> list[Row]:
         bound = np.linalg.inv(known[some].mean(axis=0) + before)
         return np.sqrt((error[some] ** 2).mean(axis=0) / np.diag(bound))
 
-    everything = np.arange(len(trials))
     at_hand = np.sqrt(np.diagonal(np.linalg.inv(known + before), axis1=1, axis2=2))
 
-    def overall(some: np.ndarray) -> float:
-        return float(np.sqrt(np.mean(ratio(some) ** 2)))
+    def figures(some: np.ndarray) -> np.ndarray:
+        """Both figures over all coefficients, and the ratio of each (14,)."""
+        each = ratio(some)
+        by_board = np.sqrt(np.mean((error[some] / at_hand[some]) ** 2))
+        return np.array([np.sqrt(np.mean(each**2)), by_board, *each])
 
-    def by_board(some: np.ndarray) -> float:
-        return float(np.sqrt(np.mean((error[some] / at_hand[some]) ** 2)))
-
-    def one(column: int, some: np.ndarray) -> float:
-        return float(ratio(some)[column])
-
+    values = figures(np.arange(len(trials)))
+    ends = _interval(figures, len(trials))
     least, most = SPREAD
-    rows = [
-        Row(
+    texts = [
+        (
             'spread of estimates over its bound',
-            overall(everything),
-            *_interval(overall, len(trials)),
-            least=least,
-            target=most,
-            note=f'root mean square of the twelve ratios, {len(trials)} trials; Van Trees: '
-            'the inverse of the mean information of data and prior',
+            f'root mean square of the twelve ratios, {len(trials)} trials; Van Trees: the inverse '
+            'of the mean information of data and prior',
         ),
-        Row(
+        (
             'spread of estimates over the bound of each board',
-            by_board(everything),
-            *_interval(by_board, len(trials)),
-            note='error of each trial over the bound from the information at its own truth, which '
-            'is the larger of the two bounds',
+            'error of each trial over the bound from the information at its own truth, which is '
+            'the larger of the two bounds',
         ),
+        *((f'spread of {name} over its bound', AGAIN) for name in COEFFICIENTS),
     ]
-    for column, name in enumerate(COEFFICIENTS):
-        rows.append(
-            Row(
-                f'spread of {name} over its bound',
-                one(column, everything),
-                *_interval(partial(one, column), len(trials)),
-                least=least,
-                target=most,
-                note='interval by drawing trials again',
-            )
+    return [
+        Row(
+            what,
+            float(value),
+            float(low),
+            float(high),
+            # Only one of the two bounds is what was asked for.
+            least=None if place == 1 else least,
+            target=None if place == 1 else most,
+            note=note,
         )
-    return rows
+        for place, ((what, note), value, low, high) in enumerate(
+            zip(texts, values, *ends, strict=True)
+        )
+    ]
 
 
 def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
     """Errors on tows left out, and how they compare with a perfect model's."""
-    rows = []
+    if not trials:
+        return [Row('tows left out: error', np.nan, note='no trials')]
+    channels = len(PAPER_CHANNELS)
     measured, predicted, perfect = (
-        _array(trials, name).reshape(len(trials), -1, len(PAPER_CHANNELS))
+        _array(trials, name).reshape(len(trials), -1, channels)
         for name in ('measured', 'predicted', 'perfect')
     )
-    usable = np.isfinite(predicted)
-    missing = int(np.sum(~np.all(usable, axis=2)))
+    there = np.isfinite(predicted)
+    missing = int(np.sum(~np.all(there, axis=2)))
+    size, wrong, least = (
+        np.where(there, np.abs(part), 0.0).sum(axis=1)
+        for part in (measured, predicted - measured, perfect - measured)
+    )
+
+    def figures(some: np.ndarray) -> np.ndarray:
+        """Per channel the error in %, and that over the one of a perfect model (2, n)."""
+        of, by, floor = wrong[some].sum(axis=0), size[some].sum(axis=0), least[some].sum(axis=0)
+        return np.array([100.0 * of / by, of / floor])
+
+    errors, beyond = figures(np.arange(len(trials)))
+    floors = errors / beyond
+    low, high = _interval(figures, len(trials))
+    rows = []
     for column, channel in enumerate(PAPER_CHANNELS):
-        there = usable[:, :, column]
-        seen = np.where(there, measured[:, :, column], 0.0)
-        wrong = np.where(there, np.abs(predicted[:, :, column] - measured[:, :, column]), 0.0)
-        least = np.where(there, np.abs(perfect[:, :, column] - measured[:, :, column]), 0.0)
-
-        def error(some: np.ndarray, of: np.ndarray = wrong, by: np.ndarray = seen) -> float:
-            return float(100.0 * of[some].sum() / by[some].sum())
-
-        def beyond(some: np.ndarray, of: np.ndarray = wrong, by: np.ndarray = least) -> float:
-            return float(of[some].sum() / by[some].sum())
-
         name = channel.name.replace('_', ' ')
-        everything = np.arange(len(trials))
-        floor = error(everything, least) if len(trials) else np.nan
         rows += [
             Row(
                 f'tows left out: error in {name}',
-                error(everything) if len(trials) else np.nan,
-                *_interval(error, len(trials)),
+                float(errors[column]),
+                float(low[0, column]),
+                float(high[0, column]),
                 unit='%',
                 target=MOST_ERROR[channel.name],
                 note='mean error over mean measured value'
@@ -164,11 +162,12 @@ def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
             ),
             Row(
                 f'tows left out: error in {name} over that of a perfect model',
-                beyond(everything) if len(trials) else np.nan,
-                *_interval(beyond, len(trials)),
+                float(beyond[column]),
+                float(low[1, column]),
+                float(high[1, column]),
                 target=OVER_FLOOR,
-                note=f'the plant itself, at inputs as measured, is {floor:.2f} % off for noise '
-                'and biases of these tows',
+                note=f'the plant itself, at inputs as measured, is {floors[column]:.2f} % off for '
+                'noise and biases of these tows',
             ),
         ]
     return rows
@@ -197,15 +196,17 @@ def board_rows(trials: Sequence[Trial]) -> list[Row]:
 
 
 def _array(trials: Sequence[Trial], name: str) -> np.ndarray:
-    found = np.array([getattr(trial, name) for trial in trials], dtype=float)
-    return found if len(trials) else np.zeros((0, len(COEFFICIENTS)))
+    return np.array([getattr(trial, name) for trial in trials], dtype=float)
 
 
-def _interval(figure: Callable[[np.ndarray], float], number: int) -> tuple[float, float]:
-    """A 95 % interval of a figure of trials, by drawing as many of them again and again."""
+def _interval(
+    figures: Callable[[np.ndarray], np.ndarray], number: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """95 % intervals of figures (n,) of trials, by drawing as many of them again and again."""
     if number < 2:
-        return np.nan, np.nan
+        nothing = np.full(figures(np.arange(number)).shape, np.nan)
+        return nothing, nothing
     chance = np.random.default_rng(SEED)
-    found = [figure(chance.integers(number, size=number)) for _ in range(DRAWN_AGAIN)]
-    low, high = np.percentile(found, (2.5, 97.5))
-    return float(low), float(high)
+    found = np.array([figures(chance.integers(number, size=number)) for _ in range(DRAWN_AGAIN)])
+    low, high = np.percentile(found, (2.5, 97.5), axis=0)
+    return low, high

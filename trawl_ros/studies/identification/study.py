@@ -15,7 +15,7 @@ from trawl_ros.studies.identification.costs import LIVE_S, live, live_rows, repl
 from trawl_ros.studies.identification.figure import trials_figure
 from trawl_ros.studies.identification.kept import KeptTrials
 from trawl_ros.studies.identification.knowledge import model_error_rows, planning_rows
-from trawl_ros.studies.identification.plant import Cut
+from trawl_ros.studies.identification.plant import TOWS, Cut
 from trawl_ros.studies.identification.rows import (
     board_rows,
     coverage_rows,
@@ -67,6 +67,8 @@ class Plan:
         How many trials of each series.
     around
         Meshes around the mouth of the model's net.
+    tows
+        How many of `TOWS` a trial fits.
     """
 
     gear: str = 'kaifuha'
@@ -75,6 +77,7 @@ class Plan:
     bound: int = 100
     mouth: int = 30
     around: int = FINER.around
+    tows: int = len(TOWS)
 
     def numbers(self) -> dict[str, int]:
         """How many trials by the name of their series."""
@@ -83,7 +86,7 @@ class Plan:
     def asked(self) -> dict[str, Any]:
         """What each trial depends on, as plain values."""
         gear = load_gear(self.gear).model_dump(mode='json')
-        return {'seed': self.seed, 'around': self.around, 'gear': gear}
+        return {'seed': self.seed, 'around': self.around, 'tows': self.tows, 'gear': gear}
 
     def cut(self, series: Series) -> Cut:
         """How fine model and plant of a series are."""
@@ -213,4 +216,12 @@ def trials_of(plan: Plan, kept: KeptTrials, series: Series) -> tuple[Trial, ...]
 def _tasks(plan: Plan) -> Iterator[Task]:
     for series in SERIES:
         for number in range(plan.numbers()[series.name]):
-            yield Task(series.name, number, plan.seed, plan.gear, plan.cut(series), series.stated)
+            yield Task(
+                series.name,
+                number,
+                plan.seed,
+                plan.gear,
+                plan.cut(series),
+                plan.tows,
+                series.stated,
+            )

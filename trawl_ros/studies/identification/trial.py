@@ -39,6 +39,8 @@ class Task:
         File or name.
     cut
         How fine model and plant are.
+    tows
+        How many of `TOWS` are fitted.
     stated
         Whether noise is as stated and the estimator knows that model and plant are the same, as
         a bound on the spread presumes.
@@ -49,6 +51,7 @@ class Task:
     seed: int
     gear: str
     cut: Cut
+    tows: int
     stated: bool
 
     @property
@@ -116,7 +119,7 @@ def run_trial(task: Task) -> Trial:
     chance = task.chance()
     gear = task.cut.model(task.gear)
     prior = board_prior(gear)
-    board = draw_board(task.cut.plant(task.gear), prior, (*TOWS, HELD_OUT), chance)
+    board = draw_board(task.cut.plant(task.gear), prior, (*TOWS[: task.tows], HELD_OUT), chance)
     tows, held_out = board.tows[:-1], board.tows[-1]
     sensors = AS_STATED if task.stated else wrong_by(WRONG_BY, chance)
     options = EstimatorOptions(model_error=0.0, state_share=0.0) if task.stated else None
