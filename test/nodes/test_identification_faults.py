@@ -44,7 +44,12 @@ class Sea:
         self.source = graph.add(Source)
         self.listener = graph.add(listener_kind)
         self.node = graph.add(
-            IdentificationNode, gear=str(gear), settle_s=10.0, settle_passages=0.0, window_s=20.0
+            IdentificationNode,
+            gear=str(gear),
+            settle_s=10.0,
+            settle_passages=0.0,
+            window_s=20.0,
+            advise=False,
         )
         heard = [self.node.full_name(topic) for topic in SAMPLES]
         graph.until(lambda: all(self.source.count_subscribers(topic) for topic in heard))

@@ -62,7 +62,7 @@ class Replay:
     def __init__(self, graph, listener_kind, gear, **parameters):
         self.graph = graph
         self.listener = graph.add(listener_kind)
-        self.parameters = {'gear': str(gear), **RULES, **parameters}
+        self.parameters = {'gear': str(gear), 'advise': False, **RULES, **parameters}
 
     def node(self):
         return self.graph.add(IdentificationNode, **self.parameters)
@@ -197,18 +197,22 @@ def test_a_node_that_is_killed_goes_on_after_its_last_window(replay, bag, offlin
         def start():
             processes.start('identification_node', **played.parameters)
 
+        def kill():
+            process = processes._running.pop('identification_node')
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+
         start()
         played.play(bag, end=LEG_S - 1.0)
         played.graph.until(lambda: len(played.listener.covariances) > 1)
         same(played.listener, offline[:2])
-        process = processes._running.pop('identification_node')
-        process.send_signal(signal.SIGKILL)
-        process.wait()
+        kill()
         start()
         played.graph.until(lambda: len(played.listener.covariances) > 2)
         # What came after the last window is lost, unless somebody sends it again.
         played.play(bag, start=LEG_S - 15.0)
         played.graph.until(lambda: len(played.listener.covariances) > 4)
+        kill()
     same(played.listener, [*offline[:2], offline[1], *offline[2:]])
 
 

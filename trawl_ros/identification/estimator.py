@@ -23,6 +23,9 @@ from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
 
+SHORTEST = 0.125
+"""The least part of a step that is taken."""
+
 NEGLIGIBLE_GAIN = 1e-4
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
 
@@ -97,6 +100,11 @@ class Estimator:
     def coefficients(self) -> np.ndarray:
         """The present coefficients (12,)."""
         return self._fit.coefficients
+
+    @property
+    def fit(self) -> Fit:
+        """The windows beside the model at the present coefficients."""
+        return self._fit
 
     @property
     def without_steady_state(self) -> int:
@@ -202,8 +210,13 @@ class Estimator:
         if not self._fit.windows:
             return False, 'no window has a steady state in the model'
         limit = self.options.iterations_final
+        part = 1.0
         for iteration in range(1, limit + 1):
-            step = self._step(self.options.relinearise_final)
+            cost = self._fit.cost
+            step = self._step(self.options.relinearise_final, part)
+            if self._fit.cost > cost:
+                # What errors do has changed with the step, and would change back with the next.
+                part = max(0.5 * part, SHORTEST)
             if step.obstacle:
                 if step.gain > NEGLIGIBLE_GAIN and step.size >= self.options.tolerance:
                     return False, f'{step.obstacle}, {step.size:.2g} std from rest'
@@ -218,8 +231,8 @@ class Estimator:
                 )
         return False, f'still moving by {step.size:.2g} std after {limit} iterations'
 
-    def _step(self, relinearise: float) -> _Step:
-        """Take one Gauss–Newton step inside the bounds, halved until it lowers the cost."""
+    def _step(self, relinearise: float, part: float = 1.0) -> _Step:
+        """Take this part of a Gauss–Newton step in the bounds, halved until it lowers the cost."""
         prior, options, fit = self.prior, self.options, self._fit
         triangle, right = fit.system
         low = (prior.low - fit.coefficients) / prior.std
@@ -233,7 +246,7 @@ class Estimator:
             gain = float(0.5 * (right @ right - rest @ rest))
             if size < options.tolerance:
                 break
-            trial = np.clip(fit.coefficients + move * prior.std, prior.low, prior.high)
+            trial = np.clip(fit.coefficients + part * move * prior.std, prior.low, prior.high)
             try:
                 moved = self._moved(trial, relinearise)
             except NoSteadyState:

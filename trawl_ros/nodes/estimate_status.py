@@ -2,6 +2,8 @@
 
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimate import Innovation as Innovations
+from trawl_ros.identification.laws import QUANTITIES
+from trawl_ros.identification.planning_next import Advice
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.estimates import Innovation
 from trawl_ros.model.board import COEFFICIENTS
@@ -99,3 +101,28 @@ def instruments_status(estimate: Estimate) -> Status:
         )
     message = 'noise as found over noise as stated, and what each tow reads too high by'
     return Status('identification: instruments', OK, message, values)
+
+
+def advice_status(advice: Advice | None, trouble: str) -> Status:
+    """Give the next manoeuvre, what it would teach, or why there is none."""
+    name = 'identification: next manoeuvre'
+    if advice is None:
+        return Status(
+            name,
+            WARN if trouble else OK,
+            trouble or 'none yet: it needs a window, and time to look up',
+        )
+    manoeuvre = advice.manoeuvre
+    values = {
+        'port_warp': f'{manoeuvre.port_length:g}',
+        'starboard_warp': f'{manoeuvre.starboard_length:g}',
+        'speed': f'{manoeuvre.speed:g}',
+        'minutes': f'{advice.minutes:.0f}',
+        'gain': f'{advice.nats:.3f}',
+        'looked up': f'{advice.looked_up:.2f}',
+    }
+    for at, quantity in enumerate(QUANTITIES):
+        before, after = advice.before.ratio[at], advice.after.ratio[at]
+        values[f'{quantity} now'] = f'{before:.3f}'
+        values[f'{quantity} then'] = f'{after:.3f}'
+    return Status(name, OK, str(advice), values)

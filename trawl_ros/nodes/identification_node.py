@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from threading import Lock
 from typing import Any, ClassVar
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -17,6 +18,7 @@ from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.from_gear import identification_for
 from trawl_ros.identification.pipeline import Identification
+from trawl_ros.identification.planning_next import Advice, Adviser
 from trawl_ros.identification.report import report
 from trawl_ros.identification.saving import load_state, save_state
 from trawl_ros.identification.window_records import WindowOptions
@@ -31,7 +33,13 @@ from trawl_ros.messages.estimates import (
     innovation_message,
 )
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.nodes.estimate_status import identification_statuses, innovations_of
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.nodes.advising import AdvisingThread
+from trawl_ros.nodes.estimate_status import (
+    advice_status,
+    identification_statuses,
+    innovations_of,
+)
 from trawl_ros.nodes.identification_worker import IdentificationWorker
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.outcome import Outcome
@@ -41,6 +49,7 @@ from trawl_ros.nodes.rewinding import Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.scenario.scenario import true_coefficients
+from trawl_ros.solver.predict import Predictor
 
 STATUS = 'identification/status'
 FINISH = 'identification/finish'
@@ -66,6 +75,8 @@ class IdentificationNode(TrawlNode):
              'empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started anew goes on; none if empty.'),
+        Flag('advise', True, 'Whether to look for the manoeuvre that would teach most, which takes '
+             'a tenth of a core.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
         Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Least time the gear is '
@@ -92,6 +103,9 @@ class IdentificationNode(TrawlNode):
         self._resets = 0
         self._rewinding = Rewinding(identification.finder.newest('port_length'))
         self._sent: Estimate | None = None
+        self._telling = Lock()
+        self._advice: tuple[Advice | None, str] = None, ''
+        self._adviser = self._advising() if parameters['advise'] else None
         self._worker = IdentificationWorker(
             identification, self._publish, self._progress.done, self._save, self._report
         )
@@ -109,17 +123,28 @@ class IdentificationNode(TrawlNode):
         alone = MutuallyExclusiveCallbackGroup()
         self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
         self._worker.start()
+        if self._adviser is not None:
+            self._adviser.start()
+
+    def _advising(self) -> AdvisingThread:
+        # A model of its own: the estimator's remembers what it was asked last.
+        predictor = Predictor(build_model(self._gear))
+        adviser = Adviser(self._gear, predictor, windows=self._window_options())
+        return AdvisingThread(adviser, lambda: self._worker.idle, self._advised)
+
+    def _window_options(self) -> WindowOptions:
+        return WindowOptions(
+            settle_s=self.parameters['settle_s'],
+            settle_passages=self.parameters['settle_passages'],
+            window_s=self.parameters['window_s'],
+        )
 
     def _identification(self) -> Identification:
-        parameters = self.parameters
+        without_prior = EstimatorOptions(prior_weight=0.0)
         fresh = identification_for(
             self._gear,
-            window_options=WindowOptions(
-                settle_s=parameters['settle_s'],
-                settle_passages=parameters['settle_passages'],
-                window_s=parameters['window_s'],
-            ),
-            estimator_options=None if parameters['prior'] else EstimatorOptions(prior_weight=0.0),
+            window_options=self._window_options(),
+            estimator_options=None if self.parameters['prior'] else without_prior,
         )
         if self._state is None or not self._state.exists():
             return fresh
@@ -165,6 +190,8 @@ class IdentificationNode(TrawlNode):
     def finish_work(self) -> None:
         """Bring the estimate to rest, write the report, and end the thread."""
         self._jump.unregister()
+        if self._adviser is not None:
+            self._adviser.stop()
         wish = self._worker.finish()
         self._worker.stop()
         self._tell(wish.outcome)
@@ -203,14 +230,30 @@ class IdentificationNode(TrawlNode):
 
     def _publish(self, outcome: Outcome) -> None:
         estimate = outcome.estimate
-        if estimate is not None and estimate is not self._sent:
+        new = estimate is not self._sent
+        if estimate is not None and new:
             self.send(*estimate_message(estimate.values))
             self.send(*covariance_message(estimate.covariance))
             if estimate.innovation is not None:
                 self.send(*innovation_message(estimate.stamp, innovations_of(estimate.innovation)))
         self._sent = estimate
-        stamp = estimate.stamp if estimate else outcome.stamp
-        self.send(STATUS, diagnostic_array(stamp, identification_statuses(outcome)))
+        self._say_status(outcome)
+        if new and self._adviser is not None and outcome.fit is not None:
+            self._adviser.fitted(outcome.fit)
+
+    def _advised(self, advice: Advice | None, trouble: str) -> None:
+        before, self._advice = self._advice, (advice, trouble)
+        if str(before) != str(self._advice):
+            self._say_status(self._worker.outcome)
+
+    def _say_status(self, outcome: Outcome) -> None:
+        # Both threads come here, and of two statuses the newer one has to go out last.
+        with self._telling:
+            statuses = identification_statuses(outcome)
+            if self._adviser is not None:
+                statuses.append(advice_status(*self._advice))
+            stamp = outcome.estimate.stamp if outcome.estimate else outcome.stamp
+            self.send(STATUS, diagnostic_array(stamp, statuses))
 
     async def _finish(self, request: Any, response: Any) -> Any:
         wish = self._worker.finish()

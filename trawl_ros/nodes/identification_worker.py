@@ -242,6 +242,7 @@ class IdentificationWorker(Thread):
             found=identification.found,
             readings=readings_of(identification),
             whiteness=self._whiteness,
+            fit=identification.estimator.fit,
             why_not=identification.why_not(),
             troubles=dict(self._troubles),
             finished=finished,

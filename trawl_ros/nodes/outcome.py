@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.estimate import Estimate
+from trawl_ros.identification.fit import Fit
 from trawl_ros.identification.pipeline import Identification
 from trawl_ros.identification.residuals import innovations
 from trawl_ros.identification.whiteness import Whiteness
@@ -36,6 +37,8 @@ class Outcome:
         Channel → counts.
     whiteness
         Channel → the test of its innovations; None with too few.
+    fit
+        What the estimate comes from.
     why_not
         Why there is no estimate yet.
     troubles
@@ -51,6 +54,7 @@ class Outcome:
     found: Mapping[str, str] = field(default_factory=dict)
     readings: Mapping[str, Readings] = field(default_factory=dict)
     whiteness: Mapping[str, Whiteness | None] = field(default_factory=dict)
+    fit: Fit | None = None
     why_not: str | None = None
     troubles: Mapping[str, str] = field(default_factory=dict)
     finished: str | None = None
