@@ -23,8 +23,8 @@ from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
 
-SHORTEST = 0.125
-"""The least part of a step that is taken."""
+SHORTER = 0.5
+"""The part of a step that is taken where full steps lead to and fro."""
 
 NEGLIGIBLE_GAIN = 1e-4
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
@@ -216,7 +216,7 @@ class Estimator:
             step = self._step(self.options.relinearise_final, part)
             if self._fit.cost > cost:
                 # What errors do has changed with the step, and would change back with the next.
-                part = max(0.5 * part, SHORTEST)
+                part = SHORTER
             if step.obstacle:
                 if step.gain > NEGLIGIBLE_GAIN and step.size >= self.options.tolerance:
                     return False, f'{step.obstacle}, {step.size:.2g} std from rest'

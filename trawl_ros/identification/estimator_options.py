@@ -49,7 +49,7 @@ class EstimatorOptions:
     model_error: float = 1.0
     unsettled: float = 0.05
     iterations_per_window: int = 1
-    iterations_final: int = 25
+    iterations_final: int = 40
     halvings: int = 6
     largest_step: float = 1.0
     relinearise: float = 2.0
