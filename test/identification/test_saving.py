@@ -49,7 +49,7 @@ def state(fresh, samples, gear, tmp_path):
     return tmp_path / 'state'
 
 
-@pytest.mark.parametrize('every', [37, 1009])
+@pytest.mark.parametrize('every', [101, 1009])
 def test_it_goes_on_with_the_same_estimates(fresh, samples, gear, tmp_path, every):
     """Saved and resumed again and again, in the middle of settling, windows and sweeps."""
     whole, torn = fresh(), fresh()

@@ -205,7 +205,7 @@ def steady_samples(steady_tow):
                 over_ground = (sample.velocity[0] - 0.3) * ahead
                 nan = float('nan')
                 found.append(VelocitySample(sample.stamp, 'ground', over_ground, nan))
-                if (sample.stamp - start) % (10 * second) == 0:
+                if (sample.stamp - start) % (10 * second) == 5 * second:
                     height = RangeSample(sample.stamp, 'opening_height', 40.0, 1.0, 1.0, 300.0)
                     found.append(height)
             else:
