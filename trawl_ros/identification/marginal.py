@@ -5,7 +5,8 @@ errors δ of the window's inputs and what it lacks of rest, calibration ν of th
 own error μ and the step Δ of the coefficients; δ, ν, μ are normal with unit variance. Windows
 are whitened by V = D/w + G Gᵀ, then each tow's ν and then μ are eliminated by QR, which leaves a
 triangle for Δ. A Huber loss acts, through the weights w, on each reading's own error
-D V⁻¹ (r - U ν - M μ) and not on a mixture, so that one bad sensor is weighed down and its neighbours are not.
+D V⁻¹ (r - U ν - M μ) and not on a mixture, so that one bad sensor is weighed down and its
+neighbours are not.
 """
 
 from collections.abc import Sequence
