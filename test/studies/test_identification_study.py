@@ -165,6 +165,10 @@ def test_trials_of_other_settings_are_refused(tmp_path):
     KeptTrials(tmp_path, {'seed': 1, 'around': 12})
     with pytest.raises(TrawlError, match=r'seed 1.*expected seed 2.*--force'):
         KeptTrials(tmp_path, {'seed': 2, 'around': 12})
+    (tmp_path / FILE).unlink()
+    (tmp_path / REPORT).write_text('of somebody else')
+    with pytest.raises(TrawlError, match='holds files already'):
+        KeptTrials(tmp_path, {'seed': 1, 'around': 12})
     (tmp_path / FILE).write_text('notes\n')
     with pytest.raises(TrawlError, match='not a file of trials'):
         KeptTrials(tmp_path, {'seed': 1, 'around': 12})

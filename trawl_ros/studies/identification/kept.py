@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import empty_folder
 from trawl_ros.studies.identification.trial import Trial
 
 FILE = 'trials.jsonl'
@@ -27,7 +28,8 @@ class KeptTrials:
     Raises
     ------
     TrawlError
-        If the file is of other settings, or is none of trials.
+        If the file is of other settings, or is none of trials, or there is none in a folder of
+        other files.
     """
 
     def __init__(self, folder: Path, asked: Mapping[str, Any], *, force: bool = False) -> None:
@@ -35,6 +37,7 @@ class KeptTrials:
         self._asked = json.loads(json.dumps(asked))
         self._trials: dict[tuple[str, int], Trial] = {}
         if force or not self._path.is_file():
+            empty_folder(folder, force=force)
             folder.mkdir(parents=True, exist_ok=True)
             self._path.write_text(json.dumps({'asked': self._asked}) + '\n', encoding='utf-8')
             return
