@@ -147,7 +147,7 @@ def test_a_fault_is_told_by_its_reason_and_survived(sea, steady_samples, fault):
     key = f'rejected {found.reason}'
     sea.graph.until(lambda: key in sea.values())
     assert found.words in sea.values()[f'found {found.reason}']
-    sea.graph.until(lambda: key in sea.listener.report().values)
+    sea.graph.until(lambda: (said := sea.listener.report()) and key in said.values)
     assert 'error of the program' not in sea.listener.report().message
 
 
