@@ -45,7 +45,8 @@ def channels_figure(report: Report) -> Figure:
             rows = np.flatnonzero(speeds == speed)
             for values, line, width in ((report.at_start, '--', 0.9), (report.at_end, '-', 1.6)):
                 at, middle = _by_length(length[rows], values[rows, i])
-                axes.plot(at, scale * middle, line, color=colour, lw=width)
+                # A speed towed at one length has no line, but a dash.
+                axes.plot(at, scale * middle, line, marker='_', ms=9, color=colour, lw=width)
             axes.plot(length[rows], scale * report.measured[rows, i], 'o', ms=5, color=colour)
         axes.set_title(
             f'{channel.words}: error {100.0 * errors["start"][i]:.1f} % before, '
