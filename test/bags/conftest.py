@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from trawl_ros.bags.reader import Bag, read_messages
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.instruments.samples import PressureSample, WinchSample
 from trawl_ros.messages.cdr import serialize
@@ -59,3 +60,25 @@ def bag_path(tmp_path):
 @pytest.fixture
 def mcap_path(bag_path):
     return bag_path / 'trial_0.mcap'
+
+
+@pytest.fixture(scope='session')
+def read():
+    """Give all messages of a bag, decoded, and what is wrong with it."""
+
+    def read_bag(path, topics=None):
+        problems = []
+        return list(read_messages(path, topics, problems=problems)), problems
+
+    return read_bag
+
+
+@pytest.fixture(scope='session')
+def raw():
+    """Give all messages of a bag as they stand there, and what is wrong with it."""
+
+    def raw_bag(path):
+        bag = Bag(path)
+        return [(m.topic, m.type, m.data, m.log_time) for m in bag.raw()], bag.problems
+
+    return raw_bag

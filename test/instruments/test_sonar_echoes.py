@@ -53,8 +53,8 @@ def received(pings: list[Ping], sounding: Sounding = SOUNDING, seed: int = 0) ->
     return echoes(pings, GRID, BEAM, STRENGTHS, sounding, generator)
 
 
-def all_around(section: np.ndarray, **there: object) -> list[Ping]:
-    return [ping(float(angle), section, **there) for angle in GRID.angles]  # type: ignore[arg-type]
+def all_around(section: np.ndarray, altitude: float = math.inf) -> list[Ping]:
+    return [ping(float(angle), section, altitude=altitude) for angle in GRID.angles]
 
 
 def francois_garrison(f: float, t: float, s: float, d: float) -> float:

@@ -8,6 +8,7 @@ import pytest
 from trawl_ros.instruments.fish_sonar import FishSonar
 from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import FishSonarParameters, load_instruments
+from trawl_ros.instruments.samples import VelocitySample
 from trawl_ros.instruments.sampling import SECOND
 from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.vessel import VesselInstruments
@@ -160,11 +161,11 @@ def test_a_cross_current_shows_as_the_difference_of_ground_and_water() -> None:
     water, ground = [], []
     for k in range(900):
         for sample in boat.observe(partial_truth(k * SECOND, vessel=vessel)):
-            match getattr(sample, 'over', None):
-                case 'water':
-                    water.append(sample.velocity)  # type: ignore[union-attr]
-                case 'ground':
-                    ground.append(sample.velocity)  # type: ignore[union-attr]
+            match sample:
+                case VelocitySample(over='water'):
+                    water.append(sample.velocity)
+                case VelocitySample(over='ground'):
+                    ground.append(sample.velocity)
     x, y, _ = np.mean(water, axis=0)
     through = np.array([x * ahead[0] - y * ahead[1], x * ahead[1] + y * ahead[0]])
     difference = np.mean(ground, axis=0)[:2] - through

@@ -24,12 +24,12 @@ def held_out_figure(report: Report) -> Figure:
     axes.bar(
         place + 0.2, 100.0 * errors['held_out'], 0.38, color=MEASURED, label=f'left out, {left}'
     )
-    by_tow = report.errors_by_tow
+    by_tow = report.by_tow
     if len(by_tow) > 1:
         spread = np.linspace(-0.12, 0.12, len(by_tow))
-        for (_, values), beside in zip(by_tow.items(), spread, strict=True):
+        for tow, beside in zip(by_tow, spread, strict=True):
             axes.plot(
-                place + 0.2 + beside, 100.0 * values, 'o', ms=5, color=SECOND, mec='white',
+                place + 0.2 + beside, 100.0 * tow.held_out, 'o', ms=5, color=SECOND, mec='white',
                 label='single tows' if beside == spread[0] else None,
             )  # fmt: skip
     axes.hlines(

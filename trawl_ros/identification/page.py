@@ -126,18 +126,15 @@ def _residual(row: ChannelResiduals) -> dict[str, Any]:
 
 
 def _tows(report: Report) -> list[dict[str, Any]]:
-    rows = []
-    for tow, errors in report.errors_by_tow.items():
-        windows = [window for window in report.windows if window.tow == tow]
-        rows.append(
-            {
-                'name': report.tows[tow],
-                'windows': len(windows),
-                'states': len({window.state for window in windows}),
-                'errors': [percent(error) for error in errors],
-            }
-        )
-    return rows
+    return [
+        {
+            'name': tow.name,
+            'windows': tow.windows,
+            'states': tow.states,
+            'errors': [percent(error) for error in tow.held_out],
+        }
+        for tow in report.by_tow
+    ]
 
 
 def percent(value: float) -> str:

@@ -34,6 +34,19 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 
 @dataclass(frozen=True)
+class TowOutcome:
+    """One tow: its number and name, how many windows and steady states it gave, and the errors
+    (4,) in the channels of eq. 35 with which they were predicted when ``held_out``.
+    """
+
+    tow: int
+    name: str
+    windows: int
+    states: int
+    held_out: np.ndarray
+
+
+@dataclass(frozen=True)
 class KnownLaws:
     """The boards' laws where they worked.
 
@@ -136,13 +149,22 @@ class Report:
         }
 
     @property
-    def errors_by_tow(self) -> dict[int, np.ndarray]:
-        """The ``held_out`` errors (4,) of each tow."""
-        tows = self.tow_of
-        return {
-            int(tow): mnae(self.held_out.predicted[tows == tow], self.measured[tows == tow])
-            for tow in np.unique(tows)
-        }
+    def by_tow(self) -> tuple[TowOutcome, ...]:
+        """What each tow comes to."""
+        found = []
+        for tow in map(int, np.unique(self.tow_of)):
+            of_tow = self.tow_of == tow
+            windows = [window for window in self.windows if window.tow == tow]
+            found.append(
+                TowOutcome(
+                    tow=tow,
+                    name=self.tows[tow],
+                    windows=len(windows),
+                    states=len({window.state for window in windows}),
+                    held_out=mnae(self.held_out.predicted[of_tow], self.measured[of_tow]),
+                )
+            )
+        return tuple(found)
 
 
 def report(

@@ -96,16 +96,15 @@ def _accepted(report: Report) -> dict[str, Any]:
 
 def _tows(report: Report) -> list[dict[str, Any]]:
     tows = []
-    for tow, errors in report.errors_by_tow.items():
-        windows = [window for window in report.windows if window.tow == tow]
+    for tow in report.by_tow:
         tows.append(
             {
-                'name': report.tows[tow],
-                'windows': len(windows),
-                'states': len({window.state for window in windows}),
+                'name': tow.name,
+                'windows': tow.windows,
+                'states': tow.states,
                 'mnae_held_out': {
                     channel.name: _number(error)
-                    for channel, error in zip(PAPER_CHANNELS, errors, strict=True)
+                    for channel, error in zip(PAPER_CHANNELS, tow.held_out, strict=True)
                 },
                 'biases': {
                     bias.channel: {
@@ -115,7 +114,7 @@ def _tows(report: Report) -> list[dict[str, Any]]:
                         'known': bias.known,
                     }
                     for bias in report.estimate.tow_biases
-                    if bias.tow == tow
+                    if bias.tow == tow.tow
                 },
             }
         )

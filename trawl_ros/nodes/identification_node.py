@@ -225,7 +225,7 @@ class IdentificationNode(TrawlNode):
             raise TrawlError(identification.why_not() or 'nothing is estimated')
         if self._folder is None:
             return f'{found.windows} windows used; {found.reason}'
-        write_report(report(identification, self._truth), self._folder)
+        write_report(report(identification, self._truth, gear=self._gear), self._folder)
         return f'{self._folder}: identification.json of {found.windows} windows'
 
     def _publish(self, outcome: Outcome) -> None:
