@@ -122,7 +122,8 @@ def run_trial(task: Task) -> Trial:
     board = draw_board(task.cut.plant(task.gear), prior, (*TOWS[: task.tows], HELD_OUT), chance)
     tows, held_out = board.tows[:-1], board.tows[-1]
     sensors = AS_STATED if task.stated else wrong_by(WRONG_BY, chance)
-    options = EstimatorOptions(model_error=0.0, state_share=0.0) if task.stated else None
+    exact = EstimatorOptions(model_error=0.0, state_share=0.0, unsettled=0.0)
+    options = exact if task.stated else None
     estimator = Estimator(Predictor(build_model(gear)), prior, OBSERVABLES, options)
     for window in steady_windows(tows, sensors, chance):
         estimator.add(window)
