@@ -1,8 +1,11 @@
 """Errors of means, trends, outliers and stuck sensors are what they claim to be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.statistics import (
     effective_number,
     error_of_mean,
@@ -27,6 +30,33 @@ def test_the_stated_error_of_a_mean_is_its_scatter_over_repeats(rho):
     actual = np.std([values.mean() for values in series])
     stated = np.sqrt(np.mean([error_of_mean(values, 1.0) ** 2 for values in series]))
     assert stated == pytest.approx(actual, rel=0.2)
+
+
+def test_slow_noise_beneath_white_noise_is_counted():
+    # The first lag alone would state 0.43 of the scatter.
+    rng = np.random.default_rng(12)
+    rho = np.exp(-1.0 / 15.0)
+    series = [rng.normal(size=60) + correlated(rng, 60, rho) for _ in range(600)]
+    actual = np.std([values.mean() for values in series])
+    stated = np.sqrt(np.mean([error_of_mean(values, 1.0) ** 2 for values in series]))
+    assert stated == pytest.approx(actual, rel=0.25)
+
+
+def test_the_quietest_half_of_the_windows_is_not_believed(sea, model, prior):
+    windows = sea.trial_windows(model, np.random.default_rng(0), noise=0.1)
+    lucky = [
+        replace(window, noise={name: 0.1 * noise for name, noise in window.noise.items()})
+        if window.index in (2, 5)
+        else window
+        for window in windows
+    ]
+    fits = []
+    for trial in (windows, lucky):
+        estimator = Estimator(model, prior, sea.OBSERVABLES)
+        for window in trial:
+            estimator.add(window)
+        fits.append(estimator.finish())
+    np.testing.assert_allclose(fits[1].std, fits[0].std, rtol=1e-3)
 
 
 def test_ninety_correlated_readings_are_worth_far_fewer():

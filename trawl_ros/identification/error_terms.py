@@ -13,6 +13,7 @@ import numpy as np
 
 from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.window_records import SteadyWindow
 
 
 def group_of(channel: str) -> str:
@@ -97,8 +98,12 @@ class TowErrors:
         changes with the state.
     inputs : (n, k, 4) array
         What one std in warp lengths, speed and rest of this window does.
+    input_std : (n, 3) array
+        That std of warp lengths (m) and speed (m/s).
     calibration : (n, k, p) array
         What one std of each of `TERMS` does.
+    input_calibration : (n, 3, p) array
+        By how much one std of each of `TERMS` makes warp lengths and speed read too large.
     model : (n, k, m) array
         What one std of the model's errors does, one per group.
     """
@@ -108,7 +113,9 @@ class TowErrors:
     noise: np.ndarray
     numbers: np.ndarray
     inputs: np.ndarray
+    input_std: np.ndarray
     calibration: np.ndarray
+    input_calibration: np.ndarray
     model: np.ndarray
 
 
@@ -139,11 +146,12 @@ def tow_errors(parts: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, 
     """
     states = [part.window.state for part in parts]
     in_state = {state: states.count(state) for state in set(states)}
+    usual = _usual_noise([part.window for part in parts])
     tows: dict[int, list[int]] = {}
     for row, part in enumerate(parts):
         tows.setdefault(part.window.tow, []).append(row)
     return tuple(
-        _of_one_tow(rows, [parts[row] for row in rows], in_state, scheme)
+        _of_one_tow(rows, [parts[row] for row in rows], in_state, usual, scheme)
         for _, rows in sorted(tows.items())
     )
 
@@ -152,19 +160,20 @@ def _of_one_tow(
     rows: Sequence[int],
     parts: Sequence[Linearised],
     in_state: Mapping[int, int],
+    usual: Mapping[str, float],
     scheme: Scheme,
 ) -> TowErrors:
     present = np.array([[name in part.channels for name in MEASURED] for part in parts])
     by_inputs = np.array([spread(part, part.by_inputs) for part in parts])
     own = np.array(
-        [[_own_std(part, name, in_state, scheme) for name in MEASURED] for part in parts]
+        [[_own_std(part, name, in_state, usual, scheme) for name in MEASURED] for part in parts]
     )
     alone = np.array(
-        [[_own_std(part, name, {part.window.state: 1}, scheme) for name in MEASURED]
+        [[_own_std(part, name, {part.window.state: 1}, usual, scheme) for name in MEASURED]
          for part in parts]
     )  # fmt: skip
     input_std = np.array(
-        [[_own_std(part, name, in_state, scheme) for name in INPUTS] for part in parts]
+        [[_own_std(part, name, in_state, usual, scheme) for name in INPUTS] for part in parts]
     )
     slow = np.array([_unsettled(part, in_state, scheme) for part in parts])
     return TowErrors(
@@ -173,18 +182,37 @@ def _of_one_tow(
         noise=own,
         numbers=present * alone**2 / own**2,
         inputs=np.concatenate((by_inputs * input_std[:, None, :], slow[:, :, None]), axis=2),
+        input_std=input_std,
         calibration=np.array([_calibration(part, scheme) for part in parts]),
+        input_calibration=np.array([_of_inputs(part, scheme) for part in parts]),
         model=np.array([_model(part, scheme) for part in parts]),
     )
 
 
-def _own_std(part: Linearised, name: str, in_state: Mapping[int, int], scheme: Scheme) -> float:
+def _usual_noise(windows: Sequence[SteadyWindow]) -> dict[str, float]:
+    """The median of what windows find of each quantity's noise."""
+    found: dict[str, list[float]] = {}
+    for window in windows:
+        for name, noise in window.noise.items():
+            found.setdefault(group_of(name), []).append(noise)
+    return {group: float(np.median(noise)) for group, noise in found.items()}
+
+
+def _own_std(
+    part: Linearised,
+    name: str,
+    in_state: Mapping[int, int],
+    usual: Mapping[str, float],
+    scheme: Scheme,
+) -> float:
     window = part.window
     if name not in window.means or (name in MEASURED and name not in part.channels):
         return 1.0
     # All windows of a state share what changes with it, so their number must not wear it down.
     changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
-    return float(np.sqrt(window.noise[name] ** 2 + changing))
+    # Some thirty readings tell their own noise badly: one that seems small is small by chance.
+    noise = max(window.noise[name], usual[group_of(name)])
+    return float(np.sqrt(noise**2 + changing))
 
 
 def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> np.ndarray:
@@ -195,19 +223,25 @@ def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) ->
 
 
 def _calibration(part: Linearised, scheme: Scheme) -> np.ndarray:
-    columns = np.zeros((len(MEASURED), len(TERMS)))
-    by_inputs = spread(part, part.by_inputs)
+    # An input read too large makes the prediction differ, not the reading.
+    columns = -spread(part, part.by_inputs) @ _of_inputs(part, scheme)
     for column, term in enumerate(TERMS):
-        mean = part.window.means.get(term.channel)
-        if mean is None:
-            continue
-        size = scheme.tow_share * term.std * (mean if term.relative else 1.0)
-        if term.channel in INPUTS:
-            # An input read too large makes the prediction differ, not the reading.
-            columns[:, column] = -size * by_inputs[:, INPUTS.index(term.channel)]
-        elif term.channel in part.channels:
-            columns[MEASURED.index(term.channel), column] = size
+        if term.channel in part.channels:
+            columns[MEASURED.index(term.channel), column] = _size(part, term, scheme)
     return columns
+
+
+def _of_inputs(part: Linearised, scheme: Scheme) -> np.ndarray:
+    columns = np.zeros((len(INPUTS), len(TERMS)))
+    for column, term in enumerate(TERMS):
+        if term.channel in INPUTS:
+            columns[INPUTS.index(term.channel), column] = _size(part, term, scheme)
+    return columns
+
+
+def _size(part: Linearised, term: Term, scheme: Scheme) -> float:
+    mean = part.window.means[term.channel]
+    return scheme.tow_share * term.std * (mean if term.relative else 1.0)
 
 
 def _model(part: Linearised, scheme: Scheme) -> np.ndarray:

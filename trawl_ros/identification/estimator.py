@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from trawl_ros.errors import NoSteadyState
+from trawl_ros.identification.aim import aim
 from trawl_ros.identification.conclusion import conclude, innovation_of
 from trawl_ros.identification.estimate import Estimate, Innovation
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.fit import AS_STATED, Fit
-from trawl_ros.identification.linearised import Linearised, linearise
+from trawl_ros.identification.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.identification.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
@@ -26,7 +26,12 @@ from trawl_ros.identification.window_records import SteadyWindow
 SHORTER = 0.5
 """The part of a step that is taken where full steps lead to and fro."""
 
-NEGLIGIBLE_GAIN = 1e-4
+GETTING_ON = 0.5
+"""The part of the step before to which one must have come down where full steps do lead on."""
+
+NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
+
+NEGLIGIBLE_GAIN = 1e-3
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
 
 
@@ -114,7 +119,7 @@ class Estimator:
     def add(self, window: SteadyWindow) -> Estimate | None:
         """Use one more window; None when the model has no steady state there."""
         try:
-            part = self._linearise(window, self.coefficients)
+            part = self._linearise(window, self.coefficients, self._inputs_of(window))
         except NoSteadyState:
             self._without.append(window)
             return None
@@ -124,7 +129,6 @@ class Estimator:
             step = self._step(self.options.relinearise)
             if step.obstacle or step.size < self.options.tolerance:
                 break
-        self._fit = self._fit.rescaled()
         moved = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
         return self._publish(innovation, False, step.obstacle or moved)
 
@@ -171,7 +175,23 @@ class Estimator:
                 rows.append(paper_values(dict(zip(part.channels, part.values, strict=True))))
         return stack(rows)
 
-    def _linearise(self, window: SteadyWindow, coefficients: np.ndarray) -> Linearised:
+    def _inputs_of(self, window: SteadyWindow) -> np.ndarray:
+        """Warp lengths and speed of a window without the errors found in them.
+
+        One that is new is taken to share those of the last window of its tow.
+        """
+        measured = measured_inputs(window)
+        found = measured
+        for part, inputs in zip(self._fit.windows, self._fit.inputs, strict=True):
+            if part.window.index == window.index:
+                return inputs
+            if part.window.tow == window.tow:
+                found = measured + inputs - measured_inputs(part.window)
+        return found
+
+    def _linearise(
+        self, window: SteadyWindow, coefficients: np.ndarray, inputs: np.ndarray | None = None
+    ) -> Linearised:
         def distance(part: Linearised) -> float:
             return sum(
                 abs(window.means[name] / part.window.means[name] - 1.0)
@@ -181,7 +201,7 @@ class Estimator:
         starts: list[Any] = [None]
         if self._fit.windows:
             starts.insert(0, min(self._fit.windows, key=distance).state)
-        return linearise(self.predictor, self.observables, window, coefficients, starts)
+        return linearise(self.predictor, self.observables, window, coefficients, starts, inputs)
 
     def _solve_all(self) -> None:
         """Solve what is not at the present coefficients; set aside what has no state there."""
@@ -190,90 +210,91 @@ class Estimator:
         self._without = []
         parts = []
         for window in windows:
-            part = solved.get(window.index)
-            if part is None or self._far(part, self.coefficients, self.options.relinearise_final):
+            part, inputs = solved.get(window.index), self._inputs_of(window)
+            threshold = self.options.relinearise_final
+            if part is None or _far(part, self.coefficients, inputs, threshold):
                 try:
-                    part = self._linearise(window, self.coefficients)
+                    part = self._linearise(window, self.coefficients, inputs)
                 except NoSteadyState:
                     self._without.append(window)
                     continue
             parts.append(part)
         self._fit = replace(self._fit, windows=tuple(parts))
 
-    def _far(self, part: Linearised, coefficients: np.ndarray, threshold: float) -> bool:
-        """Whether a window is to be solved anew at other coefficients."""
-        change = part.by_coefficients @ (coefficients - part.at)
-        return bool(np.max(np.abs(change) / part.std(1)) > threshold)
-
     def _rest(self) -> tuple[bool, str]:
         """Iterate to the end; whether it converged and how one knows."""
         if not self._fit.windows:
             return False, 'no window has a steady state in the model'
         limit = self.options.iterations_final
-        part = 1.0
+        part, last = 1.0, np.inf
         for iteration in range(1, limit + 1):
-            cost = self._fit.cost
             step = self._step(self.options.relinearise_final, part)
-            if self._fit.cost > cost:
-                # What errors do has changed with the step, and would change back with the next.
-                part = SHORTER
-            if step.obstacle:
-                if step.gain > NEGLIGIBLE_GAIN and step.size >= self.options.tolerance:
-                    return False, f'{step.obstacle}, {step.size:.2g} std from rest'
-                return True, f'after {iteration} iterations no step can lower the cost noticeably'
-            before = np.array(self._fit.scales)
-            self._fit = self._fit.rescaled()
-            settled = bool(np.max(np.abs(np.array(self._fit.scales) / before - 1.0)) < 0.01)
-            if step.size < self.options.tolerance and settled:
+            if step.size < self.options.tolerance:
                 return True, (
                     f'after {iteration} iterations the step is below '
                     f'{self.options.tolerance:g} of every std'
                 )
+            if step.obstacle:
+                if step.gain > NEGLIGIBLE_GAIN:
+                    return False, f'{step.obstacle}, {step.size:.2g} std from rest'
+                return True, f'after {iteration} iterations no step can lower the cost noticeably'
+            # What errors do changes with a step, and may change back with the next.
+            part = SHORTER if step.size > GETTING_ON * last else 1.0
+            last = step.size
         return False, f'still moving by {step.size:.2g} std after {limit} iterations'
 
     def _step(self, relinearise: float, part: float = 1.0) -> _Step:
-        """Take this part of a Gauss–Newton step in the bounds, halved until it lowers the cost."""
+        """Go this part of the way to where the linearised windows aim, and halve it until it
+        lowers the cost of the windows solved anew.
+        """
         prior, options, fit = self.prior, self.options, self._fit
-        triangle, right = fit.system
-        low = (prior.low - fit.coefficients) / prior.std
-        high = (prior.high - fit.coefficients) / prior.std
-        reach, obstacle = options.largest_step, None
-        for _ in range(options.halvings + 1):
-            box = (np.maximum(low, -reach), np.minimum(high, reach))
-            move = lsq_linear(triangle, right, box, 'bvls', max_iter=200).x
-            size = float(np.max(np.abs(move) * prior.std / fit.std))
-            rest = triangle @ move - right
-            gain = float(0.5 * (right @ right - rest @ rest))
-            if size < options.tolerance:
-                break
-            trial = np.clip(fit.coefficients + part * move * prior.std, prior.low, prior.high)
+        reach = options.largest_step * prior.std
+        low = np.maximum(prior.low, fit.coefficients - reach)
+        high = np.minimum(prior.high, fit.coefficients + reach)
+        aimed = aim(fit, low, high)
+        fit = replace(fit, scales=aimed.scales)
+        size = float(np.max(np.abs(aimed.coefficients - fit.coefficients) / aimed.std))
+        step = _Step(size, fit.cost - aimed.cost)
+        self._fit = fit
+        known = all(
+            not _far(window, aimed.coefficients, inputs, relinearise)
+            for window, inputs in zip(fit.windows, aimed.inputs, strict=True)
+        )
+        if size < options.tolerance and known:
+            return step
+        for halving in range(options.halvings + 1):
             try:
-                moved = self._moved(trial, relinearise)
+                moved = self._moved(aimed, part * 0.5**halving, relinearise)
             except NoSteadyState:
-                obstacle = 'every further step leads to a gear without a steady state'
-            else:
-                if moved.cost_beside(fit) <= fit.cost * (1.0 + 1e-12):
-                    self._fit = moved
-                    self.history.append(Progress(len(moved.windows), moved.cost, moved.objective))
-                    return _Step(size, gain)
-                obstacle = 'no step lowers the cost'
-            reach = 0.5 * float(np.max(np.abs(move)))
-        return _Step(size, gain, obstacle)
+                step = replace(step, obstacle=NO_STEADY_STATE)
+                continue
+            # Errors do something else there; whichever way one looks at it, it is to be better.
+            if min(moved.cost, moved.cost_beside(fit)) <= fit.cost * (1.0 + 1e-12):
+                self._fit = moved
+                self.history.append(Progress(len(moved.windows), moved.cost, moved.objective))
+                return replace(step, obstacle=None)
+            step = replace(step, obstacle='no step lowers the cost')
+        return step
 
-    def _moved(self, coefficients: np.ndarray, threshold: float) -> Fit:
-        """The fit at other coefficients, solved anew where first order would not do.
+    def _moved(self, aimed: Fit, part: float, threshold: float) -> Fit:
+        """The fit at this part of the way to where it aims, solved anew where first order would
+        not do.
 
         The newest window always is, lest many small steps walk out of the steady states.
         """
-        parts = []
-        newest = self._fit.windows[-1]
-        for part in self._fit.windows:
-            if part is newest or self._far(part, coefficients, threshold):
-                part = linearise(
-                    self.predictor, self.observables, part.window, coefficients, (part.state,)
-                )
-            parts.append(part)
-        return replace(self._fit, windows=tuple(parts), coefficients=coefficients)
+        fit = self._fit
+        coefficients = fit.coefficients + part * (aimed.coefficients - fit.coefficients)
+        coefficients = np.clip(coefficients, self.prior.low, self.prior.high)
+        windows = []
+        for window, ahead in zip(fit.windows, aimed.inputs, strict=True):
+            inputs = window.inputs + part * (ahead - window.inputs)
+            if window is fit.windows[-1] or _far(window, coefficients, inputs, threshold):
+                window = linearise(
+                    self.predictor, self.observables, window.window, coefficients,
+                    (window.state,), inputs, even=False,
+                )  # fmt: skip
+            windows.append(window)
+        return replace(fit, windows=tuple(windows), coefficients=coefficients)
 
     def _innovation(self, part: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
@@ -283,3 +304,10 @@ class Estimator:
         self._revision += 1
         self.estimate = conclude(self._fit, self._revision, innovation, converged, reason)
         return self.estimate
+
+
+def _far(part: Linearised, coefficients: np.ndarray, inputs: np.ndarray, threshold: float) -> bool:
+    """Whether a window is to be solved anew: readings move by so many std to first order."""
+    change = part.by_coefficients @ (coefficients - part.at)
+    change += part.by_inputs @ (inputs - part.inputs)
+    return bool(np.max(np.abs(change) / part.std(1)) > threshold)

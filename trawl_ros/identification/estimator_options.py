@@ -54,7 +54,7 @@ class EstimatorOptions:
     largest_step: float = 1.0
     relinearise: float = 2.0
     relinearise_final: float = 0.02
-    tolerance: float = 5e-3
+    tolerance: float = 0.02
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -15,7 +15,7 @@ from trawl_ros.identification.error_terms import (
 )
 from trawl_ros.identification.estimate import Knowledge, know
 from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.linearised import Linearised, measured_inputs
 from trawl_ros.identification.marginal import (
     Marginal,
     clipped_variance,
@@ -29,19 +29,26 @@ from trawl_ros.identification.prior import BoardPrior
 AS_STATED = (1.0,) * len(GROUPS)
 """Factors on the stated noise before anything is known of it."""
 
+FARTHEST = 3.0
+"""Errors of inputs are taken for no larger than this many std when the model is solved."""
+
 LEAST_SCALE = 0.3
 """Noise is never taken to be less than this part of what is stated."""
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Linearised windows, coefficients (12,), and factors on the stated noise by group."""
+    """Linearised windows, coefficients (12,), and factors on the stated noise by group.
+
+    ``weights`` of the readings are found where none are given.
+    """
 
     windows: tuple[Linearised, ...]
     coefficients: np.ndarray
     scales: tuple[float, ...]
     prior: BoardPrior
     options: EstimatorOptions
+    weights: tuple[np.ndarray, ...] | None = None
 
     @cached_property
     def errors(self) -> tuple[TowErrors, ...]:
@@ -59,6 +66,17 @@ class Fit:
         return np.array(rows).reshape(-1, len(GROUP_OF))
 
     @cached_property
+    def inputs(self) -> np.ndarray:
+        """Most likely warp lengths and speed (windows, 3), without the errors found in them."""
+        found = np.array([measured_inputs(part.window) for part in self.windows]).reshape(-1, 3)
+        for part in self.marginal.tows:
+            own = np.clip(part.inputs[:, :3], -FARTHEST, FARTHEST)
+            calibration = np.clip(part.calibration, -FARTHEST, FARTHEST)
+            errors = part.errors
+            found[errors.rows] += errors.input_std * own - errors.input_calibration @ calibration
+        return found
+
+    @cached_property
     def jacobian(self) -> np.ndarray:
         """Sensitivities (windows, k, 12) per prior std."""
         rows = [spread(part, part.by_coefficients * self.prior.std) for part in self.windows]
@@ -71,7 +89,8 @@ class Fit:
 
     def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> Marginal:
         scales = np.array(self.scales)[GROUP_OF]
-        return marginalise(errors, scales, self.residual, jacobian, self.options.huber)
+        huber = self.options.huber
+        return marginalise(errors, scales, self.residual, jacobian, huber, self.weights)
 
     @property
     def cost(self) -> float:

@@ -9,8 +9,11 @@ from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.identification.window_records import SteadyWindow
 
-RELINEARISE = 0.1
-"""Fits for hold-out start at their rest but for one fold: a tenth of a std is near enough."""
+NEAR_ENOUGH = 0.1
+"""Std to which fits for hold-out come to rest."""
+
+STEPS = 3
+"""They start at the rest of all windows, from where the first step leads nearly all the way."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,12 @@ def hold_out(
         parts = [set(part.tolist()) for part in np.array_split(order, min(folds, max(groups, 1)))]
     if groups < 2:
         return HeldOut(by, groups, predicted)
-    options = replace(estimator.options, relinearise_final=RELINEARISE)
+    options = replace(
+        estimator.options,
+        relinearise_final=NEAR_ENOUGH,
+        tolerance=NEAR_ENOUGH,
+        iterations_final=STEPS,
+    )
     for number, left_out in enumerate(parts, start=1):
         if begun is not None:
             begun(number, len(parts))

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -14,15 +15,18 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 @dataclass(frozen=True)
 class Linearised:
-    """The model around coefficients ``at`` (12,) at one window's measured inputs.
+    """The model around coefficients ``at`` (12,) and ``inputs`` (3,), where it was solved.
 
     ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
-    ``by_coefficients`` (n, 12) and ``by_inputs`` (n, 3) in SI; ``state`` starts the solver.
+    ``by_coefficients`` (n, 12) and ``by_inputs`` (n, 3) in SI; ``state`` starts the solver. The
+    values are those of the measured inputs, to first order: warp lengths are measured with errors
+    that differ between the sides, and a gear that is towed askew is not linear in them.
     """
 
     window: SteadyWindow
     channels: tuple[str, ...]
     at: np.ndarray
+    inputs: np.ndarray
     measured: np.ndarray
     values: np.ndarray
     by_coefficients: np.ndarray
@@ -45,8 +49,27 @@ def linearise(
     window: SteadyWindow,
     coefficients: np.ndarray,
     starts: Sequence[Any] = (None,),
+    inputs: np.ndarray | None = None,
+    *,
+    even: bool = True,
 ) -> Linearised:
-    """Solve the model at a window's inputs, trying each of ``starts`` in turn.
+    """Solve the model at one window.
+
+    Parameters
+    ----------
+    predictor, observables
+        The model and the names of its values.
+    window
+        What was measured.
+    coefficients
+        Where (12,).
+    starts
+        Where to start from, each tried in turn; None is a cold start.
+    inputs
+        Warp lengths (m) and speed (m/s); as measured if None.
+    even
+        Whether a steady state may be one with both warps of their mean length, where there is
+        none else: counters may read so unequal that no gear could be towed so.
 
     Raises
     ------
@@ -55,24 +78,40 @@ def linearise(
     """
     channels = tuple(name for name in MEASURED if name in window.means and name in observables)
     rows = [observables.index(name) for name in channels]
-    port, starboard, speed = (window.means[name] for name in INPUTS)
+    stated = measured_inputs(window)
+    wanted = stated if inputs is None else inputs
     failure: NoSteadyState | None = None
-    for start in starts:
+    for start, at in product(starts, _places(wanted) if even else (wanted,)):
         try:
+            port, starboard, speed = map(float, at)
             prediction = predictor.predict(coefficients, port, starboard, speed, start)
         except NoSteadyState as error:
             failure = error
             continue
         jacobian = prediction.jacobian[rows]
+        by_inputs = jacobian[:, -3:]
         return Linearised(
             window=window,
             channels=channels,
             at=np.array(coefficients),
+            inputs=np.array(at),
             measured=np.array([window.means[name] for name in channels]),
-            values=prediction.values[rows],
+            values=prediction.values[rows] + by_inputs @ (stated - at),
             by_coefficients=jacobian[:, :-3],
-            by_inputs=jacobian[:, -3:],
+            by_inputs=by_inputs,
             slow=prediction.slow[rows],
             state=prediction.state,
         )
     raise failure or NoSteadyState('no start was given to look for a steady state from')
+
+
+def measured_inputs(window: SteadyWindow) -> np.ndarray:
+    """Warp lengths (m) and speed (m/s) of a window as measured, (3,)."""
+    return np.array([window.means[name] for name in INPUTS])
+
+
+def _places(inputs: np.ndarray) -> tuple[np.ndarray, ...]:
+    if inputs[0] == inputs[1]:
+        return (inputs,)
+    mean = float(inputs[:2].mean())
+    return inputs, np.array([mean, mean, inputs[2]])

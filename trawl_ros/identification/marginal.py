@@ -45,6 +45,8 @@ class TowPart:
         The readings' own errors, in std.
     calibration : (p,) array
         Most likely errors of calibration, in std.
+    inputs : (n, 4) array
+        Most likely errors of each window's inputs and rest, in std.
     cost : float
         Huber loss of the readings' own errors and half the squares of δ and ν.
     """
@@ -56,6 +58,7 @@ class TowPart:
     triangle: np.ndarray
     own: np.ndarray
     calibration: np.ndarray
+    inputs: np.ndarray
     cost: float
 
 
@@ -91,6 +94,7 @@ def marginalise(
     residual: np.ndarray,
     jacobian: np.ndarray,
     huber: float,
+    weights: Sequence[np.ndarray] | None = None,
 ) -> Marginal:
     """Eliminate all but the coefficients, robustly.
 
@@ -106,11 +110,15 @@ def marginalise(
         Sensitivities (windows, k, q) to the coefficients in units of their prior's std.
     huber
         Limit in std from where the loss grows linearly.
+    weights
+        Huber weights (n, k) of each tow that are taken as they are; found if None.
     """
+    if weights is not None:
+        return _solved(tows, weights, scales, residual, jacobian, huber)
     weights = [np.ones(tow.noise.shape) for tow in tows]
     for _ in range(ROUNDS):
         found = _solved(tows, weights, scales, residual, jacobian, huber)
-        updated = [huber / np.maximum(np.abs(part.own), huber) for part in found.tows]
+        updated = reweighted(found, huber)
         change = max(
             (float(np.max(np.abs(a - b))) for a, b in zip(updated, weights, strict=True)),
             default=0.0,
@@ -119,6 +127,11 @@ def marginalise(
             break
         weights = updated
     return found
+
+
+def reweighted(found: Marginal, huber: float) -> tuple[np.ndarray, ...]:
+    """Huber weights (n, k) of each tow for the readings' own errors."""
+    return tuple(huber / np.maximum(np.abs(part.own), huber) for part in found.tows)
 
 
 def _solved(
@@ -216,6 +229,7 @@ def _explained(
         triangle=triangle[:, :-1],
         own=own,
         calibration=calibration,
+        inputs=inputs,
         cost=float(loss.sum() + 0.5 * squares),
     )
 

@@ -84,7 +84,12 @@ def solve(estimator: Estimator, coefficients: np.ndarray) -> list[Linearised | N
     """
     found: list[Linearised | None] = []
     inputs = np.array([[window.means[name] for name in INPUTS] for window in estimator.windows])
+    without: set[int] = set()
     for row, window in enumerate(estimator.windows):
+        if window.state in without:
+            # It takes long to find that there is none, and is the same throughout a state.
+            found.append(None)
+            continue
         away = np.abs(inputs[:row] / inputs[row] - 1.0).sum(axis=1)
         solved = [found[i] for i in np.argsort(away, kind='stable')]
         near = next((part.state for part in solved if part is not None), None)
@@ -94,6 +99,7 @@ def solve(estimator: Estimator, coefficients: np.ndarray) -> list[Linearised | N
                 estimator.predictor, estimator.observables, window, coefficients, starts
             )
         except NoSteadyState:
+            without.add(window.state)
             found.append(None)
         else:
             found.append(part)

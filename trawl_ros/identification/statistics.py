@@ -8,6 +8,10 @@ from scipy.stats import t as student
 
 MAD_TO_STD = 1.4826
 
+MOST_CORRELATED = 3.0
+"""The variance of a mean is at most this many times that of a reading about it: a window that is
+not longer than its noise is slow cannot tell."""
+
 
 def effective_number(values: np.ndarray) -> float:
     """Number of independent readings that ``values`` (n,) are worth.
@@ -30,12 +34,27 @@ def effective_number(values: np.ndarray) -> float:
 
 
 def error_of_mean(values: np.ndarray, stated: float) -> float:
-    """Standard error of the mean of ``values`` (n,), ``stated`` std used when they are few."""
+    """Standard error of the mean of ``values`` (n,), ``stated`` std used when they are few.
+
+    Autocovariances are summed as long as those of two successive lags together are positive
+    (Geyer's initial positive sequence), so that a slow part beneath white noise counts, which the
+    first lag alone does not show. Each is raised by the variance of the mean itself, which
+    deviations from the mean have lost.
+    """
     n = len(values)
     scatter = float(np.std(values, ddof=1)) if n > 1 else 0.0
     if n < 8 or scatter == 0.0:
-        scatter = max(scatter, stated)
-    return scatter / math.sqrt(effective_number(values))
+        return max(scatter, stated) / math.sqrt(effective_number(values))
+    deviation = values - values.mean()
+    covariance = np.correlate(deviation, deviation, 'full')[n - 1 :] / n
+    pairs = covariance[: n - n % 2].reshape(-1, 2).sum(axis=1)
+    lags = 2 * (len(pairs) if np.all(pairs > 0.0) else int(np.argmax(pairs <= 0.0)))
+    least, most = scatter**2 / n, MOST_CORRELATED * covariance[0]
+    # The variance of the mean is (Σ over the lags of both signs of what the mean left + itself)/n.
+    summed = 2.0 * float(covariance[:lags].sum()) - covariance[0]
+    share = (2 * lags - 1) / n
+    variance = summed / n / (1.0 - share) if share < 1.0 else most
+    return math.sqrt(min(max(variance, least), most))
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,13 @@ from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
-from trawl_ros.solver.relax import TOLERANCE, WARM_LIMIT, WARM_TIME_STEP, relax
+from trawl_ros.solver.relax import (
+    DRIFT_TIME_STEP,
+    TOLERANCE,
+    WARM_LIMIT,
+    WARM_TIME_STEP,
+    relax,
+)
 from trawl_ros.solver.stability import Stability, stability
 
 COLLAPSED_NORMAL = -0.35
@@ -54,9 +60,10 @@ def find_equilibrium(
     start: Equilibrium | None = None,
     *,
     near: State | None = None,
+    cold: bool = True,
 ) -> Equilibrium:
     """Find the root at an operating point: warm from ``start``, from the shape ``near``
-    at this very point, or cold.
+    at this very point, or cold; where a root to start from is of no use, only if ``cold``.
 
     Raises
     ------
@@ -66,17 +73,21 @@ def find_equilibrium(
     tow = steady_tow(model, point)
     if near is not None:
         here = at_velocity(near, tow.block_velocities.mean(0))
-        state, iterations, residual = relax(model, here, tow, tolerance=TOLERANCE, time_step=10.0)
-    elif start is not None:
         state, iterations, residual = relax(
-            model,
-            shifted_to(model, start.state, start.tow, tow),
-            tow,
-            tolerance=TOLERANCE,
-            time_step=WARM_TIME_STEP,
-            limit=WARM_LIMIT,
+            model, here, tow, tolerance=TOLERANCE, time_step=DRIFT_TIME_STEP
         )
-    if (near is None and start is None) or residual > TOLERANCE:
+    elif start is not None:
+        here = shifted_to(model, start.state, start.tow, tow)
+        iterations = 0
+        # Too far for nearly Newton's steps, to drift there is still quicker than a cold start.
+        for time_step in (WARM_TIME_STEP, DRIFT_TIME_STEP):
+            state, more, residual = relax(
+                model, here, tow, tolerance=TOLERANCE, time_step=time_step, limit=WARM_LIMIT
+            )
+            iterations += more
+            if residual <= TOLERANCE:
+                break
+    if (near is None and start is None) or (cold and residual > TOLERANCE):
         state, iterations, residual = cold_start(model, point.heading, tow)
     where = _where(point)
     if residual > TOLERANCE:

@@ -50,7 +50,7 @@ class Predictor:
         speed
             Through the water, m/s.
         start
-            The ``state`` of an earlier prediction.
+            The ``state`` of an earlier prediction nearby; a cold start is made without one only.
 
         Raises
         ------
@@ -64,7 +64,7 @@ class Predictor:
             return last[1]
         model = self.model.with_coefficients(coefficients)
         point = OperatingPoint(port_length, starboard_length, speed)
-        found = find_equilibrium(model, point, start)
+        found = find_equilibrium(model, point, start, cold=start is None)
         values, jacobian = found.observables.array(), sensitivities(model, found)
         answer = Prediction(values, jacobian, slow_mode(model, found).shape, found)
         self._last = question, answer

@@ -31,6 +31,9 @@ WARM_LIMIT = 60
 WARM_TIME_STEP = 1e3
 """First time step (s) from a known state nearby: nearly Newton's own."""
 
+DRIFT_TIME_STEP = 10.0
+"""First time step (s) from a shape that is only roughly right."""
+
 
 def relax(
     model: GearModel,
