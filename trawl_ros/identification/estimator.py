@@ -31,6 +31,9 @@ GETTING_ON = 0.5
 
 NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
 
+WELL_KNOWN = 0.5
+"""What a window shows is known to first order this many std of a reading from its solution."""
+
 NEGLIGIBLE_GAIN = 1e-3
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
 
@@ -116,10 +119,13 @@ class Estimator:
         """How many windows the model has no steady state for; `finish` tries them again."""
         return len(self._without)
 
-    def add(self, window: SteadyWindow) -> Estimate | None:
-        """Use one more window; None when the model has no steady state there."""
+    def add(self, window: SteadyWindow, near: Any = None) -> Estimate | None:
+        """Use one more window; None when the model has no steady state there.
+
+        ``near`` is a steady state to start from, beside those of other windows.
+        """
         try:
-            part = self._linearise(window, self.coefficients, self._inputs_of(window))
+            part = self._linearise(window, self.coefficients, self._inputs_of(window), near)
         except NoSteadyState:
             self._without.append(window)
             return None
@@ -190,7 +196,11 @@ class Estimator:
         return found
 
     def _linearise(
-        self, window: SteadyWindow, coefficients: np.ndarray, inputs: np.ndarray | None = None
+        self,
+        window: SteadyWindow,
+        coefficients: np.ndarray,
+        inputs: np.ndarray | None = None,
+        near: Any = None,
     ) -> Linearised:
         def distance(part: Linearised) -> float:
             return sum(
@@ -198,9 +208,10 @@ class Estimator:
                 for name in ('port_length', 'starboard_length', 'speed')
             )
 
-        starts: list[Any] = [None]
+        starts: list[Any] = [] if near is None else [near]
         if self._fit.windows:
-            starts.insert(0, min(self._fit.windows, key=distance).state)
+            starts.append(min(self._fit.windows, key=distance).state)
+        starts.append(None)
         return linearise(self.predictor, self.observables, window, coefficients, starts, inputs)
 
     def _solve_all(self) -> None:
@@ -269,12 +280,21 @@ class Estimator:
                 step = replace(step, obstacle=NO_STEADY_STATE)
                 continue
             # Errors do something else there; whichever way one looks at it, it is to be better.
-            if min(moved.cost, moved.cost_beside(fit)) <= fit.cost * (1.0 + 1e-12):
+            better = min(moved.cost, moved.cost_beside(fit)) <= fit.cost * (1.0 + 1e-12)
+            if better or not self._comparable(moved):
                 self._fit = moved
                 self.history.append(Progress(len(moved.windows), moved.cost, moved.objective))
                 return replace(step, obstacle=None)
             step = replace(step, obstacle='no step lowers the cost')
         return step
+
+    def _comparable(self, moved: Fit) -> bool:
+        """Whether the windows that were solved anew were well known before, and so the cost."""
+        fit = self._fit
+        return not any(
+            window is not old and _far(old, fit.coefficients, inputs, WELL_KNOWN)
+            for window, old, inputs in zip(moved.windows, fit.windows, fit.inputs, strict=True)
+        )
 
     def _moved(self, aimed: Fit, part: float, threshold: float) -> Fit:
         """The fit at this part of the way to where it aims, solved anew where first order would

@@ -1,6 +1,7 @@
 """Windows on their way to the estimate: what no single channel can tell is judged here."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,12 +15,14 @@ from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow
 class Guarded:
     """A window to be used, or None and why not.
 
-    ``withdraw``: what was found holds for the whole tow, also for its windows in the estimate.
+    ``near`` is a steady state to start from. ``withdraw``: what was found holds for the whole tow,
+    also for its windows in the estimate.
     """
 
     window: SteadyWindow | None
     rejected: RejectedWindow | None = None
     withdraw: bool = False
+    near: Any = None
 
 
 class Guard:
@@ -48,12 +51,12 @@ class Guard:
             return self._refuse(window, 'speed over ground', over_ground, withdraw=True)
         judgement = self._screening.judge(window, coefficients)
         if judgement.found is None:
-            return Guarded(window)
+            return Guarded(window, near=self._screening.near)
         reason, detail = judgement.found.reason, judgement.found.detail
         if judgement.refused:
             return self._refuse(window, reason, detail, withdraw=reason == 'wrong unit')
         self.rejections.add(reason, detail)
-        return Guarded(without(window, judgement.without))
+        return Guarded(without(window, judgement.without), near=self._screening.near)
 
     def _refuse(self, window: SteadyWindow, reason: str, detail: str, *, withdraw: bool) -> Guarded:
         self.rejections.add(reason, detail)

@@ -171,7 +171,7 @@ class Identification:
             if guarded.window is None:
                 continue
             item = guarded.window
-            estimate = self.estimator.add(item)
+            estimate = self.estimator.add(item, guarded.near)
             if estimate is None:
                 lengths = f'{item.means["port_length"]:.0f} m'
                 speed = f'{item.means["speed"]:.2f} m/s'

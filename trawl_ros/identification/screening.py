@@ -63,6 +63,11 @@ class Screening:
         self._tow: int | None = None
         self._unit: Misreading | None = None
 
+    @property
+    def near(self) -> Any:
+        """The newest steady state that was found, to start from nearby; None before any."""
+        return self._start
+
     def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Judgement:
         """Judge a window around the present coefficients (12,); once for each steady state.
 

@@ -18,6 +18,7 @@ from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.relax import (
+    DRIFT_LIMIT,
     DRIFT_TIME_STEP,
     TOLERANCE,
     WARM_LIMIT,
@@ -80,9 +81,10 @@ def find_equilibrium(
         here = shifted_to(model, start.state, start.tow, tow)
         iterations = 0
         # Too far for nearly Newton's steps, to drift there is still quicker than a cold start.
-        for time_step in (WARM_TIME_STEP, DRIFT_TIME_STEP):
+        ways = (WARM_TIME_STEP, WARM_LIMIT), (DRIFT_TIME_STEP, DRIFT_LIMIT)
+        for time_step, limit in ways:
             state, more, residual = relax(
-                model, here, tow, tolerance=TOLERANCE, time_step=time_step, limit=WARM_LIMIT
+                model, here, tow, tolerance=TOLERANCE, time_step=time_step, limit=limit
             )
             iterations += more
             if residual <= TOLERANCE:

@@ -25,14 +25,17 @@ KEEP_RATE, KEEP_SIZE = 0.25, 0.02
 """A factorised matrix serves again after a step of at most this share of the limits, while it
 brings the force down to this share at least."""
 
-WARM_LIMIT = 60
-"""Iterations after which a warm start is given up for a cold one."""
-
 WARM_TIME_STEP = 1e3
 """First time step (s) from a known state nearby: nearly Newton's own."""
 
+WARM_LIMIT = 25
+"""Iterations in which that gets there or does not."""
+
 DRIFT_TIME_STEP = 10.0
 """First time step (s) from a shape that is only roughly right."""
+
+DRIFT_LIMIT = 90
+"""Iterations after which such a start is given up."""
 
 
 def relax(
