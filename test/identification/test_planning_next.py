@@ -122,6 +122,7 @@ def test_what_is_not_heard_promises_nothing(adviser, fit):
                 values=part.values[kept],
                 by_coefficients=part.by_coefficients[kept],
                 by_inputs=part.by_inputs[kept],
+                by_net=part.by_net[kept],
                 slow=part.slow[kept],
             )
         )

@@ -13,8 +13,7 @@ from trawl_ros.cli.read_tows import read_tows
 from trawl_ros.errors import TrawlError
 from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.from_gear import identification_for
+from trawl_ros.identification.from_gear import estimator_options, identification_for
 from trawl_ros.identification.report import Report, report
 from trawl_ros.identification.table import (
     channel_table,
@@ -42,6 +41,10 @@ TABLE_WIDTH = 100
     'the estimates.',
 )  # fmt: skip
 @click.option('--no-prior', is_flag=True, help='Let the data alone decide, within the bounds.')
+@click.option(
+    '--net', is_flag=True, help='Estimate drag and weight of the net along; else they are held as '
+    'the gear file has them.',
+)  # fmt: skip
 @click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
 @click.option(
     '--scheduler', help='Address of a Dask cluster that reads the bags, which it must see under '
@@ -54,6 +57,7 @@ def command(
     gear: str,
     truth: Path | None,
     no_prior: bool,
+    net: bool,
     namespace: str,
     scheduler: str | None,
     force: bool,
@@ -65,7 +69,7 @@ def command(
     """
     empty_folder(out, force=force)
     true_values = None if truth is None else true_coefficients(packaged(truth, 'scenarios'))
-    options = EstimatorOptions(prior_weight=0.0) if no_prior else None
+    options = estimator_options(prior=not no_prior, net=net)
     record = load_gear(gear)
     console = error_console()
     found = read_tows(bags, record, namespace, console, scheduler)

@@ -1,17 +1,17 @@
-"""What a fit finds the instruments of each tow to be wrong by."""
+"""What a fit finds the instruments of each tow, and the net, to be wrong by."""
 
 import numpy as np
 
 from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.identification.error_terms import TERMS, Scheme
-from trawl_ros.identification.estimate import TowBias
+from trawl_ros.identification.error_terms import TERMS
+from trawl_ros.identification.estimate import NetFactor, TowBias
 from trawl_ros.identification.fit import Fit
 from trawl_ros.identification.marginal import calibration_root, joint_root
 
 
 def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
     """Give the errors of calibration by tow and channel, inputs included."""
-    share = Scheme(fit.options.state_share).tow_share
+    share = fit.scheme.tow_share
     joint = joint_root(fit.marginal, fit.knowledge.root)
     found = []
     for part in fit.marginal.tows:
@@ -40,3 +40,17 @@ def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
                 )
             )
     return tuple(found)
+
+
+def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
+    """Give drag and weight of the net, if they are estimated along."""
+    if fit.net is None:
+        return ()
+    std = fit.scheme.net_std
+    root = joint_root(fit.marginal, fit.knowledge.root)
+    rows = range(len(fit.marginal.model) - 2, len(fit.marginal.model))
+    return tuple(
+        NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))
+        for what, value, known, row in zip(('drag', 'weight'), fit.net, std, rows, strict=True)
+        if known > 0.0
+    )

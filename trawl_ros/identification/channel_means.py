@@ -1,6 +1,5 @@
 """One channel in one window: its readings, or why it has none that can be used."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,14 +15,15 @@ from trawl_ros.identification.window_records import WindowOptions
 
 @dataclass(frozen=True)
 class ChannelMean:
-    """``mean`` of ``count`` readings, its standard error ``noise``, and how many outliers were
-    ``excluded``.
+    """``mean`` of ``count`` readings, its standard error ``noise``, how many outliers were
+    ``excluded``, and how far it may be from where it will rest.
     """
 
     mean: float
     noise: float
     count: int
     excluded: int
+    to_come: float = 0.0
 
 
 def channel_mean(
@@ -53,7 +53,7 @@ def channel_mean(
         return Unheld('outlier', f'{where} has {excluded} outliers in {len(values)} readings')
     seconds, values = seconds[~off], values[~off]
     mean = float(values.mean())
-    noise = error_of_mean(values, stated)
+    noise, to_come = error_of_mean(values, stated), 0.0
     if channel.settles:
         change = trend(seconds, values)
         limit = max(options.drift_fraction * abs(mean), channel.bias)
@@ -65,8 +65,7 @@ def channel_mean(
             )
         # What decays slowly has as much still to come as its slope brings in that time.
         to_come = change.beyond_noise * options.slow_s / options.window_s
-        noise = math.hypot(noise, to_come)
-    return ChannelMean(mean, noise, len(values), excluded)
+    return ChannelMean(mean, noise, len(values), excluded, to_come)
 
 
 def _outside(where: str, channel: Channel, outside: np.ndarray) -> Unheld:

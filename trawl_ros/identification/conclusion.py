@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trawl_ros.identification.calibration import tow_biases
+from trawl_ros.identification.calibration import net_factors, tow_biases
 from trawl_ros.identification.error_terms import GROUP_OF, GROUPS
 from trawl_ros.identification.estimate import (
     Estimate,
@@ -41,7 +41,7 @@ def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
     )
     spread = part.by_coefficients @ known @ part.by_coefficients.T
     std = np.sqrt(own**2 + np.sum(shared**2, axis=1) + np.diag(spread))
-    difference = part.measured - part.values
+    difference = part.measured - part.solved
     return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
 
 
@@ -69,6 +69,7 @@ def conclude(
         undetermined=undetermined(fit.knowledge),
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
         tow_biases=tow_biases(fit),
+        net=net_factors(fit),
         freedom=freedom,
         cost=fit.cost,
         objective=fit.objective,

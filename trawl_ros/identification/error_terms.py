@@ -45,6 +45,8 @@ class Scheme:
         rest stays through the tow.
     model_error
         Factor on the model's own errors; 0 is a model taken to be exact.
+    net_drag, net_weight
+        Std of the factors on the net's drag and weight in water; where both are 0 the net is held.
     unsettled
         Std, as a part of the net's depth, of what is still to come of the gear's slowest motion
         in a window that is steady to the eye.
@@ -53,6 +55,13 @@ class Scheme:
     state_share: float = 0.3
     model_error: float = 1.0
     unsettled: float = 0.05
+    net_drag: float = 0.0
+    net_weight: float = 0.0
+
+    @property
+    def net_std(self) -> np.ndarray:
+        """Of both factors (2,)."""
+        return np.array([self.net_drag, self.net_weight])
 
     @property
     def tow_share(self) -> float:
@@ -105,7 +114,8 @@ class TowErrors:
     input_calibration : (n, 3, p) array
         By how much one std of each of `TERMS` makes warp lengths and speed read too large.
     model : (n, k, m) array
-        What one std of the model's errors does, one per group.
+        What one std of the model's errors does, one per group, and then of the net's drag and
+        weight where they are not held.
     """
 
     rows: np.ndarray
@@ -211,7 +221,7 @@ def _own_std(
     # All windows of a state share what changes with it, so their number must not wear it down.
     changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
     # Some thirty readings tell their own noise badly: one that seems small is small by chance.
-    noise = max(window.noise[name], usual[group_of(name)])
+    noise = window.own_noise(name, usual[group_of(name)])
     return float(np.sqrt(noise**2 + changing))
 
 
@@ -250,4 +260,6 @@ def _model(part: Linearised, scheme: Scheme) -> np.ndarray:
         row = MEASURED.index(name)
         size = MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
         columns[row, GROUP_OF[row]] = scheme.model_error * size
-    return columns
+    if not scheme.net_std.any():
+        return columns
+    return np.hstack((columns, spread(part, part.by_net) * scheme.net_std))

@@ -63,6 +63,18 @@ class TowBias:
 
 
 @dataclass(frozen=True)
+class NetFactor:
+    """How many times the gear file's drag, or weight in water, the net has: ``value``, its ``std``
+    after the fit and what was ``known`` before (std).
+    """
+
+    what: str
+    value: float
+    std: float
+    known: float
+
+
+@dataclass(frozen=True)
 class Knowledge:
     """What prior and data together say about the coefficients, from whitened rows.
 
@@ -117,6 +129,8 @@ class Estimate:
         imagined readings as stated steady it, and intervals are set by it.
     tow_biases
         What the instruments of each tow read too high by.
+    net
+        Drag and weight of the net; empty where they are held.
     freedom
         Degrees of freedom of Student's t.
     cost
@@ -142,6 +156,7 @@ class Estimate:
     undetermined: tuple[Combination, ...]
     noise_scales: Mapping[str, float]
     tow_biases: tuple[TowBias, ...]
+    net: tuple[NetFactor, ...]
     freedom: float
     cost: float
     objective: float

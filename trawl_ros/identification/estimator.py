@@ -178,7 +178,7 @@ class Estimator:
             except NoSteadyState:
                 rows.append(np.full(len(PAPER_CHANNELS), np.nan))
             else:
-                rows.append(paper_values(dict(zip(part.channels, part.values, strict=True))))
+                rows.append(paper_values(dict(zip(part.channels, part.solved, strict=True))))
         return stack(rows)
 
     def _inputs_of(self, window: SteadyWindow) -> np.ndarray:
@@ -212,7 +212,9 @@ class Estimator:
         if self._fit.windows:
             starts.append(min(self._fit.windows, key=distance).state)
         starts.append(None)
-        return linearise(self.predictor, self.observables, window, coefficients, starts, inputs)
+        return linearise(
+            self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
+        )
 
     def _solve_all(self) -> None:
         """Solve what is not at the present coefficients; set aside what has no state there."""
@@ -223,7 +225,7 @@ class Estimator:
         for window in windows:
             part, inputs = solved.get(window.index), self._inputs_of(window)
             threshold = self.options.relinearise_final
-            if part is None or _far(part, self.coefficients, inputs, threshold):
+            if part is None or _far(part, self.coefficients, inputs, self._fit.net, threshold):
                 try:
                     part = self._linearise(window, self.coefficients, inputs)
                 except NoSteadyState:
@@ -268,7 +270,7 @@ class Estimator:
         step = _Step(size, fit.cost - aimed.cost)
         self._fit = fit
         known = all(
-            not _far(window, aimed.coefficients, inputs, relinearise)
+            not _far(window, aimed.coefficients, inputs, aimed.net, relinearise)
             for window, inputs in zip(fit.windows, aimed.inputs, strict=True)
         )
         if size < options.tolerance and known:
@@ -292,7 +294,7 @@ class Estimator:
         """Whether the windows that were solved anew were well known before, and so the cost."""
         fit = self._fit
         return not any(
-            window is not old and _far(old, fit.coefficients, inputs, WELL_KNOWN)
+            window is not old and _far(old, fit.coefficients, inputs, fit.net, WELL_KNOWN)
             for window, old, inputs in zip(moved.windows, fit.windows, fit.inputs, strict=True)
         )
 
@@ -308,10 +310,11 @@ class Estimator:
         windows = []
         for window, ahead in zip(fit.windows, aimed.inputs, strict=True):
             inputs = window.inputs + part * (ahead - window.inputs)
-            if window is fit.windows[-1] or _far(window, coefficients, inputs, threshold):
+            net = None if aimed.net is None else window.net + part * (aimed.net - window.net)
+            if window is fit.windows[-1] or _far(window, coefficients, inputs, net, threshold):
                 window = linearise(
                     self.predictor, self.observables, window.window, coefficients,
-                    (window.state,), inputs, even=False,
+                    (window.state,), inputs, net, even=False,
                 )  # fmt: skip
             windows.append(window)
         return replace(fit, windows=tuple(windows), coefficients=coefficients)
@@ -326,8 +329,16 @@ class Estimator:
         return self.estimate
 
 
-def _far(part: Linearised, coefficients: np.ndarray, inputs: np.ndarray, threshold: float) -> bool:
+def _far(
+    part: Linearised,
+    coefficients: np.ndarray,
+    inputs: np.ndarray,
+    net: np.ndarray | None,
+    threshold: float,
+) -> bool:
     """Whether a window is to be solved anew: readings move by so many std to first order."""
     change = part.by_coefficients @ (coefficients - part.at)
     change += part.by_inputs @ (inputs - part.inputs)
+    if net is not None:
+        change += part.by_net @ (net - part.net)
     return bool(np.max(np.abs(change) / part.std(1)) > threshold)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 from trawl_ros.errors import TrawlError
 
-MAY_BE_ZERO = ('prior_weight', 'state_share', 'model_error', 'unsettled')
+MAY_BE_ZERO = ('prior_weight', 'state_share', 'model_error', 'unsettled', 'net_drag', 'net_weight')
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,9 @@ class EstimatorOptions:
         same factor in all of them.
     state_share, model_error, unsettled
         How errors are divided, as in `trawl_ros.identification.error_terms.Scheme`.
+    net_drag, net_weight
+        Std of factors on drag and weight in water of the net, which are then estimated along; where
+        both are 0 the net is held as the gear file has it.
     iterations_per_window, iterations_final
         Gauss–Newton steps at most after each window and at the end.
     halvings
@@ -48,6 +51,8 @@ class EstimatorOptions:
     state_share: float = 0.3
     model_error: float = 1.0
     unsettled: float = 0.05
+    net_drag: float = 0.0
+    net_weight: float = 0.0
     iterations_per_window: int = 1
     iterations_final: int = 40
     halvings: int = 6

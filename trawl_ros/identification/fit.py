@@ -32,6 +32,9 @@ AS_STATED = (1.0,) * len(GROUPS)
 FARTHEST = 3.0
 """Errors of inputs are taken for no larger than this many std when the model is solved."""
 
+LEAST_FACTOR = 0.2
+"""Nor is the net ever taken to have less than this part of its drag and weight."""
+
 LEAST_SCALE = 0.3
 """Noise is never taken to be less than this part of what is stated."""
 
@@ -53,9 +56,30 @@ class Fit:
     @cached_property
     def errors(self) -> tuple[TowErrors, ...]:
         """What can be wrong with the readings, tow by tow."""
+        return tow_errors(self.windows, self.scheme)
+
+    @property
+    def scheme(self) -> Scheme:
+        """How errors are divided."""
         options = self.options
-        scheme = Scheme(options.state_share, options.model_error, options.unsettled)
-        return tow_errors(self.windows, scheme)
+        return Scheme(
+            options.state_share,
+            options.model_error,
+            options.unsettled,
+            options.net_drag,
+            options.net_weight,
+        )
+
+    @property
+    def net(self) -> np.ndarray | None:
+        """Most likely factors (2,) on drag and weight of the net; None where it is held."""
+        std = self.scheme.net_std
+        if not std.any():
+            return None
+        found = np.zeros(2)
+        if self.windows:
+            found = np.clip(self.marginal.model[-2:], -FARTHEST, FARTHEST)
+        return np.maximum(1.0 + std * found, LEAST_FACTOR)
 
     @cached_property
     def residual(self) -> np.ndarray:
@@ -156,6 +180,8 @@ class Fit:
         predicted, measured = [], []
         for part in self.windows:
             values = part.predicted(self.coefficients)
+            if self.net is not None:
+                values = values + part.by_net @ (self.net - 1.0)
             predicted.append(paper_values(dict(zip(part.channels, values, strict=True))))
             measured.append(paper_values(part.window.means))
         return objective(stack(predicted), stack(measured))

@@ -11,6 +11,17 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
+NET_STD = 0.2
+"""Std of the factors on drag and weight of the net, where these are estimated along; assumed."""
+
+
+def estimator_options(*, prior: bool = True, net: bool = False) -> EstimatorOptions:
+    """What node and command line let one choose: whether the prior takes part, and whether drag and
+    weight of the net are estimated along.
+    """
+    std = NET_STD if net else 0.0
+    return EstimatorOptions(prior_weight=float(prior), net_drag=std, net_weight=std)
+
 
 def board_prior(gear: GearRecord) -> BoardPrior:
     """What a gear file knows of its board before any tow."""

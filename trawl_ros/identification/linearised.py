@@ -9,17 +9,19 @@ import numpy as np
 
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.identification.channels import INPUTS, MEASURED
-from trawl_ros.identification.prediction import Predictor
+from trawl_ros.identification.prediction import NetPredictor, Predictor
 from trawl_ros.identification.window_records import SteadyWindow
 
 
 @dataclass(frozen=True)
 class Linearised:
-    """The model around coefficients ``at`` (12,) and ``inputs`` (3,), where it was solved.
+    """The model around coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,), where it was
+    solved; the last are factors on drag and weight in water of the net.
 
     ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
-    ``by_coefficients`` (n, 12) and ``by_inputs`` (n, 3) in SI; ``state`` starts the solver. The
-    values are those of the measured inputs, to first order: warp lengths are measured with errors
+    ``by_coefficients`` (n, 12), ``by_inputs`` (n, 3) and ``by_net`` (n, 2; 0 where the net is held)
+    in SI; ``state`` starts the solver. The values are those of the measured inputs and of the net
+    in the gear file, to first order: warp lengths are measured with errors
     that differ between the sides, and a gear that is towed askew is not linear in them.
     """
 
@@ -27,16 +29,23 @@ class Linearised:
     channels: tuple[str, ...]
     at: np.ndarray
     inputs: np.ndarray
+    net: np.ndarray
     measured: np.ndarray
     values: np.ndarray
     by_coefficients: np.ndarray
     by_inputs: np.ndarray
+    by_net: np.ndarray
     slow: np.ndarray
     state: Any
 
     def predicted(self, coefficients: np.ndarray) -> np.ndarray:
         """Values (n,) at other coefficients, to first order."""
         return self.values + self.by_coefficients @ (coefficients - self.at)
+
+    @property
+    def solved(self) -> np.ndarray:
+        """Values (n,) with the net as it was when they were solved."""
+        return self.values + self.by_net @ (self.net - 1.0)
 
     def std(self, windows_in_state: int) -> np.ndarray:
         """Standard deviations (n,) of the measured means."""
@@ -50,6 +59,7 @@ def linearise(
     coefficients: np.ndarray,
     starts: Sequence[Any] = (None,),
     inputs: np.ndarray | None = None,
+    net: np.ndarray | None = None,
     *,
     even: bool = True,
 ) -> Linearised:
@@ -67,6 +77,8 @@ def linearise(
         Where to start from, each tried in turn; None is a cold start.
     inputs
         Warp lengths (m) and speed (m/s); as measured if None.
+    net
+        Factors (2,) on drag and weight of the net where these are estimated along.
     even
         Whether a steady state may be one with both warps of their mean length, where there is
         none else: counters may read so unequal that no gear could be towed so.
@@ -81,6 +93,11 @@ def linearise(
     stated = measured_inputs(window)
     wanted = stated if inputs is None else inputs
     failure: NoSteadyState | None = None
+    there, by_net = np.ones(2), np.zeros((len(channels), 2))
+    if net is not None:
+        if not isinstance(predictor, NetPredictor):
+            raise TypeError(f'{type(predictor).__name__} does not know what its net does')
+        there, predictor = net, predictor.with_net(float(net[0]), float(net[1]))
     for start, at in product(starts, _places(wanted) if even else (wanted,)):
         try:
             port, starboard, speed = map(float, at)
@@ -90,15 +107,19 @@ def linearise(
             continue
         jacobian = prediction.jacobian[rows]
         by_inputs = jacobian[:, -3:]
+        if isinstance(predictor, NetPredictor) and net is not None:
+            by_net = predictor.by_net(coefficients, prediction.state)[rows] / net
         return Linearised(
             window=window,
             channels=channels,
             at=np.array(coefficients),
             inputs=np.array(at),
+            net=np.array(there),
             measured=np.array([window.means[name] for name in channels]),
-            values=prediction.values[rows] + by_inputs @ (stated - at),
+            values=prediction.values[rows] + by_inputs @ (stated - at) + by_net @ (1.0 - there),
             by_coefficients=jacobian[:, :-3],
             by_inputs=by_inputs,
+            by_net=by_net,
             slow=prediction.slow[rows],
             state=prediction.state,
         )

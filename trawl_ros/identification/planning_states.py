@@ -183,11 +183,12 @@ class Explorer:
                 + abs(there.speed / manoeuvre.speed - 1.0)
             )
 
-        start = min(known, key=distance).part.state if known else None
+        starts = (min(known, key=distance).part.state, None) if known else (None,)
         model = self.predictor.model.with_coefficients(self.coefficients)
         try:
+            asked = _asked(manoeuvre)
             part = linearise(
-                self.predictor, OBSERVABLES, _asked(manoeuvre), self.coefficients, (start,)
+                self.predictor, OBSERVABLES, asked, self.coefficients, starts, even=False
             )
             steady = require_usable(model, part.state)
         except NoSteadyState as reason:

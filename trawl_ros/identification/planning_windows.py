@@ -1,6 +1,5 @@
 """The windows that a manoeuvre would give."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -50,7 +49,7 @@ def imagined_windows(
     noise
         Standard error of each channel's mean; channels that are not in it are not heard.
     to_come
-        By how much (m) depths are still to change; it counts as noise of each.
+        By how much (m) depths are still to change.
     """
     part = candidate.part
     rows = [row for row, name in enumerate(part.channels) if name in noise]
@@ -61,16 +60,17 @@ def imagined_windows(
     bias = {name: CHANNELS[name].bias_std(value) for name, value in means.items()}
     counts = dict.fromkeys(means, 1)
     chosen = {name: noise[name] for name in means}
-    chosen |= {name: math.hypot(chosen[name], to_come) for name in DEPTHS if name in chosen}
+    left = {name: to_come for name in DEPTHS if name in means}
     return tuple(
         replace(
             part,
-            window=SteadyWindow(index, state, 0, 0, means, chosen, bias, counts, tow),
+            window=SteadyWindow(index, state, 0, 0, means, chosen, bias, counts, tow, to_come=left),
             channels=channels,
             measured=measured,
             values=part.values[rows],
             by_coefficients=part.by_coefficients[rows],
             by_inputs=part.by_inputs[rows],
+            by_net=part.by_net[rows],
             slow=part.slow[rows],
         )
         for index in range(number)

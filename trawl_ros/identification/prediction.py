@@ -1,6 +1,6 @@
 """What the estimator asks of a model of the gear."""
 
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -47,4 +47,17 @@ class Predictor(Protocol):
         NoSteadyState
             When there is none.
         """
+        ...
+
+
+@runtime_checkable
+class NetPredictor(Predictor, Protocol):
+    """One that knows what its net does."""
+
+    def with_net(self, drag: float, weight: float) -> 'NetPredictor':
+        """The predictor of a gear whose net has this many times the drag and weight in water."""
+        ...
+
+    def by_net(self, coefficients: np.ndarray, found: Any) -> np.ndarray:
+        """Derivatives (n, 2) by factors on drag and weight at a prediction's ``state``."""
         ...

@@ -202,7 +202,7 @@ def report(
         raise TrawlError(identification.why_not() or 'nothing is estimated')
     windows, weight = estimator.windows, estimator.options.prior_weight
     number = 1 + max(window.tow for window in windows)
-    at_end = solve(estimator, estimate.values)
+    at_end = solve(estimator, estimate.values, estimator.fit.net)
     return Report(
         estimate=estimate,
         prior=estimator.prior,
@@ -248,7 +248,7 @@ def _values(parts: Sequence[Linearised | None]) -> np.ndarray:
         [
             np.full(len(PAPER_CHANNELS), np.nan)
             if part is None
-            else paper_values(dict(zip(part.channels, part.values, strict=True)))
+            else paper_values(dict(zip(part.channels, part.solved, strict=True)))
             for part in parts
         ]
     )

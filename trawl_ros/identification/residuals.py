@@ -67,7 +67,9 @@ class ChannelResiduals:
         return ljung_box([self.scaled[self.tows == tow] for tow in np.unique(self.tows)])
 
 
-def solve(estimator: Estimator, coefficients: np.ndarray) -> list[Linearised | None]:
+def solve(
+    estimator: Estimator, coefficients: np.ndarray, net: np.ndarray | None = None
+) -> list[Linearised | None]:
     """Solve the model at the inputs of each window, from the nearest one already solved.
 
     Parameters
@@ -76,6 +78,8 @@ def solve(estimator: Estimator, coefficients: np.ndarray) -> list[Linearised | N
         With the windows of the fit.
     coefficients
         Shape (12,).
+    net
+        Factors (2,) on drag and weight of the net; as in the gear file if None.
 
     Returns
     -------
@@ -96,7 +100,7 @@ def solve(estimator: Estimator, coefficients: np.ndarray) -> list[Linearised | N
         starts = (None,) if near is None else (near, None)
         try:
             part = linearise(
-                estimator.predictor, estimator.observables, window, coefficients, starts
+                estimator.predictor, estimator.observables, window, coefficients, starts, net=net
             )
         except NoSteadyState:
             without.add(window.state)
@@ -124,7 +128,7 @@ def residuals(parts: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...
             [window.std(name) for name in part.channels],
             np.linalg.norm(part.by_inputs * input_std, axis=1),
         )
-        left = part.measured - part.values
+        left = part.measured - part.solved
         for name, value, size in zip(part.channels, left, std, strict=True):
             rows.setdefault(name, []).append((i, window.tow, float(value), float(size)))
     return _gathered(rows)

@@ -54,6 +54,10 @@ def result(report: Report) -> dict[str, Any]:
             for combination in estimate.undetermined
         ],
         'noise_scales': dict(estimate.noise_scales),
+        'net': {
+            factor.what: {'value': factor.value, 'std': factor.std, 'known': factor.known}
+            for factor in report.estimate.net
+        },
         'prior_used': report.prior_weight > 0.0,
         'held_out_by': report.held_out.by,
         'accepted': _accepted(report),

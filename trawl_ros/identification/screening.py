@@ -130,7 +130,8 @@ class Screening:
         inputs = np.array([CHANNELS[name].bias_std(means[name]) for name in INPUTS])
         known = jacobian * np.concatenate((self._prior.std, inputs))
         own = [
-            window.noise[name] ** 2 + CHANNELS[name].bias_std(means[name]) ** 2 for name in names
+            window.own_noise(name) ** 2 + CHANNELS[name].bias_std(means[name]) ** 2
+            for name in names
         ]
         model = [
             MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
@@ -188,6 +189,7 @@ def without(window: SteadyWindow, channels: Sequence[str]) -> SteadyWindow:
         window,
         means=rest(window.means),
         noise=rest(window.noise),
+        to_come=rest(window.to_come),
         bias=rest(window.bias),
         counts=rest(window.counts),
     )

@@ -87,6 +87,11 @@ def _knowledge(report: Report) -> tuple[str, ...]:
     if estimate.undetermined:
         names = '; '.join(str(combination) for combination in estimate.undetermined)
         sentences.append(f'Known no better than before any tow: {names}.')
+    for factor in estimate.net:
+        sentences.append(
+            f'{factor.what.capitalize()} of the net: {factor.value:.2f} times that of the gear '
+            f'file, standard deviation {factor.std:.2f}, {factor.known:.2f} before any tow.'
+        )
     if report.laws is not None:
         well = report.laws.quantities.well_known
         lacking = [name for name, flag in zip(QUANTITIES, well, strict=True) if not flag]

@@ -1,7 +1,8 @@
 """Steady windows, rejections, and the rules by which both are decided."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.over_ground import GroundTrack
@@ -104,10 +105,10 @@ class WindowOptions:
     tow_gap_s: float = 1800.0
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not value >= 0.0 or (value == 0.0 and field.name not in MAY_BE_ZERO):
-                raise TrawlError(f'{field.name} is {value}, expected a positive number')
+        for option in fields(self):
+            value = getattr(self, option.name)
+            if not value >= 0.0 or (value == 0.0 and option.name not in MAY_BE_ZERO):
+                raise TrawlError(f'{option.name} is {value}, expected a positive number')
         if self.window_s < 2.0 * self.block_s:
             raise TrawlError(
                 f'window_s is {self.window_s:g}, expected at least two blocks of {self.block_s:g} s'
@@ -123,7 +124,8 @@ class SteadyWindow:
     the mean from scatter and autocorrelation, ``bias`` the standard deviation of what stays
     wrong through the state, ``counts`` of readings in the mean. ``tow`` counts tows, through
     each of which the errors of calibration stay the same. ``track`` compares log and GPS, None
-    where one of them or the compass is silent.
+    where one of them or the compass is silent. ``to_come`` is how far channels that still drift may
+    be from where they will rest.
     """
 
     index: int
@@ -136,13 +138,21 @@ class SteadyWindow:
     counts: Mapping[str, int]
     tow: int = 0
     track: GroundTrack | None = None
+    to_come: Mapping[str, float] = field(default_factory=dict)
 
     def std(self, channel: str, windows_in_state: int = 1) -> float:
         """Standard deviation of a channel's mean as one of several windows of a state.
 
         The bias is common to all windows of a state, so their number must not wear it down.
         """
-        return float((self.noise[channel] ** 2 + windows_in_state * self.bias[channel] ** 2) ** 0.5)
+        shared = windows_in_state * self.bias[channel] ** 2
+        return math.sqrt(self.own_noise(channel) ** 2 + shared)
+
+    def own_noise(self, channel: str, least: float = 0.0) -> float:
+        """Standard deviation of what a channel's mean shares with no other window, its noise being
+        ``least`` at least.
+        """
+        return math.hypot(max(self.noise[channel], least), self.to_come.get(channel, 0.0))
 
 
 @dataclass(frozen=True)

@@ -262,6 +262,7 @@ class SteadyWindowFinder:
             end_ns,
             means={name: found.mean for name, found in used.items()},
             noise={name: found.noise for name, found in used.items()},
+            to_come={name: found.to_come for name, found in used.items()},
             bias={name: CHANNELS[name].bias_std(found.mean) for name, found in used.items()},
             counts={name: found.count for name, found in used.items()},
             tow=self._tow,

@@ -93,6 +93,23 @@ class GearModel:
         """The same gear with a changed board, such as its points or installation angles."""
         return replace(self, board=replace(self.board, **changes))
 
+    def with_net(self, drag: float, weight: float) -> 'GearModel':
+        """The same gear with this many times the drag coefficients and the weight in water of all
+        netting and ropes of the net.
+        """
+        first, last = int(self.layout.net.min()), int(self.layout.net.max())
+        net = np.all((self.ends >= first) & (self.ends <= last), axis=1)
+        bars, water = self.bars, self.water.density * self.bars.volume
+        return replace(
+            self,
+            bars=replace(
+                bars,
+                normal_drag=np.where(net, drag, 1.0) * bars.normal_drag,
+                friction=np.where(net, drag, 1.0) * bars.friction,
+                mass=water + np.where(net, weight, 1.0) * (bars.mass - water),
+            ),
+        )
+
 
 class _Builder:
     """Collects nodes and bars; numbering of fastening points and blocks is shifted at the end."""

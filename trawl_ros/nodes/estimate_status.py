@@ -49,6 +49,9 @@ def coefficients_status(outcome: Outcome) -> Status:
         'undetermined': '; '.join(map(str, estimate.undetermined)),
         'active bounds': ', '.join(estimate.active_bounds),
     }
+    for factor in estimate.net:
+        values |= {f'net {factor.what}': f'{factor.value:.6g}',
+                   f'net {factor.what} std': f'{factor.std:.6g}'}  # fmt: skip
     for i, coefficient in enumerate(COEFFICIENTS):
         values |= {
             coefficient: f'{estimate.values[i]:.9g}',

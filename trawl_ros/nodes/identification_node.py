@@ -15,8 +15,7 @@ from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.estimate import Estimate
-from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.from_gear import identification_for
+from trawl_ros.identification.from_gear import estimator_options, identification_for
 from trawl_ros.identification.pipeline import Identification
 from trawl_ros.identification.planning_next import Advice, Adviser
 from trawl_ros.identification.report import report
@@ -71,6 +70,8 @@ class IdentificationNode(TrawlNode):
              'model that is fitted.'),
         Flag('prior', True, 'Whether what is known of the board beforehand takes part; the bounds '
              'always do.'),
+        Flag('net', False, 'Whether drag and weight of the net are estimated along; else they are '
+             'held as the gear file has them.'),
         Text('output', '', 'Folder for identification.json and figures, new or empty; none if '
              'empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
@@ -140,11 +141,12 @@ class IdentificationNode(TrawlNode):
         )
 
     def _identification(self) -> Identification:
-        without_prior = EstimatorOptions(prior_weight=0.0)
         fresh = identification_for(
             self._gear,
             window_options=self._window_options(),
-            estimator_options=None if self.parameters['prior'] else without_prior,
+            estimator_options=estimator_options(
+                prior=self.parameters['prior'], net=self.parameters['net']
+            ),
         )
         if self._state is None or not self._state.exists():
             return fresh

@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.sensitivity import sensitivities
+from trawl_ros.solver.sensitivity import net_sensitivities, sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
 
 
@@ -30,6 +30,20 @@ class Predictor:
     def __init__(self, model: GearModel) -> None:
         self.model = model
         self._last: tuple[bytes, Prediction] | None = None
+
+    def with_net(self, drag: float, weight: float) -> 'Predictor':
+        """The predictor of a gear whose net has this many times the drag and weight in water."""
+        return Predictor(self.model.with_net(drag, weight))
+
+    def by_net(self, coefficients: np.ndarray, found: Equilibrium) -> np.ndarray:
+        """Derivatives (n_observables, 2) by factors on drag and weight in water of the net.
+
+        Parameters
+        ----------
+        coefficients, found
+            Of a prediction, which has the steady state.
+        """
+        return net_sensitivities(self.model.with_coefficients(coefficients), found)
 
     def predict(
         self,

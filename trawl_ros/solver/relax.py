@@ -28,8 +28,8 @@ brings the force down to this share at least."""
 WARM_TIME_STEP = 1e3
 """First time step (s) from a known state nearby: nearly Newton's own."""
 
-WARM_LIMIT = 25
-"""Iterations in which that gets there or does not."""
+WARM_LIMIT = 60
+"""Iterations after which that is given up."""
 
 DRIFT_TIME_STEP = 10.0
 """First time step (s) from a shape that is only roughly right."""

@@ -64,3 +64,27 @@ def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
         along = state.moved(1j * STEP * shifts[:, index])
         result[:, index] = observe(changed, along, tow).array().imag / STEP
     return result
+
+
+def net_sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
+    """Derivatives of the observables by factors on drag and weight in water of the net.
+
+    Forces are linear in both, so their derivatives are differences.
+
+    Returns
+    -------
+    (n_observables, 2) array
+        In the order of `OBSERVABLES`; of drag, then of weight, per unit factor.
+    """
+    at = model, found.state, found.tow
+    here = forces(*at)
+    pushes = np.column_stack(
+        [forces(model.with_net(*twice), *at[1:]) - here for twice in ((2.0, 1.0), (1.0, 2.0))]
+    )
+    shifts = solve_refined(model.pattern, linearised(*at).stiffness, pushes)
+    return np.column_stack(
+        [
+            observe(model, found.state.moved(1j * STEP * shift), found.tow).array().imag / STEP
+            for shift in shifts.T
+        ]
+    )
