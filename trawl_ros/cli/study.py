@@ -119,6 +119,9 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
 @click.option('--scheduler', help='Address of a Dask cluster that makes the trials.')
 @click.option('--small', is_flag=True, help='Trials only: neither a planned trial, nor a replay, '
               'nor the node in real time.')  # fmt: skip
+@click.option('--live-s', default=IdentificationPlan.live_s, show_default=True,
+              type=click.FloatRange(0.0, 3600.0),
+              help='Wall time of the node in real time; 0 leaves it out.')  # fmt: skip
 def identification(
     out: Path,
     force: bool,
@@ -131,6 +134,7 @@ def identification(
     tows: int,
     scheduler: str | None,
     small: bool,
+    live_s: float,
 ) -> None:
     """Ask of many trials what the intervals and predictions of identification are worth.
 
@@ -138,7 +142,7 @@ def identification(
     report. Trials that are in the folder already are not made again: after
     Ctrl-C the same command goes on where it was.
     """
-    plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around, tows)
+    plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around, tows, live_s)
     console = error_console()
     try:
         found = run_study(

@@ -63,8 +63,8 @@ def wanted(row: Row) -> str:
 def _options(plan: Plan) -> str:
     usual = Plan()
     words = [
-        f'--{key} {getattr(plan, key)}'
-        for key in ('gear', 'seed', 'coverage', 'bound', 'mouth', 'around', 'tows')
+        f'--{key.replace("_", "-")} {getattr(plan, key)}'
+        for key in ('gear', 'seed', 'coverage', 'bound', 'mouth', 'around', 'tows', 'live_s')
         if getattr(plan, key) != getattr(usual, key)
     ]
     return ''.join(f' {word}' for word in words)

@@ -69,6 +69,8 @@ class Plan:
         Meshes around the mouth of the model's net.
     tows
         How many of `TOWS` a trial fits.
+    live_s
+        How long (s) the node is watched in real time; 0 leaves it out.
     """
 
     gear: str = 'kaifuha'
@@ -78,6 +80,7 @@ class Plan:
     mouth: int = 30
     around: int = FINER.around
     tows: int = len(TOWS)
+    live_s: float = LIVE_S
 
     def numbers(self) -> dict[str, int]:
         """How many trials by the name of their series."""
@@ -144,7 +147,7 @@ def run_study(
     prior = board_prior(load_gear(plan.gear))
     sections: list[tuple[str, tuple[Row, ...]]] = [
         ('Intervals', (*coverage_rows(coverage, COVERAGE.words, asked=True),
-                       *coverage_rows(mouth, MOUTH.words, asked=False))),
+                       *(coverage_rows(mouth, MOUTH.words, asked=False) if plan.mouth else ()))),
         ('Spread of the estimates', tuple(spread_rows(bound, prior))),
         ('Tows left out', tuple(held_out_rows(coverage))),
         ('The trials', tuple(board_rows((*coverage, *bound, *mouth)))),
@@ -162,7 +165,8 @@ def run_study(
         with shown.steps('replay', 1) as done:
             costs = replay_rows(replay())
             done()
-        costs += live_rows(live(LIVE_S, folder / 'log', shown.stretch))
+        if plan.live_s > 0.0:
+            costs += live_rows(live(plan.live_s, folder / 'log', shown.stretch))
         sections.append(('Cost', tuple(costs)))
     return Found(tuple(sections), trials_figure(coverage, bound, prior))
 
