@@ -21,6 +21,7 @@ from trawl_ros.identification.linearised import Linearised, linearise, measured_
 from trawl_ros.identification.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.relinearise import comparable, far, moved
 from trawl_ros.identification.window_records import SteadyWindow
 
 SHORTER = 0.5
@@ -30,9 +31,6 @@ GETTING_ON = 0.5
 """The part of the step before to which one must have come down where full steps do lead on."""
 
 NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
-
-WELL_KNOWN = 0.5
-"""What a window shows is known to first order this many std of a reading from its solution."""
 
 NEGLIGIBLE_GAIN = 1e-3
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
@@ -135,8 +133,8 @@ class Estimator:
             step = self._step(self.options.relinearise)
             if step.obstacle or step.size < self.options.tolerance:
                 break
-        moved = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
-        return self._publish(innovation, False, step.obstacle or moved)
+        said = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
+        return self._publish(innovation, False, step.obstacle or said)
 
     def finish(self) -> Estimate | None:
         """Solve all windows anew until the estimate rests; None when no window can be used."""
@@ -225,7 +223,7 @@ class Estimator:
         for window in windows:
             part, inputs = solved.get(window.index), self._inputs_of(window)
             threshold = self.options.relinearise_final
-            if part is None or _far(part, self.coefficients, inputs, self._fit.net, threshold):
+            if part is None or far(part, self.coefficients, inputs, self._fit.net, threshold):
                 try:
                     part = self._linearise(window, self.coefficients, inputs)
                 except NoSteadyState:
@@ -270,54 +268,27 @@ class Estimator:
         step = _Step(size, fit.cost - aimed.cost)
         self._fit = fit
         known = all(
-            not _far(window, aimed.coefficients, inputs, aimed.net, relinearise)
+            not far(window, aimed.coefficients, inputs, aimed.net, relinearise)
             for window, inputs in zip(fit.windows, aimed.inputs, strict=True)
         )
         if size < options.tolerance and known:
             return step
         for halving in range(options.halvings + 1):
             try:
-                moved = self._moved(aimed, part * 0.5**halving, relinearise)
+                there = moved(
+                    fit, aimed, part * 0.5**halving, relinearise, self.predictor, self.observables
+                )
             except NoSteadyState:
                 step = replace(step, obstacle=NO_STEADY_STATE)
                 continue
             # Errors do something else there; whichever way one looks at it, it is to be better.
-            better = min(moved.cost, moved.cost_beside(fit)) <= fit.cost * (1.0 + 1e-12)
-            if better or not self._comparable(moved):
-                self._fit = moved
-                self.history.append(Progress(len(moved.windows), moved.cost, moved.objective))
+            better = min(there.cost, there.cost_beside(fit)) <= fit.cost * (1.0 + 1e-12)
+            if better or not comparable(fit, there):
+                self._fit = there
+                self.history.append(Progress(len(there.windows), there.cost, there.objective))
                 return replace(step, obstacle=None)
             step = replace(step, obstacle='no step lowers the cost')
         return step
-
-    def _comparable(self, moved: Fit) -> bool:
-        """Whether the windows that were solved anew were well known before, and so the cost."""
-        fit = self._fit
-        return not any(
-            window is not old and _far(old, fit.coefficients, inputs, fit.net, WELL_KNOWN)
-            for window, old, inputs in zip(moved.windows, fit.windows, fit.inputs, strict=True)
-        )
-
-    def _moved(self, aimed: Fit, part: float, threshold: float) -> Fit:
-        """The fit at this part of the way to where it aims, solved anew where first order would
-        not do.
-
-        The newest window always is, lest many small steps walk out of the steady states.
-        """
-        fit = self._fit
-        coefficients = fit.coefficients + part * (aimed.coefficients - fit.coefficients)
-        coefficients = np.clip(coefficients, self.prior.low, self.prior.high)
-        windows = []
-        for window, ahead in zip(fit.windows, aimed.inputs, strict=True):
-            inputs = window.inputs + part * (ahead - window.inputs)
-            net = None if aimed.net is None else window.net + part * (aimed.net - window.net)
-            if window is fit.windows[-1] or _far(window, coefficients, inputs, net, threshold):
-                window = linearise(
-                    self.predictor, self.observables, window.window, coefficients,
-                    (window.state,), inputs, net, even=False,
-                )  # fmt: skip
-            windows.append(window)
-        return replace(fit, windows=tuple(windows), coefficients=coefficients)
 
     def _innovation(self, part: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
@@ -327,18 +298,3 @@ class Estimator:
         self._revision += 1
         self.estimate = conclude(self._fit, self._revision, innovation, converged, reason)
         return self.estimate
-
-
-def _far(
-    part: Linearised,
-    coefficients: np.ndarray,
-    inputs: np.ndarray,
-    net: np.ndarray | None,
-    threshold: float,
-) -> bool:
-    """Whether a window is to be solved anew: readings move by so many std to first order."""
-    change = part.by_coefficients @ (coefficients - part.at)
-    change += part.by_inputs @ (inputs - part.inputs)
-    if net is not None:
-        change += part.by_net @ (net - part.net)
-    return bool(np.max(np.abs(change) / part.std(1)) > threshold)

@@ -1,0 +1,78 @@
+"""Which windows are solved anew when the estimate moves, and the fit with those solved."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.linearised import Linearised, linearise
+from trawl_ros.identification.prediction import Predictor
+
+WELL_KNOWN = 0.5
+"""What a window shows is known to first order this many std of a reading from its solution."""
+
+
+def far(
+    part: Linearised,
+    coefficients: np.ndarray,
+    inputs: np.ndarray,
+    net: np.ndarray | None,
+    threshold: float,
+) -> bool:
+    """Whether a window is to be solved anew: readings move by so many std to first order.
+
+    Parameters
+    ----------
+    part
+        The window as it was solved.
+    coefficients, inputs, net
+        Where it is wanted: (12,), warp lengths and speed (3,), factors on the net's drag and weight
+        (2,) or None where these are held.
+    threshold
+        Standard deviations of a window's mean.
+    """
+    change = part.by_coefficients @ (coefficients - part.at)
+    change += part.by_inputs @ (inputs - part.inputs)
+    if net is not None:
+        change += part.by_net @ (net - part.net)
+    return bool(np.max(np.abs(change) / part.std(1)) > threshold)
+
+
+def moved(
+    fit: Fit,
+    aimed: Fit,
+    share: float,
+    threshold: float,
+    predictor: Predictor,
+    observables: tuple[str, ...],
+) -> Fit:
+    """The fit at this share of the way to another, solved anew where first order would not do.
+
+    The newest window always is, lest many small steps walk out of the steady states.
+
+    Raises
+    ------
+    NoSteadyState
+        If a window has none there.
+    """
+    coefficients = fit.coefficients + share * (aimed.coefficients - fit.coefficients)
+    coefficients = np.clip(coefficients, fit.prior.low, fit.prior.high)
+    windows = []
+    for part, ahead in zip(fit.windows, aimed.inputs, strict=True):
+        inputs = part.inputs + share * (ahead - part.inputs)
+        net = None if aimed.net is None else part.net + share * (aimed.net - part.net)
+        if part is fit.windows[-1] or far(part, coefficients, inputs, net, threshold):
+            part = linearise(
+                predictor, observables, part.window, coefficients, (part.state,), inputs, net,
+                even=False,
+            )  # fmt: skip
+        windows.append(part)
+    return replace(fit, windows=tuple(windows), coefficients=coefficients)
+
+
+def comparable(fit: Fit, other: Fit) -> bool:
+    """Whether the windows that another fit solved anew were well known before, and so the cost."""
+    return not any(
+        part is not old and far(old, fit.coefficients, inputs, fit.net, WELL_KNOWN)
+        for part, old, inputs in zip(other.windows, fit.windows, fit.inputs, strict=True)
+    )
