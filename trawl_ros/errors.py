@@ -37,6 +37,16 @@ class LogError(TrawlError):
     """A CSV log or its mapping that cannot be turned into a bag."""
 
 
+class RosMissing(TrawlError):
+    """What needs ROS 2 was asked for where there is none; ``reason`` is the import that failed."""
+
+    def __init__(self, what: str, reason: ImportError) -> None:
+        super().__init__(
+            f'{what} needs ROS 2 and found no {reason.name}; expected a sourced ROS 2, or the '
+            "extra `ros`: pip install 'trawl_ros[ros]'"
+        )
+
+
 class NoSteadyState(TrawlError):
     """The gear has no usable steady state at the wanted warp length and speed.
 

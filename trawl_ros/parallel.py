@@ -10,6 +10,7 @@ import signal
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
+from traceback import format_exc
 from typing import Any, TypeVar
 
 from dask import config
@@ -92,8 +93,9 @@ def _outcome(function: Callable[[Any], Any], task: Any) -> tuple[str | None, Any
         return None, function(task)
     except TrawlError as reason:
         return str(reason), None
-    except Exception as reason:
-        return f'{type(reason).__name__}: {reason}', None
+    except Exception:
+        # Told whole: the traceback would otherwise stay on the worker.
+        return f'an error of the program; {format_exc()}', None
 
 
 def _result(name: str, future: Any) -> Any:

@@ -59,7 +59,7 @@ def fitted(coarse, model, windows, options):
 
 
 def test_estimated_along_they_are_found_and_the_board_is_not_bent_to_fit(coarse, model, windows):
-    held, without = fitted(coarse, model, windows, estimator_options())
+    _, without = fitted(coarse, model, windows, estimator_options())
     along, with_net = fitted(coarse, model, windows, estimator_options(net=True))
     assert without.net == ()
     drag, weight = with_net.net
@@ -77,10 +77,9 @@ def test_estimated_along_they_are_found_and_the_board_is_not_bent_to_fit(coarse,
     assert away[1] < 0.5
     assert away[0] > 3.0 * away[1]
     assert with_net.cost < without.cost
-    predicted = [found.predictions(found.coefficients) for found in (held, along)]
-    measured = np.array([window.means['door_spread'] for window in windows])
-    errors = [np.abs(one[:, 0] / measured - 1.0).mean() for one in predicted]
-    assert errors[1] < 0.002
+    # What it predicts is with the net as found.
+    spread = along.predictions(along.coefficients)[:, 0]
+    np.testing.assert_allclose(spread, [w.means['door_spread'] for w in windows], rtol=0.005)
 
 
 @pytest.mark.parametrize(('column', 'factors'), [(0, (1.0, 0.0)), (1, (0.0, 1.0))])

@@ -140,6 +140,15 @@ def test_residuals_are_measured_less_modelled(sea, model, prior, windows):
     assert spread.whiteness is None
 
 
+def test_a_state_without_steady_state_is_tried_once(sea, model, windows):
+    repeated = [*windows[:2], *(replace(window, index=9 + window.index) for window in windows[:2])]
+    fit = SimpleNamespace(windows=repeated, predictor=model, observables=sea.OBSERVABLES)
+    model.stops_at, model.calls = sea.TRUTH[0] - 1.0, 0
+    assert solve(fit, sea.TRUTH) == [None] * 4
+    # With unequal warps for one, and with equal ones, as a counter may be wrong.
+    assert model.calls <= 2 * 2
+
+
 def test_errors_as_stated_make_a_test_ratio_of_a_ninth(sea, model, windows):
     rng = np.random.default_rng(3)
     noisy = []

@@ -16,7 +16,7 @@ from trawl_ros.cli.demo_report import load_result, print_result
 from trawl_ros.cli.files import FOLDER, SCENARIO
 from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress, error_console
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import RosMissing, TrawlError
 from trawl_ros.files import packaged
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.messages.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
@@ -117,10 +117,7 @@ def _monitor(environment: Mapping[str, str]) -> 'Monitor':
     try:
         from trawl_ros.nodes.monitor import Monitor
     except ImportError as reason:
-        raise TrawlError(
-            f'the demo needs ROS 2 and found no {reason.name}; expected a sourced ROS 2, or '
-            "the extra `ros`: pip install 'trawl_ros[ros]'"
-        ) from reason
+        raise RosMissing('the demo', reason) from reason
     return Monitor(environment)
 
 

@@ -47,11 +47,14 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Step:
-    """``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken."""
+    """``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken,
+    ``needless`` that there was nothing to be taken.
+    """
 
     size: float
     gain: float
     obstacle: str | None = None
+    needless: bool = False
 
 
 class Estimator:
@@ -131,7 +134,7 @@ class Estimator:
         self._fit = replace(self._fit, windows=(*self._fit.windows, part))
         for _ in range(self.options.iterations_per_window):
             step = self._step(self.options.relinearise)
-            if step.obstacle or step.size < self.options.tolerance:
+            if step.obstacle or step.needless:
                 break
         said = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
         return self._publish(innovation, False, step.obstacle or said)
@@ -240,7 +243,7 @@ class Estimator:
         part, last = 1.0, np.inf
         for iteration in range(1, limit + 1):
             step = self._step(self.options.relinearise_final, part)
-            if step.size < self.options.tolerance:
+            if step.needless:
                 return True, (
                     f'after {iteration} iterations the step is below '
                     f'{self.options.tolerance:g} of every std'
@@ -272,7 +275,7 @@ class Estimator:
             for window, inputs in zip(fit.windows, aimed.inputs, strict=True)
         )
         if size < options.tolerance and known:
-            return step
+            return replace(step, needless=True)
         for halving in range(options.halvings + 1):
             try:
                 there = moved(

@@ -97,8 +97,7 @@ class GearModel:
         """The same gear with this many times the drag coefficients and the weight in water of all
         netting and ropes of the net.
         """
-        first, last = int(self.layout.net.min()), int(self.layout.net.max())
-        net = np.all((self.ends >= first) & (self.ends <= last), axis=1)
+        net = np.isin(self.ends, self.layout.net).all(axis=1)
         bars, water = self.bars, self.water.density * self.bars.volume
         return replace(
             self,

@@ -15,8 +15,8 @@ from trawl_ros.solver.first_guess import (
     softened,
 )
 from trawl_ros.solver.relax import (
-    DRIFT_LIMIT,
     TOLERANCE,
+    WARM_LIMIT,
     WARM_TIME_STEP,
     relax,
     without_attitude,
@@ -107,7 +107,7 @@ def _hauled(
             new,
             tolerance=TOLERANCE,
             time_step=WARM_TIME_STEP,
-            limit=DRIFT_LIMIT,
+            limit=WARM_LIMIT,
         )
         spent += more
     return state, spent, residual

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from trawl_ros.cli.processes import Processes, own_graph
 from trawl_ros.cli.progress import TimeProgress
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import RosMissing, TrawlError
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.studies.chain import Glance, start_chain, watch_chain
 from trawl_ros.studies.long_tow import TRUTH_HZ, write_coarse_gear, write_long_tow
@@ -106,10 +106,7 @@ def _run(
     try:
         from trawl_ros.nodes.delay_monitor import DelayMonitor
     except ImportError as reason:
-        raise TrawlError(
-            f'the study needs ROS 2 and found no {reason.name}; expected a sourced ROS 2, or '
-            "the extra `ros`: pip install 'trawl_ros[ros]'"
-        ) from reason
+        raise RosMissing('the study', reason) from reason
     scenario = write_long_tow(scratch, gear, hours, truth_hz)
     environment = own_graph(logs)
     title = 'in real time' if time_scale else 'at sea'

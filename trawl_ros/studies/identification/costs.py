@@ -19,7 +19,7 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.cli.processes import Processes, own_graph
 from trawl_ros.cli.progress import TimeProgress
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import RosMissing, TrawlError
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.nodes.excerpt import Excerpt
 from trawl_ros.share import share_path
@@ -134,10 +134,7 @@ def live(
     try:
         from trawl_ros.nodes.estimate_monitor import EstimateMonitor
     except ImportError as reason:
-        raise TrawlError(
-            f'the node needs ROS 2 and found no {reason.name}; expected a sourced ROS 2, or '
-            "the extra `ros`: pip install 'trawl_ros[ros]'"
-        ) from reason
+        raise RosMissing('the node', reason) from reason
     environment = own_graph(logs)
     bag = str(share_path('bags', 'sea_trial'))
     with (
