@@ -62,8 +62,8 @@ def test_the_result_has_what_was_promised(sea, tows):
     assert {
         'windows', 'rejected', 'objective', 'coefficients', 'channels', 'condition_number',
         'undetermined', 'converged', 'reason', 'active_bounds', 'covariance', 'singular_values',
-        'weak_combinations', 'noise_scales', 'net', 'prior_used', 'held_out_by', 'accepted', 'tows',
-        'residuals', 'innovations', 'laws', 'rejected_last',
+        'weak_combinations', 'misfit', 'noise_scales', 'net', 'prior_used', 'held_out_by',
+        'accepted', 'tows', 'residuals', 'innovations', 'laws', 'rejected_last',
     } == set(found)  # fmt: skip
     assert set(found['objective']) == {'start', 'end', 'truth'}
     assert found['objective']['end'] < found['objective']['start'] / 3.0

@@ -48,22 +48,27 @@ def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
 def conclude(
     fit: Fit, revision: int, innovation: Innovation | None, converged: bool, reason: str
 ) -> Estimate:
-    """Sum up a fit; the arguments beside it go into the estimate as they are."""
+    """Sum up a fit; the arguments beside it go into the estimate as they are.
+
+    A model that the data contradict knows less than it says: standard deviations are as many times
+    larger as the misfit is (Birge 1932).
+    """
     prior, options = fit.prior, fit.options
     values = np.array(fit.coefficients)
+    std = fit.misfit * fit.std
     freedom = fit.freedom + options.stated_noise_readings
-    low, high = interval(values, fit.std, freedom, options.confidence, prior)
+    low, high = interval(values, std, freedom, options.confidence, prior)
     return Estimate(
         revision=revision,
         stamp=max(part.window.end_ns for part in fit.windows),
         windows=len(fit.windows),
         values=values,
-        std=fit.std,
-        covariance=fit.knowledge.covariance,
+        std=std,
+        covariance=fit.misfit**2 * fit.knowledge.covariance,
         low=low,
         high=high,
-        shrink=1.0 - fit.std / prior.std,
-        determined=is_determined(values, fit.std, prior),
+        shrink=1.0 - std / prior.std,
+        determined=is_determined(values, std, prior),
         active_bounds=active_bounds(values, prior),
         condition_number=fit.knowledge.condition_number,
         undetermined=undetermined(fit.knowledge),
@@ -71,6 +76,7 @@ def conclude(
         tow_biases=tow_biases(fit),
         net=net_factors(fit),
         freedom=freedom,
+        misfit=fit.misfit,
         cost=fit.cost,
         objective=fit.objective,
         innovation=innovation,

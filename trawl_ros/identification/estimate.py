@@ -108,8 +108,8 @@ class Estimate:
     stamp
         End (ns) of the newest window.
     values, std, covariance
-        Estimate (12,), standard deviations (12,), covariance (12, 12). The noise scale is in
-        them.
+        Estimate (12,), standard deviations (12,), covariance (12, 12). Noise as found and
+        ``misfit`` are in them.
     low, high
         95 % interval (12,) by Student's t, cut at the bounds.
     shrink
@@ -133,6 +133,9 @@ class Estimate:
         Drag and weight of the net; empty where they are held.
     freedom
         Degrees of freedom of Student's t.
+    misfit
+        By how much standard deviations are widened, since the readings differ from the model by
+        more than all errors known of explain; 1 where they do not.
     cost
         Robust cost with the prior; ``objective`` is eq. 35.
     innovation
@@ -158,6 +161,7 @@ class Estimate:
     tow_biases: tuple[TowBias, ...]
     net: tuple[NetFactor, ...]
     freedom: float
+    misfit: float
     cost: float
     objective: float
     innovation: Innovation | None

@@ -32,6 +32,10 @@ GETTING_ON = 0.5
 
 NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
 
+POOR = 1.2
+"""Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
+the readings of a tow; with those of one window it may, and then a second fit costs little."""
+
 NEGLIGIBLE_GAIN = 1e-3
 """A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
 
@@ -141,19 +145,20 @@ class Estimator:
 
     def finish(self) -> Estimate | None:
         """Solve all windows anew until the estimate rests; None when no window can be used."""
-        before = len(self._without)
         self._solve_all()
         if self._without and not self._fit.windows:
             # First order has led the estimate where the gear has no steady state at all.
-            self._fit = replace(self._fit, coefficients=np.array(self.prior.start))
-            self._solve_all()
-        converged, reason = self._rest()
-        if before and self._fit.windows:
-            # What had no steady state on the way may have one where the estimate rests.
-            number = len(self._fit.windows)
-            self._solve_all()
-            if len(self._fit.windows) != number:
-                converged, reason = self._rest()
+            self._from_start()
+        converged, reason = self._rest_with_all()
+        if self._fit.windows and (self._fit.misfit > POOR or not converged):
+            # The first windows, with what was known then, may have led into another valley.
+            first, without = self._fit, self._without
+            self._from_start()
+            again, why = self._rest_with_all()
+            if _likelier(self._fit, first):
+                converged, reason = again, why
+            else:
+                self._fit, self._without = first, without
         return self._publish(None, converged, reason) if self._fit.windows else None
 
     def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
@@ -216,6 +221,21 @@ class Estimator:
         return linearise(
             self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
         )
+
+    def _from_start(self) -> None:
+        """Solve all windows at the prior's start, as if none had been seen."""
+        self._fit = replace(self._fit, coefficients=np.array(self.prior.start), scales=AS_STATED)
+        self._solve_all()
+
+    def _rest_with_all(self) -> tuple[bool, str]:
+        """Come to rest, with what had no steady state on the way but has one there."""
+        converged, reason = self._rest()
+        if self._without and self._fit.windows:
+            number = len(self._fit.windows)
+            self._solve_all()
+            if len(self._fit.windows) != number:
+                converged, reason = self._rest()
+        return converged, reason
 
     def _solve_all(self) -> None:
         """Solve what is not at the present coefficients; set aside what has no state there."""
@@ -301,3 +321,8 @@ class Estimator:
         self._revision += 1
         self.estimate = conclude(self._fit, self._revision, innovation, converged, reason)
         return self.estimate
+
+
+def _likelier(fit: Fit, other: Fit) -> bool:
+    """Whether a fit explains more windows than another, or as many of them better."""
+    return (-len(fit.windows), fit.surprise) < (-len(other.windows), other.surprise)

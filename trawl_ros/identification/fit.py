@@ -168,6 +168,27 @@ class Fit:
         return float((self.own_shares * self._numbers).sum())
 
     @property
+    def misfit(self) -> float:
+        """Root mean square of what the fit leaves, in what all errors together explain; at least 1.
+
+        The least cost is half a χ² with as many degrees of freedom as there are readings. Noise is
+        found, so a misfit is of what is not: inputs, calibration, the model's own error.
+        """
+        readings = float(self._numbers.sum())
+        if self.options.prior_weight == 0.0:
+            readings -= len(self.coefficients)
+        return float(np.sqrt(max(1.0, 2.0 * self.cost / max(readings, 1.0))))
+
+    @property
+    def surprise(self) -> float:
+        """Minus the logarithm of the likelihood, but for a constant of the windows alone.
+
+        Unlike costs, these compare between fits that have found different noise.
+        """
+        scales = np.array(self.scales)[GROUP_OF]
+        return self.cost + float((self._numbers * np.log(scales)).sum())
+
+    @property
     def _numbers(self) -> np.ndarray:
         numbers = np.zeros(self.residual.shape)
         for tow in self.errors:

@@ -53,6 +53,7 @@ def result(report: Report) -> dict[str, Any]:
             }
             for combination in estimate.undetermined
         ],
+        'misfit': estimate.misfit,
         'noise_scales': dict(estimate.noise_scales),
         'net': {
             factor.what: {'value': factor.value, 'std': factor.std, 'known': factor.known}

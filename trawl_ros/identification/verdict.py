@@ -16,6 +16,9 @@ BEYOND = 1.0
 GRAVE = ('wrong unit', 'implausible', 'speed over ground')
 """Reasons of a rejection that one should not have to look for."""
 
+WIDENED = 1.2
+"""Misfit from where it is worth a word."""
+
 NOISY = 2.0
 """Scatter over what is stated from where it is worth a word."""
 
@@ -113,6 +116,11 @@ def _concerns(report: Report) -> tuple[str, ...]:
     if estimate.active_bounds:
         bounds = '; '.join(estimate.active_bounds)
         found.append(f'On a bound, so that its interval is worth little: {bounds}.')
+    if estimate.misfit > WIDENED:
+        found.append(
+            'The readings differ from the model by more than all known errors explain; intervals '
+            f'are widened {estimate.misfit:.1f} times for it.'
+        )
     if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > BEYOND]:
         found.append(f'Residuals are beyond what the stated errors allow in {", ".join(beyond)}.')
     if coloured := [row for row in report.residuals if row.whiteness and not row.whiteness.white]:

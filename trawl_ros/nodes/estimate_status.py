@@ -98,6 +98,7 @@ def instruments_status(estimate: Estimate) -> Status:
     values = {
         f'noise scale {group}': f'{scale:.4g}' for group, scale in estimate.noise_scales.items()
     }
+    values['misfit'] = f'{estimate.misfit:.4g}'
     for found in estimate.tow_biases:
         values[f'tow {found.tow + 1} {found.channel} bias'] = (
             f'{found.value:.4g} ± {found.std:.2g} {found.unit}'
