@@ -256,6 +256,29 @@ class FloatRecord(Record):
     drag_area_m2: NotNegative
 
 
+class SourceRecord(Record):
+    """A bag that an effect was found in, and the SHA-256 of its recordings."""
+
+    bag: str
+    sha256: str
+
+
+class ProvenanceRecord(Record):
+    """Where an effect comes from: bags, the program's version, and what spoke for it."""
+
+    found_by: str
+    bags: tuple[SourceRecord, ...] = ()
+    evidence: dict[str, float] = Field(default_factory=dict)
+
+
+class EffectRecord(Record):
+    """An effect beyond the paper's model: its name in the catalogue, and its parameters."""
+
+    name: str
+    values: dict[str, float] = Field(default_factory=dict)
+    provenance: ProvenanceRecord | None = None
+
+
 class GearRecord(Record):
     """A whole gear, as its YAML file has it."""
 
@@ -273,6 +296,7 @@ class GearRecord(Record):
     clump: ClumpRecord
     floats: FloatRecord
     identification: StartRecord
+    effects: Annotated[tuple[EffectRecord, ...], Field(max_length=20)] = ()
 
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False

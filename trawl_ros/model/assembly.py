@@ -108,7 +108,11 @@ def lump_forces(model: GearModel, state: State) -> np.ndarray:
     flow = model.water.current(z) - state.node_velocities
     force = (0.5 * density * model.lump_drag_area * length(flow, STILL))[:, None] * flow
     heavy = (model.lump_mass - density * model.lump_volume) * model.water.gravity
-    return force - heavy[:, None] * np.array([0.0, 0.0, 1.0])
+    force = force - heavy[:, None] * np.array([0.0, 0.0, 1.0])
+    for more in model.node_forces:
+        at = more.nodes
+        force[at] += more(state.nodes[at], state.node_velocities[at])
+    return force
 
 
 def board_loads(model: GearModel, state: State) -> np.ndarray:
@@ -335,7 +339,15 @@ def _lump_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray
     by_height[:, 2] -= model.water.gravity * model.water.density_gradient * model.lump_volume
     stiffness = np.zeros((len(z), 3, 3))
     stiffness[:, :, 2] = -by_height
-    return stiffness, by_flow
+    damping = by_flow
+    for more in model.node_forces:
+        at, still = more.nodes, np.zeros((len(more.nodes), 3))
+        for axis in range(3):
+            step = still + 1j * STEP * np.eye(3)[axis]
+            x, v = state.nodes[at], state.node_velocities[at]
+            stiffness[at, :, axis] -= more(x + step, v + still).imag / STEP
+            damping[at, :, axis] -= more(x + still, v + step).imag / STEP
+    return stiffness, damping
 
 
 def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:

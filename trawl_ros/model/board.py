@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.model.hooks import Bend
 from trawl_ros.model.numerics import about_axis, angle, cross, dot, length, transpose
 from trawl_ros.model.water import Water
 
@@ -62,6 +63,8 @@ class Board:
         as in the paper, or by the gear file.
     added_mass : (3,) array
         Added mass along the board's axes, kg; zero as in eq. 15, or by the gear file.
+    bend : Bend or None
+        What makes another law of eq. 14; None leaves it as it is.
     """
 
     mass: float
@@ -77,6 +80,7 @@ class Board:
     flow_axes: bool
     rotary_slope: float
     added_mass: np.ndarray
+    bend: Bend | None = None
 
     @cached_property
     def fastening_points(self) -> np.ndarray:
@@ -182,13 +186,14 @@ def mirrored_axes(outward: np.ndarray) -> np.ndarray:
 @dataclass(frozen=True)
 class BoardFlow:
     """Relative flow at boards: angles α, β (rad), flow in the outward frame (..., 3) m/s,
-    density (kg/m³).
+    density (kg/m³), and the vertical part ``lean`` of the outward normal.
     """
 
     attack: np.ndarray
     slip: np.ndarray
     flow: np.ndarray
     density: np.ndarray
+    lean: np.ndarray
 
 
 def flow_at(
@@ -217,12 +222,15 @@ def flow_at(
         slip=angle(flow[..., 2], ahead),
         flow=flow,
         density=water.density_at(position[..., 2]),
+        lean=outward * rotation[..., 2, 1],
     )
 
 
 def hydrodynamics(board: Board, values: np.ndarray, flow: BoardFlow) -> tuple:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
     coefficients = coefficients_at(values, flow.attack, board.slip_sign * flow.slip)
+    if board.bend is not None:
+        coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
     coefficients = coefficients * _across(flow.flow)[..., None]
     pressure = 0.5 * flow.density * board.area * dot(flow.flow, flow.flow)
     if board.flow_axes:

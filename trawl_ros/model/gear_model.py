@@ -12,6 +12,7 @@ import numpy as np
 
 from trawl_ros.gear.records import BridleRecord, FrameRopeRecord, GearRecord, RopeRecord
 from trawl_ros.model.board import COEFFICIENTS, Board
+from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import Kite, KiteNodes
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.netting import NetMesh, build_net
@@ -49,7 +50,7 @@ class GearModel:
     ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
     Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m², ``lump_added``
-    kg per kg/m³ of water.
+    kg per kg/m³ of water. ``node_forces`` are forces beyond the paper's.
     """
 
     gear: GearRecord
@@ -69,6 +70,7 @@ class GearModel:
     first_guess: np.ndarray
     net_mesh: NetMesh
     pattern: Pattern
+    node_forces: tuple[NodeForce, ...] = ()
 
     @property
     def nodes(self) -> int:

@@ -1,6 +1,6 @@
 """The sea: density and current as functions of depth."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -41,6 +41,20 @@ class Water:
         if len(self.depths) > 1:
             profile = PchipInterpolator(self.depths, self.currents)
             object.__setattr__(self, '_profile', (profile, profile.derivative()))
+
+    def with_more_current(self, depths: np.ndarray, currents: np.ndarray) -> 'Water':
+        """The same sea with another current on top of its own.
+
+        Parameters
+        ----------
+        depths
+            Where it is given (n,), m, rising; it stays constant above and below.
+        currents
+            To the east and north there (n, 2), m/s; straight lines join them.
+        """
+        together = np.union1d(self.depths, depths)
+        more = np.column_stack([np.interp(together, depths, column) for column in currents.T])
+        return replace(self, depths=together, currents=self.current(-together)[:, :2] + more)
 
     def density_at(self, z: np.ndarray) -> np.ndarray:
         """Density at height ``z`` (m, up, negative below the surface), kg/m³."""

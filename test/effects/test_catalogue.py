@@ -1,0 +1,99 @@
+"""The catalogue is complete, takes effects of others, and gear files are held to it."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from trawl_ros.effects import catalogue as module
+from trawl_ros.effects.acting import acting
+from trawl_ros.effects.catalogue import catalogue
+from trawl_ros.effects.effect import Effect, Parameter
+from trawl_ros.errors import GearError, TrawlError
+from trawl_ros.gear.records import EffectRecord
+
+PROMISED = {
+    'current_shear', 'cross_current', 'speed_log', 'warp_strumming', 'counter_scale',
+    'counter_offset', 'warp_asymmetry', 'catch_build_up', 'net_drag', 'board_stall', 'tilt_lift',
+    'gear_weight', 'depth_sensor', 'tension_cell', 'spread_sensor', 'heave', 'bottom_contact',
+    'board_added_mass',
+}  # fmt: skip
+
+FOREIGN = Effect(
+    name='ice',
+    sentence='Ice hangs on the warps.',
+    parameters=(Parameter('mass', 'kg', 0.0, 0.0, 100.0, 10.0),),
+    excited_by='cold',
+)
+
+
+@pytest.fixture
+def points(monkeypatch):
+    """Entry points of other packages."""
+    found = []
+    monkeypatch.setattr(module, 'entry_points', lambda group: found)
+    catalogue.cache_clear()
+    yield found
+    catalogue.cache_clear()
+
+
+def point(name, load):
+    return SimpleNamespace(name=name, value=f'package:{name}', load=load)
+
+
+def test_all_that_was_promised_is_there():
+    assert set(catalogue()) == PROMISED
+
+
+def test_every_effect_is_told_whole():
+    for name, effect in catalogue().items():
+        assert effect.name == name
+        assert effect.sentence.endswith('.')
+        assert set(effect.confused_with) <= PROMISED
+        for parameter in effect.parameters:
+            assert parameter.low <= parameter.neutral <= parameter.high
+            assert 0.0 < parameter.std < parameter.high - parameter.low
+
+
+def test_those_of_other_packages_are_found(points):
+    points.append(point('ice', lambda: FOREIGN))
+    assert catalogue()['ice'] is FOREIGN
+
+
+def test_what_other_packages_get_wrong_is_told(points):
+    def broken():
+        raise ImportError('no such module')
+
+    points.append(point('broken', broken))
+    with pytest.raises(TrawlError, match='entry point broken = package:broken: cannot be loaded'):
+        catalogue()
+    points[:] = [point('number', lambda: 3)]
+    with pytest.raises(TrawlError, match='found a int, expected an Effect'):
+        catalogue()
+    points[:] = [point('ice', lambda: FOREIGN), point('snow', lambda: FOREIGN)]
+    with pytest.raises(TrawlError, match='the name ice is taken'):
+        catalogue()
+
+
+@pytest.mark.parametrize(
+    ('record', 'told'),
+    [
+        (EffectRecord(name='ghost'), 'effects.0.name: found ghost, expected one of'),
+        (
+            EffectRecord(name='heave', values={'height': 1.0}),
+            'effects.0.values: found height, expected variance of heave',
+        ),
+        (
+            EffectRecord(name='warp_strumming', values={'factor': 9.0}),
+            'effects.0.values.factor: found 9, expected 0.7 to 2.5',
+        ),
+    ],
+)
+def test_a_gear_file_is_held_to_it(gear, record, told):
+    with pytest.raises(GearError, match=told):
+        acting(gear.model_copy(update={'effects': (record,)}))
+
+
+def test_values_that_are_not_given_are_neutral(gear):
+    record = EffectRecord(name='speed_log', values={'bias': 0.1})
+    (active,) = acting(gear.model_copy(update={'effects': (record,)})).effects
+    assert active.values.tolist() == [0.0, 0.1]

@@ -1,0 +1,45 @@
+"""``trawl effects``."""
+
+import click
+from rich.console import Console
+
+from trawl_ros.cli.tables import output_console, plain_table
+from trawl_ros.effects.catalogue import catalogue
+from trawl_ros.effects.effect import Effect, Parameter
+
+
+@click.command('effects')
+@click.argument('names', nargs=-1)
+def command(names: tuple[str, ...]) -> None:
+    """List the effects that can be found, or tell all of some NAMES.
+
+    Each may stand in a gear file under `effects`.
+    """
+    known = catalogue()
+    for name in names:
+        if name not in known:
+            raise click.UsageError(f'found {name}, expected one of {", ".join(known)}')
+    console = output_console()
+    for name in names or known:
+        _print(known[name], console)
+
+
+def _print(effect: Effect, console: Console) -> None:
+    console.print(effect.name, style='bold')
+    console.print(f'  {effect.sentence}', soft_wrap=True)
+    table = plain_table('   parameter', 'unit', 'not there', 'from', 'to', right=('not there',))
+    for parameter in effect.parameters:
+        table.add_row(f'   {parameter.name}', parameter.unit or '–', *map(_number, _of(parameter)))
+    console.print(table)
+    console.print(f'  Shown by {effect.excited_by}.', soft_wrap=True)
+    if effect.confused_with:
+        console.print(f'  Easily confused with {", ".join(effect.confused_with)}.', soft_wrap=True)
+    console.print()
+
+
+def _of(parameter: Parameter) -> tuple[float, float, float]:
+    return parameter.neutral, parameter.low, parameter.high
+
+
+def _number(value: float) -> str:
+    return f'{value:g}'

@@ -1,0 +1,103 @@
+"""The effects that a gear file switches on, acting together."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.effects.catalogue import catalogue
+from trawl_ros.effects.effect import Effect, Readings, Situation
+from trawl_ros.errors import GearError
+from trawl_ros.gear.records import EffectRecord, GearRecord
+from trawl_ros.model.gear_model import GearModel
+
+
+@dataclass(frozen=True)
+class Active:
+    """An effect with values (m,) in the order of its parameters."""
+
+    effect: Effect
+    values: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """Of the effect."""
+        return self.effect.name
+
+
+@dataclass(frozen=True)
+class Acting:
+    """Several effects; each acts on what those before it have left."""
+
+    effects: tuple[Active, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.effects)
+
+    def towed(self, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """Warp lengths and speed (3,) the gear is towed with where instruments show ``inputs``."""
+        for active in self.effects:
+            inputs = active.effect.towed(active.values, inputs, at)
+        return inputs
+
+    def gear(self, model: GearModel, at: Situation) -> GearModel:
+        """The gear with all effects in it."""
+        for active in self.effects:
+            model = active.effect.gear(active.values, model, at)
+        return model
+
+    def shown(self, readings: Readings, at: Situation) -> Readings:
+        """What sensors show."""
+        for active in self.effects:
+            readings = active.effect.shown(active.values, readings, at)
+        return readings
+
+    def of(self, effect: Effect) -> Active:
+        """An effect as it is here, neutral where it is not."""
+        same = [active for active in self.effects if active.name == effect.name]
+        return same[0] if same else Active(effect, effect.neutral)
+
+    def having(self, active: Active) -> 'Acting':
+        """These with an effect as given: in place of the one of its name, or after all others."""
+        names = [other.name for other in self.effects]
+        if active.name not in names:
+            return Acting((*self.effects, active))
+        place = names.index(active.name)
+        return Acting((*self.effects[:place], active, *self.effects[place + 1 :]))
+
+
+NONE = Acting()
+
+
+def acting(gear: GearRecord) -> Acting:
+    """The effects of a gear file.
+
+    Raises
+    ------
+    GearError
+        If there is no such effect, or a value is missing, of another effect or out of bounds.
+    """
+    return Acting(tuple(_active(number, record) for number, record in enumerate(gear.effects)))
+
+
+def _active(number: int, record: EffectRecord) -> Active:
+    known = catalogue()
+    key = f'effects.{number}'
+    if record.name not in known:
+        listed = ', '.join(known)
+        raise GearError(f'{key}.name: found {record.name}, expected one of {listed}')
+    effect = known[record.name]
+    names = [parameter.name for parameter in effect.parameters]
+    for name in record.values:
+        if name not in names:
+            listed = ', '.join(names)
+            raise GearError(f'{key}.values: found {name}, expected {listed} of {effect.name}')
+    values = []
+    for parameter in effect.parameters:
+        value = record.values.get(parameter.name, parameter.neutral)
+        if not parameter.low <= value <= parameter.high:
+            raise GearError(
+                f'{key}.values.{parameter.name}: found {value:g}, expected '
+                f'{parameter.low:g} to {parameter.high:g} {parameter.unit}'.rstrip()
+            )
+        values.append(value)
+    return Active(effect, np.array(values))

@@ -1,0 +1,46 @@
+"""Boards that lose lift at high angles of attack."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.effects.effect import Effect, Parameter, Situation
+from trawl_ros.model.gear_model import GearModel
+
+ONSET = np.radians(15.0)
+"""Angle of attack (rad) from which lift is lost, with the square of what is above it."""
+
+LIFT = 1
+"""Place of C_y^F among the coefficients of eq. 14."""
+
+
+@dataclass(frozen=True)
+class Stalled:
+    """Eq. 14 with lift that bends away from its straight line."""
+
+    loss: float
+
+    def __call__(
+        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
+    ) -> np.ndarray:
+        """Take the loss off C_y^F; what is lost of lift is not given back as drag."""
+        above = np.where(np.real(attack) > ONSET, attack - ONSET, 0.0)
+        bent = coefficients + 0.0 * attack[..., None]
+        bent[..., LIFT] -= self.loss * above**2
+        return bent
+
+
+class BoardStall(Effect):
+    """Less lift above 15° of attack."""
+
+    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+        """The gear with boards that stall."""
+        return model.with_board(bend=Stalled(float(values[0])))
+
+
+EFFECT = BoardStall(
+    name='board_stall',
+    sentence='The boards stall: above 15° of attack lift stays behind its straight line.',
+    parameters=(Parameter('loss', '1/rad²', 0.0, -4.0, 12.0, 2.0),),
+    excited_by='high angles of attack: low speed, long warps',
+)

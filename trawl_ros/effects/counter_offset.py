@@ -1,0 +1,22 @@
+"""Counters that show more or less than the warp that is out, by so many metres."""
+
+import numpy as np
+
+from trawl_ros.effects.effect import Effect, Parameter, Situation
+
+
+class CounterOffset(Effect):
+    """Shows so many metres more than are out, on both sides."""
+
+    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """The warp that is out."""
+        return inputs - values[0] * np.array([1.0, 1.0, 0.0])
+
+
+EFFECT = CounterOffset(
+    name='counter_offset',
+    sentence='The winch counters show too much or too little warp, by the same number of metres.',
+    parameters=(Parameter('offset', 'm', 0.0, -50.0, 50.0, 10.0),),
+    excited_by='warp length',
+    confused_with=('counter_scale', 'warp_strumming'),
+)

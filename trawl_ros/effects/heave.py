@@ -1,0 +1,23 @@
+"""A gear that is pulled to and fro by the ship's motion in waves."""
+
+import numpy as np
+
+from trawl_ros.effects.effect import Effect, Parameter, Situation
+
+
+class Heave(Effect):
+    """More drag on average: that goes with the mean of the squared speed."""
+
+    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """The speed whose square is the mean of the squares."""
+        port, starboard, speed = inputs
+        return np.array([port, starboard, np.sqrt(speed**2 + values[0])])
+
+
+EFFECT = Heave(
+    name='heave',
+    sentence='Waves pull the gear to and fro, which adds to its mean drag.',
+    parameters=(Parameter('variance', 'm²/s²', 0.0, -0.1, 1.5, 0.2),),
+    excited_by='a sea; low speed shows it most',
+    confused_with=('speed_log',),
+)

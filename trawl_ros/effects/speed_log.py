@@ -1,0 +1,27 @@
+"""A log that shows another speed than that through the water."""
+
+import numpy as np
+
+from trawl_ros.effects.effect import Effect, Parameter, Situation
+
+
+class SpeedLog(Effect):
+    """Shows (1 + scale) times the speed, and a bias."""
+
+    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """The speed without scale and bias."""
+        scale, bias = values
+        port, starboard, speed = inputs
+        return np.array([port, starboard, (speed - bias) / (1.0 + scale)])
+
+
+EFFECT = SpeedLog(
+    name='speed_log',
+    sentence='The log shows too much or too little speed through the water.',
+    parameters=(
+        Parameter('scale', '', 0.0, -0.25, 0.25, 0.05),
+        Parameter('bias', 'm/s', 0.0, -0.4, 0.4, 0.1),
+    ),
+    excited_by='speed',
+    confused_with=('net_drag', 'heave'),
+)

@@ -1,0 +1,28 @@
+"""Tension cells that are off."""
+
+import numpy as np
+
+from trawl_ros.effects.effect import Effect, Parameter, Readings, Situation
+
+CELLS = ('port_tension', 'starboard_tension')
+
+
+class TensionCell(Effect):
+    """Show (1 + scale) times the tension, and an offset, on both sides."""
+
+    def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+        """What the cells show of the tension."""
+        offset, scale = values
+        return readings | {name: (1.0 + scale) * readings[name] + offset for name in CELLS}
+
+
+EFFECT = TensionCell(
+    name='tension_cell',
+    sentence='The tension cells show too much or too little.',
+    parameters=(
+        Parameter('offset', 'N', 0.0, -20e3, 20e3, 3e3),
+        Parameter('scale', '', 0.0, -0.2, 0.2, 0.04),
+    ),
+    excited_by='tension; a slack winch shows the offset',
+    confused_with=('net_drag',),
+)

@@ -1,0 +1,43 @@
+"""Boards whose lift changes as they lean."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.effects.effect import Effect, Parameter, Situation
+from trawl_ros.model.gear_model import GearModel
+
+LIFT = 1
+"""Place of C_y^F among the coefficients of eq. 14."""
+
+
+@dataclass(frozen=True)
+class Tilted:
+    """Eq. 14 with lift that grows, linearly, as the outer face looks up."""
+
+    slope: float
+
+    def __call__(
+        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
+    ) -> np.ndarray:
+        """Multiply C_y^F."""
+        bent = coefficients + 0.0 * lean[..., None]
+        bent[..., LIFT] = bent[..., LIFT] * (1.0 + self.slope * lean)
+        return bent
+
+
+class TiltLift(Effect):
+    """Lift by the board's lean."""
+
+    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+        """The gear with boards that feel their lean."""
+        return model.with_board(bend=Tilted(float(values[0])))
+
+
+EFFECT = TiltLift(
+    name='tilt_lift',
+    sentence="The boards' lift changes as they lean inward or outward.",
+    parameters=(Parameter('slope', '1/rad', 0.0, -2.0, 2.0, 0.5),),
+    excited_by='what makes the boards lean: warp length and speed',
+    confused_with=('warp_strumming',),
+)

@@ -1,0 +1,44 @@
+"""Where more physics may enter than the paper's: at boards and at nodes.
+
+Water enters as a profile of currents, ropes and netting through the arrays of `BarProperties`;
+these two are for what neither can say. Both are called with complex numbers as well, for their
+derivatives are taken by the complex step.
+"""
+
+from typing import Protocol
+
+import numpy as np
+
+
+class Bend(Protocol):
+    """Changes the law of the boards (eq. 14)."""
+
+    def __call__(
+        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
+    ) -> np.ndarray:
+        """Give other force and moment coefficients.
+
+        Parameters
+        ----------
+        coefficients
+            As eq. 14 has them (..., 6).
+        attack, slip
+            α and β (...), rad.
+        lean
+            Vertical part (...) of the board's outward normal: positive where its outer face looks
+            up.
+        """
+        ...
+
+
+class NodeForce(Protocol):
+    """A force on some nodes, each by its own position and velocity alone."""
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Numbers (k,) of the nodes, each once."""
+        ...
+
+    def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+        """Force (k, 3), N, at positions (m) and velocities (m/s), both (k, 3) in ``map`` axes."""
+        ...

@@ -1,0 +1,124 @@
+"""Predictions of a gear with effects, whose strengths may be asked for along with the board."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.effects.acting import NONE, Acting, Active
+from trawl_ros.effects.effect import Effect, Situation
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.effect_sensitivity import by_effects, chained, shown_values
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.predict import Prediction
+from trawl_ros.solver.sensitivity import sensitivities
+from trawl_ros.solver.slow_mode import slow_mode
+
+ANYWHERE = Situation((0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class EffectPredictor:
+    """The equilibrium model of a gear as a function of coefficients, operating point and effects.
+
+    Attributes
+    ----------
+    model
+        The gear without effects.
+    fixed
+        Effects that are there with values that are known.
+    free
+        Effects whose values stand behind the twelve coefficients.
+    at
+        The situation it predicts for, but for warp lengths and speed.
+    absent
+        Whether the free effects are not there.
+    """
+
+    model: GearModel
+    fixed: Acting = NONE
+    free: tuple[Effect, ...] = ()
+    at: Situation = ANYWHERE
+    absent: bool = False
+
+    def acting(self, coefficients: np.ndarray) -> Acting:
+        """The effects with the values behind the coefficients."""
+        there, place = self.fixed, len(COEFFICIENTS)
+        for effect in self.free:
+            number = len(effect.parameters)
+            if not self.absent:
+                there = there.having(Active(effect, coefficients[place : place + number]))
+            place += number
+        return there
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Equilibrium | None = None,
+    ) -> Prediction:
+        """What instruments show in a steady state, and its derivatives.
+
+        Parameters
+        ----------
+        coefficients : (12 + m,) array
+            In the order of `COEFFICIENTS`, and the values of the free effects.
+        port_length, starboard_length, speed
+            As counters (m) and log (m/s) show them.
+        start
+            The ``state`` of an earlier prediction nearby.
+
+        Raises
+        ------
+        NoSteadyState
+            When the gear has none there.
+        """
+        inputs = np.array([port_length, starboard_length, speed])
+        at = replace(self.at, inputs=(port_length, starboard_length, speed))
+        acting = self.acting(coefficients)
+        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        gear = acting.gear(board, at)
+        port, starboard, through = map(float, acting.towed(inputs, at))
+        point = OperatingPoint(port, starboard, through)
+        found = find_equilibrium(gear, point, start, cold=start is None)
+        values, jacobian = found.observables.array(), sensitivities(gear, found)
+        shown = chained(board, found, jacobian, acting, inputs, at)
+        extra = np.zeros((len(values), len(coefficients) - len(COEFFICIENTS)))
+        if self.free and not self.absent:
+            wanted = [acting.of(effect) for effect in self.free]
+            extra = by_effects(board, found, jacobian, acting, wanted, inputs, at)
+        return Prediction(
+            shown_values(acting, values, at),
+            np.hstack((shown[:, :-3], extra, shown[:, -3:])),
+            slow_mode(gear, found).shape,
+            found,
+        )
+
+    def signatures(
+        self,
+        coefficients: np.ndarray,
+        inputs: np.ndarray,
+        found: Equilibrium,
+        wanted: Sequence[Active],
+    ) -> np.ndarray:
+        """What effects would change (n_observables, m) in a state that was predicted, per unit.
+
+        Parameters
+        ----------
+        coefficients, inputs
+            The prediction's (12,), and warp lengths and speed (3,).
+        found
+            Its state.
+        wanted
+            The effects.
+        """
+        port, starboard, speed = map(float, inputs)
+        at = replace(self.at, inputs=(port, starboard, speed))
+        acting = self.acting(coefficients)
+        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        jacobian = sensitivities(acting.gear(board, at), found)
+        return by_effects(board, found, jacobian, acting, wanted, inputs, at)

@@ -1,0 +1,177 @@
+"""Derivatives of what is seen by how strong an effect is.
+
+What an effect does to forces is differenced at the steady state and carried through the solver as
+all sensitivities are; what it does to inputs and readings follows by the chain rule.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.effects.acting import Acting, Active
+from trawl_ros.effects.effect import Situation
+from trawl_ros.model.assembly import forces, linearised
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import STEP
+from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.factor import solve_refined
+
+PART = 1e-4
+"""Differences are taken over this part of a parameter's std."""
+
+INPUT_STEP = 1e-4
+"""And over this much of warp length (m) and speed (m/s)."""
+
+
+def shown_values(acting: Acting, values: np.ndarray, at: Situation) -> np.ndarray:
+    """What sensors show (n_observables,) of observables."""
+    if not acting:
+        return values
+    readings = acting.shown(dict(zip(OBSERVABLES, map(float, values), strict=True)), at)
+    return np.array([readings[name] for name in OBSERVABLES])
+
+
+def chained(
+    model: GearModel,
+    found: Equilibrium,
+    jacobian: np.ndarray,
+    acting: Acting,
+    inputs: np.ndarray,
+    at: Situation,
+) -> np.ndarray:
+    """Derivatives of what is shown by coefficients and shown inputs.
+
+    Parameters
+    ----------
+    model
+        The gear with board coefficients set, without any effect.
+    found
+        The steady state with ``acting``.
+    jacobian
+        Of the observables (n_observables, 12 + 3) by coefficients and true inputs, there.
+    acting
+        The effects that are there.
+    inputs, at
+        As instruments show them (3,), and the situation.
+    """
+    if not acting:
+        return jacobian
+    rows = []
+    for place in range(len(inputs)):
+        both = [inputs + sign * INPUT_STEP * np.eye(len(inputs))[place] for sign in (1.0, -1.0)]
+        rows.append(
+            _slopes(model, found, 2.0 * INPUT_STEP,
+                    [(acting, one, replace(at, inputs=_three(one))) for one in both])
+        )  # fmt: skip
+    by_inputs = _carried(model, found, jacobian, acting, rows, at)
+    by_coefficients = _sensor_slopes(acting, found, at)[:, None] * jacobian[:, :-3]
+    return np.hstack((by_coefficients, by_inputs))
+
+
+def by_effects(
+    model: GearModel,
+    found: Equilibrium,
+    jacobian: np.ndarray,
+    acting: Acting,
+    wanted: Sequence[Active],
+    inputs: np.ndarray,
+    at: Situation,
+) -> np.ndarray:
+    """Derivatives of what is shown by the values of effects.
+
+    Parameters
+    ----------
+    model
+        The gear with board coefficients set, without any effect.
+    found
+        The steady state with ``acting``.
+    jacobian
+        Of the observables by coefficients and true inputs, there.
+    acting
+        The effects that are there.
+    wanted
+        Effects by whose values to differentiate, as they are there or would be: neutral.
+    inputs, at
+        As instruments show them (3,), and the situation.
+
+    Returns
+    -------
+    (n_observables, m) array
+        One column per value, in the order of the effects and their parameters.
+    """
+    rows = []
+    for active in wanted:
+        for index, parameter in enumerate(active.effect.parameters):
+            size = PART * parameter.std
+            step = size * np.eye(len(active.values))[index]
+            both = [
+                acting.having(Active(active.effect, active.values + sign * step))
+                for sign in (1.0, -1.0)
+            ]
+            rows.append(_slopes(model, found, 2.0 * size, [(one, inputs, at) for one in both]))
+    return _carried(model, found, jacobian, acting, rows, at)
+
+
+def _slopes(
+    model: GearModel,
+    found: Equilibrium,
+    size: float,
+    both: Sequence[tuple[Acting, np.ndarray, Situation]],
+) -> tuple[np.ndarray, ...]:
+    """Slopes of forces (dof,), observables, true inputs (3,) and of what sensors show, between two
+    cases that are ``size`` apart, at a gear that stays where it is.
+    """
+    cases = []
+    for there, inputs, at in both:
+        gear = there.gear(model, at)
+        cases.append(
+            (
+                forces(gear, found.state, found.tow),
+                observe(gear, found.state, found.tow).array(),
+                there.towed(inputs, at),
+                shown_values(there, found.observables.array(), at),
+            )
+        )
+    return tuple((up - down) / size for up, down in zip(*cases, strict=True))
+
+
+def _carried(
+    model: GearModel,
+    found: Equilibrium,
+    jacobian: np.ndarray,
+    acting: Acting,
+    rows: Sequence[tuple[np.ndarray, ...]],
+    at: Situation,
+) -> np.ndarray:
+    """What is shown (n_observables, n) of such slopes once the gear has come to rest."""
+    pushes, direct, towed, shown = (np.column_stack(part) for part in zip(*rows, strict=True))
+    gear = acting.gear(model, at)
+    along = np.zeros(direct.shape)
+    if pushes.any():
+        stiffness = linearised(gear, found.state, found.tow).stiffness
+        shifts = solve_refined(model.pattern, stiffness, pushes)
+        along = np.column_stack(
+            [
+                observe(gear, found.state.moved(1j * STEP * shift), found.tow).array().imag / STEP
+                for shift in shifts.T
+            ]
+        )
+    change = along + direct + jacobian[:, -3:] @ towed
+    return _sensor_slopes(acting, found, at)[:, None] * change + shown
+
+
+def _sensor_slopes(acting: Acting, found: Equilibrium, at: Situation) -> np.ndarray:
+    """By how much each sensor's reading grows with the observable it shows (n_observables,)."""
+    values = found.observables.array()
+    if not acting:
+        return np.ones(len(values))
+    size = 1e-6 * np.maximum(np.abs(values), 1e-3)
+    up, down = (shown_values(acting, values + sign * size, at) for sign in (1.0, -1.0))
+    return (up - down) / (2.0 * size)
+
+
+def _three(inputs: np.ndarray) -> tuple[float, float, float]:
+    port, starboard, speed = map(float, inputs)
+    return port, starboard, speed
