@@ -71,7 +71,7 @@ def conclude(
         determined=is_determined(values, std, prior),
         active_bounds=active_bounds(values, prior),
         condition_number=fit.knowledge.condition_number,
-        undetermined=undetermined(fit.knowledge),
+        undetermined=undetermined(fit.knowledge, prior.names),
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
         tow_biases=tow_biases(fit),
         net=net_factors(fit),

@@ -1,6 +1,6 @@
 """The estimate after a window: values, what they are worth, and what the data leave open."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -201,7 +201,9 @@ def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowle
     )
 
 
-def undetermined(knowledge: Knowledge) -> tuple[Combination, ...]:
+def undetermined(
+    knowledge: Knowledge, names: Sequence[str] = COEFFICIENTS
+) -> tuple[Combination, ...]:
     """Directions the data know less well than the prior, turned to few coefficients each."""
     weak = knowledge.singular < 1.0
     if not np.any(weak):
@@ -211,10 +213,10 @@ def undetermined(knowledge: Knowledge) -> tuple[Combination, ...]:
     found = []
     for column, weights in enumerate(basis.T):
         order = np.argsort(-np.abs(weights))
-        names = [COEFFICIENTS[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
+        among = [names[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
         information = float(seen[:, column] @ seen[:, column])
         std = information**-0.5 if information > 1e-24 else float('inf')
-        found.append(Combination(tuple(names or [COEFFICIENTS[order[0]]]), weights, std))
+        found.append(Combination(tuple(among or [names[order[0]]]), weights, std))
     return tuple(sorted(found, key=lambda combination: -combination.std))
 
 
@@ -247,7 +249,7 @@ def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
     """The bounds that the values rest on, by name."""
     near = 1e-9 * (prior.high - prior.low)
     found = []
-    for i, name in enumerate(COEFFICIENTS):
+    for i, name in enumerate(prior.names):
         if values[i] <= prior.low[i] + near[i]:
             found.append(f'{name} at its lower bound {prior.low[i]:g}')
         elif values[i] >= prior.high[i] - near[i]:

@@ -2,13 +2,15 @@
 
 import numpy as np
 
+from trawl_ros.effects.acting import acting
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.pipeline import Identification
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import WindowOptions
-from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.gear_model import build_model, build_water
 from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.effect_predictor import EffectPredictor
 from trawl_ros.solver.predict import Predictor
 
 NET_STD = 0.2
@@ -34,6 +36,12 @@ def board_prior(gear: GearRecord) -> BoardPrior:
     )
 
 
+def predictor_for(gear: GearRecord) -> Predictor | EffectPredictor:
+    """The model of a gear as the estimator asks it, with the effects its file switches on."""
+    there, model = acting(gear), build_model(gear)
+    return EffectPredictor(model, there) if there else Predictor(model)
+
+
 def identification_for(
     gear: GearRecord,
     *,
@@ -49,12 +57,11 @@ def identification_for(
     window_options, estimator_options
         When a window is steady; how the estimate is found.
     """
-    model = build_model(gear)
     return Identification(
-        Predictor(model),
+        predictor_for(gear),
         board_prior(gear),
         OBSERVABLES,
-        model.water.depth,
+        build_water(gear).depth,
         window_options,
         estimator_options,
     )

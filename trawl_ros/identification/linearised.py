@@ -9,7 +9,7 @@ import numpy as np
 
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.identification.channels import INPUTS, MEASURED
-from trawl_ros.identification.prediction import NetPredictor, Predictor
+from trawl_ros.identification.prediction import NetPredictor, Predictor, WindowPredictor
 from trawl_ros.identification.window_records import SteadyWindow
 
 
@@ -19,10 +19,11 @@ class Linearised:
     solved; the last are factors on drag and weight in water of the net.
 
     ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
-    ``by_coefficients`` (n, 12), ``by_inputs`` (n, 3) and ``by_net`` (n, 2; 0 where the net is held)
-    in SI; ``state`` starts the solver. The values are those of the measured inputs and of the net
-    in the gear file, to first order: warp lengths are measured with errors
-    that differ between the sides, and a gear that is towed askew is not linear in them.
+    ``by_coefficients`` (n, 12, or more where more is estimated along), ``by_inputs`` (n, 3) and
+    ``by_net`` (n, 2; 0 where the net is held) in SI; ``state`` starts the solver. The values are
+    those of the measured inputs and of the net in the gear file, to first order: warp lengths are
+    measured with errors that differ between the sides, and a gear that is towed askew is not linear
+    in them.
     """
 
     window: SteadyWindow
@@ -93,6 +94,8 @@ def linearise(
     stated = measured_inputs(window)
     wanted = stated if inputs is None else inputs
     failure: NoSteadyState | None = None
+    if isinstance(predictor, WindowPredictor):
+        predictor = predictor.in_window(window)
     there, by_net = np.ones(2), np.zeros((len(channels), 2))
     if net is not None:
         if not isinstance(predictor, NetPredictor):

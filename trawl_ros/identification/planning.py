@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.errors import TrawlError
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.from_gear import board_prior
+from trawl_ros.identification.from_gear import board_prior, predictor_for
 from trawl_ros.identification.laws import (
     QUANTITIES,
     WELL_KNOWN,
@@ -33,8 +33,6 @@ from trawl_ros.identification.planning_time import Leg, ability_of
 from trawl_ros.identification.planning_windows import TABLE_NOISE
 from trawl_ros.identification.window_records import WindowOptions
 from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver.predict import Predictor
 
 LEAST_LEGS = 2
 """One steady state cannot tell a law's slope from its value."""
@@ -122,7 +120,7 @@ def plan_trial(
         When there is nothing to choose from, or no time for two legs.
     """
     prior = board_prior(gear)
-    predictor = Predictor(build_model(gear))
+    predictor = predictor_for(gear)
     explorer = Explorer(predictor, prior.start, limits)
     choice = explore(
         explorer,

@@ -16,6 +16,7 @@ from trawl_ros.identification.linearised import Linearised, linearise
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.effect_predictor import EffectPredictor
 from trawl_ros.solver.equilibrium import Equilibrium, require_usable
 from trawl_ros.solver.predict import Predictor
 
@@ -131,7 +132,10 @@ class Explorer:
     """
 
     def __init__(
-        self, predictor: Predictor, coefficients: np.ndarray, limits: Limits | None = None
+        self,
+        predictor: Predictor | EffectPredictor,
+        coefficients: np.ndarray,
+        limits: Limits | None = None,
     ) -> None:
         self.predictor = predictor
         self.coefficients = np.array(coefficients)

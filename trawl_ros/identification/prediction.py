@@ -4,6 +4,8 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from trawl_ros.identification.window_records import SteadyWindow
+
 
 class Prediction(Protocol):
     """A steady state."""
@@ -47,6 +49,15 @@ class Predictor(Protocol):
         NoSteadyState
             When there is none.
         """
+        ...
+
+
+@runtime_checkable
+class WindowPredictor(Predictor, Protocol):
+    """One whose predictions depend on more of a window than warp lengths and speed."""
+
+    def in_window(self, window: SteadyWindow) -> Predictor:
+        """The predictor for this window."""
         ...
 
 

@@ -14,7 +14,8 @@ class BoardPrior:
 
     All four arrays have shape (12,) and no unit; ``low < high``, ``std > 0`` and the start
     lies within the bounds. ``std`` is also the scale against which sensitivities, shrink
-    and condition number are measured.
+    and condition number are measured. Where more is estimated along, ``names`` has its names behind
+    those of the coefficients, and the arrays its values.
 
     Raises
     ------
@@ -26,18 +27,19 @@ class BoardPrior:
     std: np.ndarray
     low: np.ndarray
     high: np.ndarray
+    names: tuple[str, ...] = COEFFICIENTS
 
     def __post_init__(self) -> None:
         for field in ('start', 'std', 'low', 'high'):
             array = np.array(getattr(self, field), dtype=float)
-            if array.shape != (len(COEFFICIENTS),) or not np.all(np.isfinite(array)):
+            if array.shape != (len(self.names),) or not np.all(np.isfinite(array)):
                 raise GearError(
                     f'identification.{field} has shape {array.shape} or values that are not '
-                    f'finite; expected {len(COEFFICIENTS)} finite numbers'
+                    f'finite; expected {len(self.names)} finite numbers'
                 )
             array.flags.writeable = False
             object.__setattr__(self, field, array)
-        for i, name in enumerate(COEFFICIENTS):
+        for i, name in enumerate(self.names):
             if self.std[i] <= 0.0:
                 raise GearError(
                     f'identification: the std of {name} is {self.std[i]:g}, expected more than 0'

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
+from trawl_ros.effects.effect import sense
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.over_ground import GroundTrack
 
@@ -125,7 +126,8 @@ class SteadyWindow:
     wrong through the state, ``counts`` of readings in the mean. ``tow`` counts tows, through
     each of which the errors of calibration stay the same. ``track`` compares log and GPS, None
     where one of them or the compass is silent. ``to_come`` is how far channels that still drift may
-    be from where they will rest.
+    be from where they will rest. ``hours`` is the time from the beginning of the tow to the middle
+    of the window.
     """
 
     index: int
@@ -139,6 +141,12 @@ class SteadyWindow:
     tow: int = 0
     track: GroundTrack | None = None
     to_come: Mapping[str, float] = field(default_factory=dict)
+    hours: float = 0.0
+
+    @property
+    def sense(self) -> float:
+        """Which way the ship goes on her track: 1 or -1, 1 where the heading is not known."""
+        return sense(None if self.track is None else self.track.heading)
 
     def std(self, channel: str, windows_in_state: int = 1) -> float:
         """Standard deviation of a channel's mean as one of several windows of a state.

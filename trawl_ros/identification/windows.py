@@ -87,6 +87,7 @@ class SteadyWindowFinder:
         self._reference: np.ndarray | None = None
         self._last_end = 0
         self._stretch: tuple[str, bool] | None = None
+        self._began: int | None = None
 
     def newest(self, channel: str) -> int | None:
         """Newest stamp (ns) accepted on a channel."""
@@ -174,6 +175,8 @@ class SteadyWindowFinder:
         gap = round(self._options.tow_gap_s * NANO)
         if self._last_winch is not None and stamps.min() - self._last_winch > gap:
             self._begin_tow()
+        if self._began is None:
+            self._began = int(stamps.min())
         self._last_winch = int(stamps.max())
 
     def _summary(self, index: int) -> Block:
@@ -266,6 +269,7 @@ class SteadyWindowFinder:
             bias={name: CHANNELS[name].bias_std(found.mean) for name, found in used.items()},
             counts={name: found.count for name, found in used.items()},
             tow=self._tow,
+            hours=(0.5 * (start_ns + end_ns) - (self._began or start_ns)) / (3600.0 * NANO),
             track=ground_track(
                 *(
                     self._buffers[name].window(start_ns, end_ns)[:2]

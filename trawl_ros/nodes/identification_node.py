@@ -15,7 +15,11 @@ from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.estimate import Estimate
-from trawl_ros.identification.from_gear import estimator_options, identification_for
+from trawl_ros.identification.from_gear import (
+    estimator_options,
+    identification_for,
+    predictor_for,
+)
 from trawl_ros.identification.pipeline import Identification
 from trawl_ros.identification.planning_next import Advice, Adviser
 from trawl_ros.identification.report import report
@@ -32,7 +36,6 @@ from trawl_ros.messages.estimates import (
     innovation_message,
 )
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.model.gear_model import build_model
 from trawl_ros.nodes.advising import AdvisingThread
 from trawl_ros.nodes.estimate_status import (
     advice_status,
@@ -48,7 +51,6 @@ from trawl_ros.nodes.rewinding import Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.scenario.scenario import true_coefficients
-from trawl_ros.solver.predict import Predictor
 
 STATUS = 'identification/status'
 FINISH = 'identification/finish'
@@ -129,7 +131,7 @@ class IdentificationNode(TrawlNode):
 
     def _advising(self) -> AdvisingThread:
         # A model of its own: the estimator's remembers what it was asked last.
-        predictor = Predictor(build_model(self._gear))
+        predictor = predictor_for(self._gear)
         adviser = Adviser(self._gear, predictor, windows=self._window_options())
         return AdvisingThread(adviser, lambda: self._worker.idle, self._advised)
 

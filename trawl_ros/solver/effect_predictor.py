@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -19,6 +20,25 @@ from trawl_ros.solver.slow_mode import slow_mode
 ANYWHERE = Situation((0.0, 0.0, 0.0))
 
 
+class Towed(Protocol):
+    """What of a stretch of towing effects may depend on."""
+
+    @property
+    def tow(self) -> int:
+        """Number of the tow."""
+        ...
+
+    @property
+    def hours(self) -> float:
+        """Since it began."""
+        ...
+
+    @property
+    def sense(self) -> float:
+        """Which way the ship goes on her track, as `trawl_ros.effects.effect.sense` has it."""
+        ...
+
+
 @dataclass(frozen=True)
 class EffectPredictor:
     """The equilibrium model of a gear as a function of coefficients, operating point and effects.
@@ -33,14 +53,17 @@ class EffectPredictor:
         Effects whose values stand behind the twelve coefficients.
     at
         The situation it predicts for, but for warp lengths and speed.
+    without
+        Tows in which the free effects are not there.
     absent
-        Whether the free effects are not there.
+        Whether it predicts for one of these.
     """
 
     model: GearModel
     fixed: Acting = NONE
     free: tuple[Effect, ...] = ()
     at: Situation = ANYWHERE
+    without: frozenset[int] = frozenset()
     absent: bool = False
 
     def acting(self, coefficients: np.ndarray) -> Acting:
@@ -52,6 +75,11 @@ class EffectPredictor:
                 there = there.having(Active(effect, coefficients[place : place + number]))
             place += number
         return there
+
+    def in_window(self, window: 'Towed') -> 'EffectPredictor':
+        """The predictor for a stretch of steady towing."""
+        at = Situation((0.0, 0.0, 0.0), sense=window.sense, hours=window.hours)
+        return replace(self, at=at, absent=window.tow in self.without)
 
     def predict(
         self,
