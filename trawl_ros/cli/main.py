@@ -17,6 +17,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'tow': ('tow', 'Tow a scenario and record what the instruments report as a bag.'),
         'identify': ('identify', 'Refit the twelve board coefficients from recorded bags.'),
         'plan-trial': ('plan_trial', 'Plan the trial that tells most about the boards.'),
+        'diagnose': ('diagnose', 'Find where model and bags disagree, and name what is missing.'),
         'effects': ('effects', 'List the effects that a gear may have beyond the model.'),
         'trim': ('trim', 'Find fastening points that give the boards wanted angles.'),
         'validate': ('validate', "Check the model's claims and write the report."),

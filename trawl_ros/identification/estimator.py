@@ -150,7 +150,8 @@ class Estimator:
             # First order has led the estimate where the gear has no steady state at all.
             self._from_start()
         converged, reason = self._rest_with_all()
-        if self._fit.windows and (self._fit.misfit > POOR or not converged):
+        doubtful = self._fit.misfit > POOR or not converged
+        if self.options.second_start and self._fit.windows and doubtful:
             # The first windows, with what was known then, may have led into another valley.
             first, without = self._fit, self._without
             self._from_start()
@@ -160,6 +161,12 @@ class Estimator:
             else:
                 self._fit, self._without = first, without
         return self._publish(None, converged, reason) if self._fit.windows else None
+
+    def begin(self, parts: Sequence[Linearised], coefficients: np.ndarray) -> None:
+        """Take windows that were solved elsewhere; `finish` solves them anew where they are wanted
+        at these coefficients.
+        """
+        self._fit = replace(self._fit, windows=tuple(parts), coefficients=np.array(coefficients))
 
     def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
         """An estimator with the windows of some states only, starting from this estimate."""

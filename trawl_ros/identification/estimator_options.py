@@ -4,7 +4,10 @@ from dataclasses import dataclass, fields
 
 from trawl_ros.errors import TrawlError
 
-MAY_BE_ZERO = ('prior_weight', 'state_share', 'model_error', 'unsettled', 'net_drag', 'net_weight')
+MAY_BE_ZERO = (
+    'prior_weight', 'state_share', 'model_error', 'unsettled', 'net_drag', 'net_weight',
+    'second_start',
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,9 @@ class EstimatorOptions:
         way and at the end.
     tolerance
         A step below this part of every coefficient's std is the end.
+    second_start
+        Whether a fit that explains its readings badly, or does not come to rest, is made again
+        from the prior's start.
     """
 
     huber: float = 1.345
@@ -60,6 +66,7 @@ class EstimatorOptions:
     relinearise: float = 2.0
     relinearise_final: float = 0.02
     tolerance: float = 0.02
+    second_start: bool = True
 
     def __post_init__(self) -> None:
         for field in fields(self):

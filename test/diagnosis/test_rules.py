@@ -1,0 +1,39 @@
+"""Each rule alone keeps an effect from being named."""
+
+from dataclasses import replace
+
+import pytest
+
+from trawl_ros.diagnosis.rules import Grounds, judge
+
+SOUND = Grounds(
+    delta_bic=40.0,
+    gain_low=2.0,
+    share=1.0,
+    at_bound=False,
+    left_over=0.4,
+    left_share=0.5,
+    rivals=(),
+)
+
+
+def test_an_effect_with_all_grounds_is_named():
+    assert judge(SOUND)[0] == 'NAMED'
+
+
+@pytest.mark.parametrize(
+    ('change', 'verdict', 'why'),
+    [
+        ({'left_over': 1e-5}, 'UNKNOWN', 'does not look like errors'),
+        ({'left_over': 1e-5, 'left_share': 0.05, 'rivals': ('heave',)}, 'AMBIGUOUS', 'heave'),
+        ({'rivals': ('heave',)}, 'AMBIGUOUS', 'heave would explain it nearly as well'),
+        ({'delta_bic': 9.0}, 'UNKNOWN', 'lowers BIC by 9.0 only'),
+        ({'at_bound': True}, 'UNKNOWN', 'stronger than is possible'),
+        ({'gain_low': -0.1}, 'UNKNOWN', 'does not help to predict'),
+        ({'share': 0.7}, 'AMBIGUOUS', 'in 30% of the resampled trials'),
+    ],
+)
+def test_each_ground_is_needed(change, verdict, why):
+    found, reason = judge(replace(SOUND, **change))
+    assert found == verdict
+    assert why in reason

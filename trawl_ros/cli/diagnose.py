@@ -1,0 +1,91 @@
+"""``trawl diagnose``."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from trawl_ros.cli.files import BAG, FOLDER
+from trawl_ros.cli.progress import error_console
+from trawl_ros.cli.read_tows import read_tows
+from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, unread
+from trawl_ros.diagnosis.repair import source
+from trawl_ros.diagnosis.words import headline, sentences
+from trawl_ros.diagnosis.writing import MODEL, write_diagnosis
+from trawl_ros.files import empty_folder
+from trawl_ros.gear.load import load_gear
+from trawl_ros.identification.tows import numbered
+from trawl_ros.messages.topics import NAMESPACE
+
+EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
+"""What the command ends with; 1 and 2 are for errors of input and usage."""
+
+
+@click.command('diagnose')
+@click.argument('bags', nargs=-1, required=True, type=BAG)
+@click.option(
+    '--baseline', multiple=True, type=BAG, help='A bag from when the gear was known to be in '
+    'order; may be given several times.',
+)  # fmt: skip
+@click.option('--out', required=True, type=FOLDER, help='Folder for the reports and the model.')
+@click.option(
+    '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '
+    'the name of one that comes with the package.',
+)  # fmt: skip
+@click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
+@click.option(
+    '--scheduler', help='Address of a Dask cluster that reads the bags, which it must see under '
+    'the same paths; without it, processes of this machine do.',
+)  # fmt: skip
+@click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
+@click.pass_context
+def command(
+    context: click.Context,
+    bags: Sequence[Path],
+    baseline: Sequence[Path],
+    out: Path,
+    gear: str,
+    namespace: str,
+    scheduler: str | None,
+    force: bool,
+) -> None:
+    """Find where model and BAGS disagree, and name what the model lacks.
+
+    Writes report.html, report.md, diagnosis.json and figures, and where an effect is named
+    model.yaml, the gear with the effect in it. Ends with 0 where there is no discrepancy, 10 where
+    there is one, 11 where these bags cannot tell.
+    """
+    empty_folder(out, force=force)
+    record = load_gear(gear)
+    console = error_console()
+    paths = [*baseline, *bags]
+    found = read_tows(paths, record, namespace, console, scheduler)
+    for part in found:
+        for problem in part.problems:
+            console.print(f'Damaged: {problem}', style='yellow', markup=False)
+        if part.why_not is not None:
+            console.print(f'Not used: {part.name}: {part.why_not}', style='yellow', markup=False)
+    windows, names = numbered(found)
+    known, _ = numbered(found[: len(baseline)])
+    in_order = frozenset(window.tow for window in known)
+    sources = [source(path) for path in paths]
+    reasons = [f'{part.name}: {part.why_not}' for part in found if part.why_not is not None]
+    if len(reasons) == len(found):
+        said = unread(record, names, '; '.join(reasons))
+    else:
+        with console.status('diagnosing') as status:
+            said = diagnose(record, windows, names, in_order, lambda what: status.update(what))
+    write_diagnosis(said, sources, out)
+    _print(said, out)
+    context.exit(EXIT[said.verdict])
+
+
+def _print(found: Diagnosis, out: Path) -> None:
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(f'{found.verdict}. {headline(found)}', style='bold', markup=False)
+    for sentence in sentences(found):
+        console.print(sentence, markup=False)
+    console.print(f'Report: {out / "report.html"}', markup=False)
+    if found.verdict == 'NAMED':
+        console.print(f'The gear with the effect in it: {out / MODEL}', markup=False)

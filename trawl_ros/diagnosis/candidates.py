@@ -1,0 +1,146 @@
+"""What is looked for: effects around values where they may be told, and what they would change."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.effects.acting import Active
+from trawl_ros.effects.effect import Effect
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.fit import AS_STATED, Fit
+from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.effect_predictor import EffectPredictor
+
+WIDE = 5.0
+"""So many times further than is common an effect is taken to go where it is estimated."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect around ``start`` (m,); of one that is looked for in several places, ``place``
+    counts them.
+    """
+
+    effect: Effect
+    start: np.ndarray
+    place: int = 0
+
+    @property
+    def name(self) -> str:
+        """Of the effect."""
+        return self.effect.name
+
+    @property
+    def scale(self) -> np.ndarray:
+        """How far from neutral its values are commonly found (m,)."""
+        return np.array([parameter.std for parameter in self.effect.parameters])
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Between these its values (m,) are possible."""
+        low, high = zip(*((p.low, p.high) for p in self.effect.parameters), strict=True)
+        return np.array(low), np.array(high)
+
+
+def candidates(
+    effects: Mapping[str, Effect], predictor: EffectPredictor, depths: np.ndarray
+) -> tuple[Candidate, ...]:
+    """All that steady tows may show.
+
+    Parameters
+    ----------
+    effects
+        The catalogue.
+    predictor
+        The gear; an effect that it has already is looked for around the values it has.
+    depths
+        Of the net in the tows at hand (n,), m.
+    """
+    found = []
+    for effect in effects.values():
+        if effect.dynamic:
+            continue
+        there = predictor.fixed.of(effect)
+        starts = effect.starts(depths)
+        if any(active.name == effect.name for active in predictor.fixed.effects):
+            starts = (there.values,)
+        found += [Candidate(effect, start, place) for place, start in enumerate(starts)]
+    return tuple(found)
+
+
+def signatures(
+    predictor: EffectPredictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
+) -> list[np.ndarray]:
+    """What the candidates would change in windows that were solved.
+
+    Returns
+    -------
+    list
+        For each window an array (channels of the window, values of all candidates) per unit of the
+        value; 0 in tows without.
+    """
+    active = [Active(candidate.effect, candidate.start) for candidate in wanted]
+    number = sum(len(one.values) for one in active)
+    found = []
+    for part in parts:
+        there = predictor.in_window(part.window)
+        rows = [OBSERVABLES.index(name) for name in part.channels]
+        if there.absent or not active:
+            found.append(np.zeros((len(rows), number)))
+            continue
+        board = part.at[: len(COEFFICIENTS)]
+        found.append(there.signatures(board, part.inputs, part.state, active)[rows])
+    return found
+
+
+def extended(
+    fit: Fit, wanted: Sequence[Candidate], columns: Sequence[np.ndarray], options: EstimatorOptions
+) -> Fit:
+    """A fit in which values of candidates stand behind the coefficients.
+
+    Parameters
+    ----------
+    fit
+        Of the boards alone.
+    wanted, columns
+        The candidates, and what they change in each of its windows, from `signatures`.
+    options
+        Of the estimate.
+    """
+    starts = np.concatenate([candidate.start for candidate in wanted])
+    parts = tuple(
+        replace(
+            part,
+            at=np.concatenate((part.at[: len(COEFFICIENTS)], starts)),
+            by_coefficients=np.hstack((part.by_coefficients[:, : len(COEFFICIENTS)], more)),
+        )
+        for part, more in zip(fit.windows, columns, strict=True)
+    )
+    prior = extended_prior(fit.prior, wanted)
+    coefficients = np.concatenate((fit.coefficients[: len(COEFFICIENTS)], starts))
+    return Fit(parts, coefficients, AS_STATED, prior, options)
+
+
+def extended_prior(prior: BoardPrior, wanted: Sequence[Candidate]) -> BoardPrior:
+    """What is known before any tow of the boards, and of effects that may or may not be there."""
+    board = slice(len(COEFFICIENTS))
+    starts = [candidate.start for candidate in wanted]
+    lows, highs = zip(*(candidate.bounds for candidate in wanted), strict=True)
+    return BoardPrior(
+        start=np.concatenate((prior.start[board], *starts)),
+        std=np.concatenate((prior.std[board], *(WIDE * one.scale for one in wanted))),
+        low=np.concatenate((prior.low[board], *lows)),
+        high=np.concatenate((prior.high[board], *highs)),
+        names=(
+            *prior.names[board],
+            *(
+                f'{candidate.name} {parameter.name}'
+                for candidate in wanted
+                for parameter in candidate.effect.parameters
+            ),
+        ),
+    )

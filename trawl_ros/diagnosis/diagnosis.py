@@ -1,0 +1,213 @@
+"""The whole way: detect, locate, name, add, show."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.locating import Where, telling
+from trawl_ros.diagnosis.naming import Named, Weighed, name, refitted
+from trawl_ros.diagnosis.refit import Refit, fit_boards
+from trawl_ros.diagnosis.rules import FEWEST_STATES, NOWHERE_NEAR, Verdict
+from trawl_ros.diagnosis.screen import Screen, screen
+from trawl_ros.diagnosis.showing import Errors, Split, errors, split
+from trawl_ros.effects.acting import acting
+from trawl_ros.effects.catalogue import catalogue
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.identification.from_gear import board_prior
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.effect_predictor import EffectPredictor
+
+Told = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Errors on windows that decided nothing: without, with the effect, and with the best wrong one
+    (``placebo``, whose name is ``instead``).
+    """
+
+    before: Errors
+    after: Errors | None
+    placebo: Errors | None
+    instead: str | None
+
+    @property
+    def removed(self) -> float | None:
+        """Part of the excess error that the effect removes; None where there is none."""
+        return _removed(self.before, self.after)
+
+    @property
+    def removed_by_placebo(self) -> float | None:
+        """Part that the best wrong effect removes."""
+        return _removed(self.before, self.placebo)
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found.
+
+    Attributes
+    ----------
+    verdict, reason
+        And why.
+    gear
+        As it was believed.
+    tows
+        Their names.
+    baseline
+        Those in which nothing was looked for.
+    split
+        Windows that decided, and those kept back.
+    base, seen, named, where, shown
+        Boards alone; first look; naming; patterns of residuals; errors on what was kept back.
+        None, or empty, where it did not come to that.
+    """
+
+    verdict: Verdict
+    reason: str
+    gear: GearRecord
+    tows: tuple[str, ...]
+    baseline: frozenset[int]
+    split: Split
+    base: Refit | None = None
+    seen: Screen | None = None
+    named: Named | None = None
+    where: tuple[Where, ...] = ()
+    shown: Shown | None = None
+
+    @property
+    def best(self) -> Weighed | None:
+        """The best effect, or two, where something was detected and refitted."""
+        return self.named.weighed[0] if self.named and self.named.weighed else None
+
+
+def diagnose(
+    gear: GearRecord,
+    windows: Sequence[SteadyWindow],
+    tows: Sequence[str],
+    baseline: frozenset[int] = frozenset(),
+    told: Told = lambda what: None,
+) -> Diagnosis:
+    """Find what the model of a gear lacks.
+
+    Parameters
+    ----------
+    gear
+        The gear as it is believed.
+    windows
+        Steady windows of all tows.
+    tows
+        Names of the tows.
+    baseline
+        Tows of when the gear was known to be in order.
+    told
+        Told what is being done.
+
+    Raises
+    ------
+    GearError
+        If the gear file switches on an effect that there is not.
+    """
+    parts = split(windows, baseline)
+    model = build_model(gear)
+    predictor = EffectPredictor(model, acting(gear), without=baseline)
+    known = Diagnosis('NOT_TESTABLE', '', gear, tuple(tows), baseline, parts)
+    examined = {window.state for window in windows if window.tow not in baseline}
+    if len(examined) < FEWEST_STATES:
+        return replace(
+            known,
+            reason=f'found {len(examined)} steady states to examine, expected at least '
+            f'{FEWEST_STATES}: what does not vary cannot be told from the boards',
+        )
+    told('fitting the boards')
+    base = fit_boards(predictor, board_prior(gear), parts.deciding)
+    if base is None or len(base.fit.windows) < 0.5 * len(parts.deciding):
+        return replace(
+            known,
+            reason='most of the windows have no steady state in this model: it is another gear, or '
+            'far from how it was towed',
+        )
+    told('looking for effects')
+    seen = screen(predictor, base.fit, catalogue())
+    known = replace(known, base=base, seen=seen, where=telling(seen))
+    if not seen.detected:
+        return replace(
+            known,
+            verdict='NO_DISCREPANCY',
+            reason='nothing in the readings is beyond what boards and errors explain',
+            shown=_shown(predictor, base, None, None, parts),
+        )
+    named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
+    noise = float(np.median(base.fit.scales))
+    if named.verdict == 'UNKNOWN' and noise > NOWHERE_NEAR:
+        return replace(
+            known,
+            reason=f'readings are {noise:.0f} times further from the model than their errors '
+            'explain, and no effect brings them near: it is another gear',
+        )
+    best = named.weighed[0].refit if named.weighed else None
+    told('predicting what was kept back')
+    other = None if best is None else _placebo(predictor, base, seen, named)
+    shown = _shown(predictor, base, best, other, parts)
+    return replace(known, verdict=named.verdict, reason=named.reason, named=named, shown=shown)
+
+
+def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
+    """The diagnosis of recordings without a single steady window."""
+    nothing = Split((), (), 'state')
+    return Diagnosis('NOT_TESTABLE', reason, gear, tuple(tows), frozenset(), nothing)
+
+
+def _placebo(predictor: EffectPredictor, base: Refit, seen: Screen, named: Named) -> Refit | None:
+    """The best effect that is neither named nor of its class."""
+    taken = {*named.weighed[0].refit.names, *named.alike}
+    for other in named.weighed[1:]:
+        if not taken & set(other.refit.names):
+            return other.refit
+    rest = [one for one in seen.wanted if one.name not in taken]
+    if not rest:
+        return None
+    return refitted(predictor, base, seen, (max(rest, key=seen.penalised),))
+
+
+def _shown(
+    predictor: EffectPredictor,
+    base: Refit,
+    best: Refit | None,
+    other: Refit | None,
+    parts: Split,
+) -> Shown | None:
+    if not parts.showing:
+        return None
+
+    def of(one: Refit | None) -> Errors | None:
+        if one is None:
+            return None
+        free = replace(predictor, free=tuple(candidate.effect for candidate in one.wanted))
+        return errors(free, one, parts.showing)
+
+    before = of(base)
+    assert before is not None
+    return Shown(before, of(best), of(other), None if other is None else other.names[0])
+
+
+def _removed(before: Errors, after: Errors | None) -> float | None:
+    if after is None or before.excess <= 0.0:
+        return None
+    return 1.0 - after.excess / before.excess
+
+
+def values_of(one: Refit) -> Mapping[str, Mapping[str, tuple[float, float, float, str]]]:
+    """Effect → parameter → value, both ends of its interval, and unit."""
+    found: dict[str, dict[str, tuple[float, float, float, str]]] = {}
+    place = len(one.estimate.values) - one.number
+    for candidate in one.wanted:
+        own = found.setdefault(candidate.name, {})
+        for parameter in candidate.effect.parameters:
+            low, high = one.estimate.low[place], one.estimate.high[place]
+            value = one.estimate.values[place]
+            own[parameter.name] = (float(value), float(low), float(high), parameter.unit)
+            place += 1
+    return found

@@ -1,0 +1,169 @@
+"""What windows say of effects to first order, with what coefficients could mimic taken out.
+
+Errors, calibration and coefficients are eliminated together (`marginal`), which leaves a triangle T
+and a right side z for the values of effects: T'T is their information and T'z their score. The
+evidence for each is a χ², and so are rivalry and what a trial could have shown.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2, norm
+
+from trawl_ros.identification.error_terms import GROUP_OF, TowErrors, spread
+from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.marginal import marginalise, triangular
+from trawl_ros.model.board import COEFFICIENTS
+
+BLIND = 1e-9
+"""Information below this part of what an effect has without coefficients is none."""
+
+POWER = 0.84
+"""Normal quantile of 80 %: what is said to be detectable is found in so many trials."""
+
+DRAWS = 4000
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Information and score of n values.
+
+    Attributes
+    ----------
+    information : (n, n) array
+        Per squared std, with coefficients and errors eliminated.
+    score : (n,) array
+        Its product with the values most likely, had each no rival.
+    root : (r, n) array
+        T; the score of data without any effect is its transpose times standard normal numbers.
+    """
+
+    information: np.ndarray
+    score: np.ndarray
+    root: np.ndarray
+
+    def chi2(self, block: Sequence[int]) -> float:
+        """By how much the χ² of all data falls with these values free."""
+        return float(self.score[list(block)] @ self.values(block))
+
+    def freedom(self, block: Sequence[int]) -> int:
+        """How many of these values, or combinations of them, the data see."""
+        return int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
+
+    def strength(self, block: Sequence[int]) -> float:
+        """-log₁₀ of the probability of as large a χ² where these values are not there."""
+        freedom = self.freedom(block)
+        return tail(self.chi2(block), freedom) if freedom else 0.0
+
+    def values(self, block: Sequence[int]) -> np.ndarray:
+        """Most likely values, from where they were linearised, in units of the columns."""
+        return np.linalg.pinv(self._of(block), 1e-10, hermitian=True) @ self.score[list(block)]
+
+    def std(self, block: Sequence[int]) -> np.ndarray:
+        """Standard deviations of values, each alone; infinite where nothing is seen of it."""
+        diagonal = np.diag(self._of(block))
+        with np.errstate(divide='ignore'):
+            return 1.0 / np.sqrt(np.where(diagonal > BLIND, diagonal, 0.0))
+
+    def covered(self, block: Sequence[int], values: np.ndarray, other: Sequence[int]) -> float:
+        """Cosine of what values change with the nearest that other values could do instead."""
+        rows, columns = list(block), list(other)
+        size = float(values @ self._of(block) @ values)
+        if size <= BLIND:
+            return 0.0
+        seen = self.information[np.ix_(columns, rows)] @ values
+        inverse = np.linalg.pinv(self._of(other), 1e-10, hermitian=True)
+        return float(np.sqrt(np.clip(seen @ inverse @ seen / size, 0.0, 1.0)))
+
+    def without(self, block: Sequence[int]) -> 'Evidence':
+        """The evidence with some values free in any case; theirs is 0 then."""
+        rows = list(block)
+        inverse = np.linalg.pinv(self._of(block), 1e-10, hermitian=True)
+        gain = self.information[:, rows] @ inverse
+        taken = self.root[:, rows] @ inverse @ self.root[:, rows].T
+        return Evidence(
+            self.information - gain @ self.information[rows],
+            self.score - gain @ self.score[rows],
+            self.root - taken @ self.root,
+        )
+
+    def _of(self, block: Sequence[int]) -> np.ndarray:
+        return self.information[np.ix_(list(block), list(block))]
+
+
+def evidence(
+    fit: Fit,
+    columns: Sequence[np.ndarray],
+    units: np.ndarray,
+    *,
+    tows: Sequence[TowErrors] | None = None,
+    weights: Sequence[np.ndarray] | None = None,
+) -> Evidence:
+    """Gather the evidence for values of effects around a fit of the boards.
+
+    Parameters
+    ----------
+    fit
+        Whose noise is used; its windows may have more than the twelve columns of the boards.
+    columns
+        For each window (channels of the window, n): what a unit of each value changes.
+    units
+        Sizes (n,) in which values are counted.
+    tows
+        Errors of those tows that count, one of them perhaps several times; all of them if None.
+    weights
+        Huber weights of each of these tows; found if None.
+    """
+    number, board = len(units), len(COEFFICIENTS)
+    jacobian = np.zeros((*fit.residual.shape, board + number))
+    jacobian[:, :, :board] = fit.jacobian[:, :, :board]
+    for row, (part, own) in enumerate(zip(fit.windows, columns, strict=True)):
+        jacobian[row, :, board:] = spread(part, own * units)
+    scales = np.array(fit.scales)[GROUP_OF]
+    found = marginalise(
+        fit.errors if tows is None else tows,
+        scales,
+        fit.residual,
+        jacobian,
+        fit.options.huber,
+        weights,
+    )
+    root = np.sqrt(fit.options.prior_weight)
+    away = (fit.prior.start[:board] - fit.coefficients[:board]) / fit.prior.std[:board]
+    known = np.zeros((board, board + number + 1))
+    known[:, :board] = root * np.eye(board)
+    known[:, -1] = root * away
+    rows = np.vstack((known, np.column_stack((found.triangle, found.right))))
+    rest = triangular(rows)[board:]
+    left, right = rest[:, board:-1], rest[:, -1]
+    return Evidence(left.T @ left, left.T @ right, left)
+
+
+def tail(value: float, freedom: int) -> float:
+    """-log₁₀ of the probability that χ² of so many degrees of freedom exceeds a value."""
+    return float(-chi2.logsf(value, freedom) / np.log(10.0))
+
+
+def threshold(
+    found: Evidence, blocks: Sequence[Sequence[int]], false_alarms: float, seed: int = 0
+) -> float:
+    """The `tail` that the largest of all blocks exceeds in so few trials without any effect."""
+    draws = np.random.default_rng(seed).standard_normal((DRAWS, len(found.root))) @ found.root
+    largest = np.zeros(DRAWS)
+    for block in blocks:
+        own = found.information[np.ix_(list(block), list(block))]
+        inverse = np.linalg.pinv(own, 1e-10, hermitian=True)
+        freedom = found.freedom(block)
+        if freedom == 0:
+            continue
+        chosen = draws[:, list(block)]
+        sizes = np.einsum('ni,ij,nj->n', chosen, inverse, chosen)
+        largest = np.maximum(largest, -chi2.logsf(sizes, freedom) / np.log(10.0))
+    return float(np.quantile(largest, 1.0 - false_alarms))
+
+
+def detectable(found: Evidence, block: Sequence[int], limit: float) -> np.ndarray:
+    """Sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
+    sigmas = float(norm.isf(0.5 * 10.0**-limit)) + POWER
+    return sigmas * found.std(block)

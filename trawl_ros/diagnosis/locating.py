@@ -1,0 +1,63 @@
+"""Where model and measurement disagree: which channel, and with what its residuals go."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.diagnosis.evidence import BLIND
+from trawl_ros.diagnosis.patterns import SHAPES, Pattern
+from trawl_ros.diagnosis.screen import Screen
+
+TELLING = 3.0
+"""Standard deviations from where a pattern is worth a word."""
+
+DIRECTIONS = {
+    'throughout': ('too large throughout', 'too small throughout'),
+    'course': ('too large on eastward courses', 'too large on westward courses'),
+}
+
+
+@dataclass(frozen=True)
+class Where:
+    """Residuals of a channel that go with a variable: ``z`` is how far, in standard deviations of
+    what errors would make; ``region`` says it in words.
+    """
+
+    channel: str
+    variable: str
+    region: str
+    z: float
+
+
+def located(seen: Screen) -> tuple[Where, ...]:
+    """All patterns, the most telling first."""
+    found = []
+    for place, pattern in enumerate(seen.patterns, seen.number):
+        information = float(seen.evidence.information[place, place])
+        if information <= BLIND:
+            continue
+        z = float(seen.evidence.score[place]) / float(np.sqrt(information))
+        found.append(Where(pattern.channel, pattern.shape, _region(seen, pattern, z), z))
+    return tuple(sorted(found, key=lambda where: -abs(where.z)))
+
+
+def telling(seen: Screen) -> tuple[Where, ...]:
+    """Those worth a word."""
+    return tuple(where for where in located(seen) if abs(where.z) >= TELLING)
+
+
+def map_of(seen: Screen) -> tuple[list[str], list[str], np.ndarray]:
+    """Channels, variables and z (channels, variables), NaN where there is nothing to be seen."""
+    found = {(where.channel, where.variable): where.z for where in located(seen)}
+    channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))
+    variables = [name for name in SHAPES if any(p.shape == name for p in seen.patterns)]
+    z = [[found.get((channel, name), np.nan) for name in variables] for channel in channels]
+    return channels, variables, np.array(z)
+
+
+def _region(seen: Screen, pattern: Pattern, z: float) -> str:
+    words = DIRECTIONS.get(pattern.shape)
+    if words is not None:
+        return words[0] if z > 0.0 else words[1]
+    name = pattern.shape
+    return f'{"grows" if z > 0.0 else "falls"} with {name}'

@@ -1,0 +1,124 @@
+"""Boards and effects refitted together, all windows solved anew."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import Candidate, extended_prior
+from trawl_ros.identification.estimate import Estimate
+from trawl_ros.identification.estimator import Estimator
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.effect_predictor import EffectPredictor
+
+OPTIONS = EstimatorOptions(second_start=False, iterations_final=12, halvings=3)
+"""A fit that lacks an effect explains its readings badly, from wherever it is started."""
+
+
+@dataclass(frozen=True)
+class Refit:
+    """Boards and some effects (none: the boards alone) as the data have them best.
+
+    Attributes
+    ----------
+    wanted
+        The effects.
+    estimator
+        At rest, with all windows that have a steady state.
+    estimate
+        Its estimate of coefficients (12,) and values behind them.
+    """
+
+    wanted: tuple[Candidate, ...]
+    estimator: Estimator
+    estimate: Estimate
+
+    @property
+    def fit(self) -> Fit:
+        """The windows beside the model."""
+        return self.estimator.fit
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the effects."""
+        return tuple(candidate.name for candidate in self.wanted)
+
+    @property
+    def number(self) -> int:
+        """How many values there are behind the coefficients."""
+        return len(self.estimate.values) - len(COEFFICIENTS)
+
+    def cost(self, scales: tuple[float, ...]) -> float:
+        """The cost with given noise, without what is known of the effects before."""
+        fit = replace(self.fit, scales=scales)
+        extra = slice(len(COEFFICIENTS), None)
+        away = (fit.coefficients - fit.prior.start)[extra] / fit.prior.std[extra]
+        return fit.cost - 0.5 * self.fit.options.prior_weight * float(away @ away)
+
+    def at_bound(self) -> bool:
+        """Whether a value of an effect rests on a bound of what is possible."""
+        return any(name.split(' at ')[0] in self._values for name in self.estimate.active_bounds)
+
+    @property
+    def _values(self) -> tuple[str, ...]:
+        return self.fit.prior.names[len(COEFFICIENTS) :]
+
+
+def fit_boards(
+    predictor: EffectPredictor,
+    prior: BoardPrior,
+    windows: Sequence[SteadyWindow],
+    options: EstimatorOptions = OPTIONS,
+) -> Refit | None:
+    """Fit the boards alone; None where no window has a steady state."""
+    estimator = Estimator(predictor, prior, OBSERVABLES, options)
+    for window in windows:
+        estimator.add(window)
+    estimate = estimator.finish()
+    return None if estimate is None else Refit((), estimator, estimate)
+
+
+def refit(
+    predictor: EffectPredictor,
+    base: Fit,
+    wanted: Sequence[Candidate],
+    values: np.ndarray,
+    parts: Sequence[Linearised],
+    options: EstimatorOptions,
+) -> Refit | None:
+    """Fit boards and effects together.
+
+    Parameters
+    ----------
+    predictor
+        The gear without them.
+    base
+        Fit of the boards alone, where to start from.
+    wanted
+        The effects.
+    values
+        Where to start them, in their order.
+    parts
+        Windows of ``base`` with what these effects change behind the twelve columns of the boards.
+    options
+        How the estimate is found.
+
+    Returns
+    -------
+    Refit or None
+        None where no window has a steady state.
+    """
+    free = replace(predictor, free=tuple(candidate.effect for candidate in wanted))
+    prior = extended_prior(base.prior, wanted)
+    estimator = Estimator(free, prior, OBSERVABLES, options)
+    low, high = prior.low[len(COEFFICIENTS) :], prior.high[len(COEFFICIENTS) :]
+    starts = np.clip(values, low, high)
+    estimator.begin(parts, np.concatenate((base.coefficients[: len(COEFFICIENTS)], starts)))
+    estimate = estimator.finish()
+    return None if estimate is None else Refit(tuple(wanted), estimator, estimate)

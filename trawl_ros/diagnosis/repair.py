@@ -1,0 +1,99 @@
+"""The gear with the effect in it, as a gear file."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+import yaml
+
+from trawl_ros import __version__
+from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
+from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.gear.records import (
+    CoefficientsRecord,
+    EffectRecord,
+    GearRecord,
+    ProvenanceRecord,
+    SourceRecord,
+)
+from trawl_ros.model.board import COEFFICIENTS
+
+RECORDINGS = ('.mcap', '.db3', '.csv')
+PIECE = 1 << 20
+
+
+@dataclass(frozen=True)
+class Source:
+    """A bag and the SHA-256 of what was recorded in it."""
+
+    bag: str
+    sha256: str
+
+
+def source(bag: Path) -> Source:
+    """Name a bag beyond doubt: by the bytes of its recordings, in the order of their names."""
+    files = sorted(bag.rglob('*')) if bag.is_dir() else [bag]
+    recordings = [file for file in files if file.suffix in RECORDINGS and file.is_file()]
+    digests = []
+    for file in recordings:
+        digest = sha256()
+        with file.open('rb') as stream:
+            while piece := stream.read(PIECE):
+                digest.update(piece)
+        digests.append(digest.hexdigest())
+    return Source(bag.name, ' '.join(digests) or 'no recordings')
+
+
+def repaired(found: Diagnosis, sources: Sequence[Source]) -> GearRecord | None:
+    """The gear with boards as refitted and the best effect, or two, in it.
+
+    None where nothing has been named: a gear file is to hold what is known.
+    """
+    best = found.best
+    if best is None or found.verdict != 'NAMED':
+        return None
+    return with_effects(found.gear, best.refit, _provenance(found, sources))
+
+
+def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> GearRecord:
+    """The gear as a refit has it."""
+    board = dict(zip(COEFFICIENTS, map(float, one.estimate.values), strict=False))
+    taken = set(one.names)
+    effects = tuple(effect for effect in gear.effects if effect.name not in taken)
+    effects += tuple(
+        EffectRecord(
+            name=name,
+            values={parameter: value for parameter, (value, *_) in values.items()},
+            provenance=origin,
+        )
+        for name, values in values_of(one).items()
+    )
+    coefficients = CoefficientsRecord(**board)
+    return gear.model_copy(
+        update={
+            'board': gear.board.model_copy(update={'coefficients': coefficients}),
+            'effects': effects,
+        }
+    )
+
+
+def _provenance(found: Diagnosis, sources: Sequence[Source]) -> ProvenanceRecord:
+    best = found.best
+    assert best is not None
+    return ProvenanceRecord(
+        found_by=f'trawl diagnose {__version__}',
+        bags=tuple(SourceRecord(bag=one.bag, sha256=one.sha256) for one in sources),
+        evidence={
+            'delta_chi2': best.delta_chi2,
+            'delta_bic': best.delta_bic,
+            'held_out_gain': best.gain[0],
+            'bootstrap_share': best.share,
+        },
+    )
+
+
+def gear_text(gear: GearRecord) -> str:
+    """The gear file as text."""
+    plain = gear.model_dump(mode='json', exclude_none=True)
+    return yaml.safe_dump(plain, sort_keys=False, allow_unicode=True, width=100)

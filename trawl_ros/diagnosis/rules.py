@@ -1,0 +1,110 @@
+"""The rules by which a verdict is reached, all of them here.
+
+They follow what a trial can tell: an effect is named only if the data would be improbable without
+it, if it predicts tows it was not fitted to, if no other effect does nearly as well, and if what is
+then left over looks like errors.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Verdict = Literal['NO_DISCREPANCY', 'NAMED', 'AMBIGUOUS', 'UNKNOWN', 'NOT_TESTABLE']
+
+FALSE_ALARMS = 0.01
+"""Part of trials without any effect in which a discrepancy is seen nevertheless."""
+
+RIVAL = 6.0
+"""An effect whose χ² is worse than the best one's by less is not excluded."""
+
+LEAST_BIC = 10.0
+"""By so much an effect must lower the information criterion of Bayes (Kass and Raftery 1995)."""
+
+LEAST_SHARE = 0.8
+"""Part of the resampled trials in which the same effect is the best."""
+
+FIT = 1e-3
+"""Probability below which what is left over does not look like errors."""
+
+LEFT_SHARE = 0.1
+"""Part of the χ² that an effect explains: what it leaves over is taken for another form of the same
+where it is less, for at sea no effect has the very form that a catalogue gives it."""
+
+ALIKE = 0.98
+"""Cosine from where two effects are one class for the trial at hand: with less than 0.98 the right
+one of two is named in 97 % of trials at six times the detectable size."""
+
+FEWEST_STATES = 3
+"""Steady states without which nothing can be tested."""
+
+FEWEST_TOWS = 8
+"""So many tows are drawn anew; of fewer each is left out in turn."""
+
+FEWEST_UNITS = 3
+"""With fewer tows it is steady states that are left out."""
+
+NOWHERE_NEAR = 10.0
+"""Noise found over noise stated, boards alone, from where it is another gear if no effect has a
+name."""
+
+SCREENED = 4
+"""So many effects of those that are not excluded are refitted."""
+
+SCREEN, SCREEN_SHARE = 16.0, 0.5
+"""To first order an effect may be worse by so much χ², or explain only this part of what the first
+does, and still be the best in a refit."""
+
+
+@dataclass(frozen=True)
+class Grounds:
+    """What speaks for the best effect, or two effects, and which others are not excluded.
+
+    Attributes
+    ----------
+    delta_bic
+        By how much it lowers the criterion.
+    gain_low
+        Lower end of the interval of what left-out tows gain, χ² per tow.
+    share
+        Part of the resampled trials in which it is the best.
+    at_bound
+        Whether a value rests on the bound of what is possible.
+    left_over, left_share
+        Probability of what is left over, and its part of what is explained.
+    rivals
+        Effects that are not excluded and not of its class.
+    """
+
+    delta_bic: float
+    gain_low: float
+    share: float
+    at_bound: bool
+    left_over: float
+    left_share: float
+    rivals: tuple[str, ...]
+
+
+def leaves_too_much(left_over: float, left_share: float) -> bool:
+    """Whether there must be more than the effect."""
+    return left_over < FIT and left_share > LEFT_SHARE
+
+
+def judge(grounds: Grounds) -> tuple[Verdict, str]:
+    """Whether what was detected gets a name, and why."""
+    if leaves_too_much(grounds.left_over, grounds.left_share):
+        return 'UNKNOWN', (
+            'what the best effect leaves over does not look like errors '
+            f'(probability {grounds.left_over:.1g})'
+        )
+    if grounds.rivals:
+        return 'AMBIGUOUS', f'{", ".join(grounds.rivals)} would explain it nearly as well'
+    if grounds.delta_bic < LEAST_BIC:
+        return 'UNKNOWN', f'the best effect lowers BIC by {grounds.delta_bic:.1f} only'
+    if grounds.at_bound:
+        return 'UNKNOWN', 'the best effect would have to be stronger than is possible'
+    if grounds.gain_low <= 0.0:
+        return 'UNKNOWN', 'the best effect does not help to predict what was left out'
+    if grounds.share < LEAST_SHARE:
+        return 'AMBIGUOUS', (
+            f'in {1.0 - grounds.share:.0%} of the resampled trials another effect is the best'
+        )
+    return 'NAMED', 'it alone explains what was seen, and predicts what was left out'

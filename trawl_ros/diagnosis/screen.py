@@ -1,0 +1,161 @@
+"""First look: all effects and all patterns beside the fit of the boards, to first order."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
+from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
+from trawl_ros.diagnosis.patterns import Pattern, patterns
+from trawl_ros.diagnosis.rules import FALSE_ALARMS
+from trawl_ros.effects.effect import Effect
+from trawl_ros.identification.aim import aim
+from trawl_ros.identification.error_terms import TowErrors
+from trawl_ros.identification.fit import Fit
+from trawl_ros.identification.marginal import reweighted
+from trawl_ros.solver.effect_predictor import EffectPredictor
+
+
+@dataclass(frozen=True)
+class Screen:
+    """Evidence for every candidate and every pattern.
+
+    Attributes
+    ----------
+    fit
+        Of the boards alone, with noise as it is where any of the effects may be there.
+    weights
+        Huber weights of its tows, likewise.
+    wanted, columns
+        The candidates, and what they change in each window.
+    patterns, shapes
+        The patterns, and the same of them.
+    evidence
+        For values of the candidates in `Candidate.scale`, and behind them sizes of the patterns.
+    limit
+        The `strength` that chance reaches in one of a hundred trials, in any of all blocks.
+    """
+
+    fit: Fit
+    weights: tuple[np.ndarray, ...]
+    wanted: tuple[Candidate, ...]
+    columns: tuple[np.ndarray, ...]
+    patterns: tuple[Pattern, ...]
+    shapes: tuple[np.ndarray, ...]
+    evidence: Evidence
+    limit: float
+
+    def block(self, candidate: Candidate) -> range:
+        """Where the values of a candidate stand."""
+        first = 0
+        for other in self.wanted:
+            if other is candidate:
+                return range(first, first + len(other.start))
+            first += len(other.start)
+        raise ValueError(f'{candidate.name} is not among those that are wanted')
+
+    @property
+    def channels(self) -> Mapping[str, range]:
+        """Where the patterns of each channel stand."""
+        return blocks_of(self.patterns, self.number)
+
+    @property
+    def number(self) -> int:
+        """Values of all candidates."""
+        return sum(len(candidate.start) for candidate in self.wanted)
+
+    @property
+    def readings(self) -> int:
+        """In all windows."""
+        return sum(len(part.channels) for part in self.fit.windows)
+
+    def strength(self, candidate: Candidate) -> float:
+        """Of the evidence for one."""
+        return self.evidence.strength(self.block(candidate))
+
+    @property
+    def strongest(self) -> float:
+        """Of all evidence."""
+        of_channels = [self.evidence.strength(block) for block in self.channels.values()]
+        return max([self.strength(candidate) for candidate in self.wanted] + of_channels)
+
+    @property
+    def detected(self) -> bool:
+        """Whether something is there that is not in the model."""
+        return self.strongest > self.limit
+
+    def values(self, candidate: Candidate) -> np.ndarray:
+        """Most likely values (m,), to first order and with no other effect."""
+        return candidate.start + candidate.scale * self.evidence.values(self.block(candidate))
+
+    def detectable(self, candidate: Candidate) -> np.ndarray:
+        """Departures (m,) from where it was looked for that these data show, each value alone."""
+        return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit)
+
+    def penalised(self, candidate: Candidate, found: Evidence | None = None) -> float:
+        """By how much it lowers the information criterion of Bayes, to first order."""
+        found = found or self.evidence
+        block = self.block(candidate)
+        return found.chi2(block) - found.freedom(block) * float(np.log(self.readings))
+
+    def covered(self, candidate: Candidate, other: Candidate) -> float:
+        """Cosine of what the most likely values of one change with what another could do."""
+        block = self.block(candidate)
+        return self.evidence.covered(block, self.evidence.values(block), self.block(other))
+
+    def resampled(self, tows: Sequence[int]) -> Evidence:
+        """Evidence of some of the tows, by their place, one of them perhaps several times."""
+        errors: list[TowErrors] = [self.fit.errors[tow] for tow in tows]
+        weights = [self.weights[tow] for tow in tows]
+        units = np.concatenate([candidate.scale for candidate in self.wanted])
+        return evidence(self.fit, self.columns, units, tows=errors, weights=weights)
+
+    def of_windows(self, rows: Sequence[int]) -> Evidence:
+        """Evidence of some of the windows."""
+        fit = replace(self.fit, windows=tuple(self.fit.windows[row] for row in rows))
+        units = np.concatenate([candidate.scale for candidate in self.wanted])
+        return evidence(fit, [self.columns[row] for row in rows], units)
+
+
+def screen(predictor: EffectPredictor, base: Fit, effects: Mapping[str, Effect]) -> Screen:
+    """Look for all effects.
+
+    Parameters
+    ----------
+    predictor
+        The gear as it is believed.
+    base
+        Fit of the boards alone, at rest.
+    effects
+        The catalogue.
+    """
+    depths = np.array([part.window.means['net_depth'] for part in base.windows])
+    wanted = candidates(effects, predictor, depths)
+    columns = signatures(predictor, base.windows, wanted)
+    free = extended(base, wanted, columns, base.options)
+    # Noise is what no effect explains: found with all of them free.
+    explained = aim(replace(free, scales=base.scales), free.prior.low, free.prior.high)
+    weights = reweighted(explained.marginal, base.options.huber)
+    fit = replace(base, scales=explained.scales)
+    shapes, of_shapes = patterns(base.windows)
+    both = [np.hstack(pair) for pair in zip(columns, of_shapes, strict=True)]
+    units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])
+    found = evidence(fit, both, units, weights=weights)
+    number = len(units) - len(shapes)
+    blocks: list[range] = []
+    for candidate in wanted:
+        first = blocks[-1].stop if blocks else 0
+        blocks.append(range(first, first + len(candidate.start)))
+    blocks += blocks_of(shapes, number).values()
+    limit = threshold(found, blocks, FALSE_ALARMS)
+    return Screen(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
+
+
+def blocks_of(shapes: Sequence[Pattern], first: int) -> dict[str, range]:
+    """Where the patterns of each channel stand, the first of all at ``first``."""
+    found: dict[str, range] = {}
+    for place, pattern in enumerate(shapes, first):
+        begin = found[pattern.channel].start if pattern.channel in found else place
+        found[pattern.channel] = range(begin, place + 1)
+    return found

@@ -1,0 +1,82 @@
+"""Writes a diagnosis into a folder."""
+
+import base64
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.diagnosis.diagnosis import Diagnosis
+from trawl_ros.diagnosis.figures import draw_figures
+from trawl_ros.diagnosis.repair import Source, gear_text, repaired
+from trawl_ros.diagnosis.result import result
+from trawl_ros.diagnosis.words import headline, sentences
+from trawl_ros.errors import TrawlError
+from trawl_ros.identification.figures import Drawing
+from trawl_ros.identification.page import Embedded
+from trawl_ros.reporting import templates
+
+MODEL = 'model.yaml'
+
+
+def write_diagnosis(
+    found: Diagnosis, sources: Sequence[Source], folder: Path, advice: Sequence[str] = ()
+) -> None:
+    """Write ``diagnosis.json``, both reports, the figures, and ``model.yaml`` where there is one.
+
+    Parameters
+    ----------
+    found
+        What to write.
+    sources
+        The bags.
+    folder
+        Made if it does not exist.
+    advice
+        Sentences on what to tow next.
+
+    Raises
+    ------
+    TrawlError
+        If the folder cannot be written to.
+    """
+    numbers = result(found, sources, advice)
+    gear = repaired(found, sources)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(numbers, indent=2, allow_nan=False)
+        (folder / 'diagnosis.json').write_text(f'{text}\n', encoding='utf-8')
+        if gear is not None:
+            (folder / MODEL).write_text(gear_text(gear), encoding='utf-8')
+        drawn = draw_figures(found, folder)
+        for name in ('report.html', 'report.md'):
+            page = _page(name, found, numbers, folder, drawn, gear is not None)
+            (folder / name).write_text(page, encoding='utf-8')
+    except OSError as reason:
+        raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
+
+
+def _page(
+    name: str,
+    found: Diagnosis,
+    numbers: dict[str, Any],
+    folder: Path,
+    drawn: Sequence[Drawing],
+    repaired: bool,
+) -> str:
+    figures: dict[str, list[Embedded]] = {}
+    for drawing in drawn:
+        data = base64.b64encode((folder / drawing.file).read_bytes()).decode('ascii')
+        figures.setdefault(drawing.section, []).append(Embedded(drawing.caption, data))
+    text = (
+        templates('trawl_ros.diagnosis')
+        .get_template(f'{name}.j2')
+        .render(
+            result={**numbers, 'gear': found.gear.name},
+            headline=headline(found),
+            sentences=sentences(found),
+            figures=list(figures.items()),
+            repaired=repaired,
+        )
+    )
+    return text.rstrip() + '\n'
