@@ -274,3 +274,15 @@ def test_memory_is_bounded_by_a_window(sea, model):
 def test_settings_that_make_no_sense_are_refused_by_name(setting):
     with pytest.raises(TrawlError, match=setting):
         WindowOptions(**{setting: -1.0})
+
+
+@pytest.mark.parametrize('first', [0, 1_750_000_000])
+def test_windows_know_how_long_the_tow_has_lasted(sea, model, first):
+    samples = sea.tow(model, [sea.Leg(400.0, 2.0, 300.0), sea.Leg(500.0, 2.0, 300.0)])
+    shift = first * sea.NANO - sea.EPOCH
+    samples = [replace(sample, stamp=sample.stamp + shift) for sample in samples]
+    _, windows = run(sea, samples)
+    assert len(windows) >= 2
+    for window in windows:
+        middle = 0.5 * (window.start_ns + window.end_ns) - first * sea.NANO
+        assert window.hours == pytest.approx(middle / (3600 * sea.NANO), abs=1e-6)

@@ -179,6 +179,10 @@ class SteadyWindowFinder:
             self._began = int(stamps.min())
         self._last_winch = int(stamps.max())
 
+    def _hours(self, stamp: float) -> float:
+        """Since the tow began."""
+        return 0.0 if self._began is None else (stamp - self._began) / (3600.0 * NANO)
+
     def _summary(self, index: int) -> Block:
         def values(name: str) -> np.ndarray:
             start_ns = index * self._block_ns
@@ -269,7 +273,7 @@ class SteadyWindowFinder:
             bias={name: CHANNELS[name].bias_std(found.mean) for name, found in used.items()},
             counts={name: found.count for name, found in used.items()},
             tow=self._tow,
-            hours=(0.5 * (start_ns + end_ns) - (self._began or start_ns)) / (3600.0 * NANO),
+            hours=self._hours(0.5 * (start_ns + end_ns)),
             track=ground_track(
                 *(
                     self._buffers[name].window(start_ns, end_ns)[:2]
