@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from trawl_ros.effects.acting import acting
+from trawl_ros.effects.showing import Showing
 from trawl_ros.errors import InstrumentError, MessageError
 from trawl_ros.files import packaged
 from trawl_ros.gear.load import load_gear
@@ -20,6 +22,7 @@ from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.topics import INSTRUMENTS
+from trawl_ros.model.gear_model import build_water
 from trawl_ros.nodes.joining import Joiner
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.parameters import Names, Number, Text
@@ -31,11 +34,12 @@ from trawl_ros.scenario.surroundings import build_surroundings
 
 @dataclass(frozen=True)
 class Setup:
-    """What instruments are made with, as in `InstrumentSuite`."""
+    """What instruments are made with, as in `InstrumentSuite`, and what their gear makes of it."""
 
     parameters: InstrumentParameters
     surroundings: Surroundings
     draws: Draws
+    showing: Showing
     faults: tuple[PlannedFault, ...] = ()
 
 
@@ -55,7 +59,8 @@ class InstrumentNode(TrawlNode, ABC):
     SPECS: ClassVar = (
         Text('scenario', '', 'Scenario file or name: its instruments, seed, water and changes of '
              'state are used.'),
-        Text('gear', 'kaifuha', 'Gear file or name, for the water; a scenario brings its own.'),
+        Text('gear', 'kaifuha', 'Gear file or name, for the water and for effects that instruments '
+             'have; a scenario brings its own.'),
         Text('instruments', 'default', 'File or name of instrument parameters; a scenario brings '
              'its own.'),
         Number('seed', -1, 'none', -1, 2**32 - 1, 'Seed of all noise; -1 is that of the scenario, '
@@ -70,6 +75,7 @@ class InstrumentNode(TrawlNode, ABC):
         super().__init__(name, **kwargs)
         setup = self._setup()
         self._panel = FaultPanel(self.set_up(setup))
+        self._showing = setup.showing
         self._plan = FaultPlan(setup.faults, self._panel)
         self._by_parameter: dict[str, str] = {}
         self._take_parameter()
@@ -151,11 +157,19 @@ class InstrumentNode(TrawlNode, ABC):
         if name := self.parameters['scenario']:
             scenario = load_scenario(packaged(Path(name), 'scenarios'))
             draws = scenario.draws if seed < 0 else Draws(seed, scenario.state_changes_s)
-            return Setup(scenario.instruments, scenario.surroundings, draws, scenario.faults)
+            return Setup(
+                scenario.instruments,
+                scenario.surroundings,
+                draws,
+                scenario.showing(),
+                scenario.faults,
+            )
+        gear = load_gear(self.parameters['gear'])
         return Setup(
             load_instruments(self.parameters['instruments']),
-            build_surroundings(load_gear(self.parameters['gear'])),
+            build_surroundings(gear),
             Draws(max(seed, 0)),
+            Showing(acting(gear), build_water(gear)),
         )
 
     def _look_at(self, topic: str) -> None:
@@ -167,7 +181,7 @@ class InstrumentNode(TrawlNode, ABC):
             self._plan.follow(stamp)
             try:
                 for sample in self.observe(stamp, complete):
-                    self.send(*sample_message(sample))
+                    self.send(*sample_message(self._showing(sample)))
             except MessageError as reason:
                 self.refuse(topic, str(reason))
             self._progress.done(stamp)

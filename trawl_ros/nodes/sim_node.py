@@ -7,6 +7,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
+from trawl_ros.effects.acting import acting
 from trawl_ros.errors import MessageError, TrawlError
 from trawl_ros.files import packaged
 from trawl_ros.gear.load import load_gear
@@ -168,11 +169,13 @@ class SimNode(TrawlNode):
             return Trial(self._scenario), round(SECOND / self._scenario.record.truth_rate_hz)
         rate = self.parameters['truth_rate_hz']
         length, speed = self.parameters['warp_length_m'], self.parameters['speed_m_s']
+        gear = load_gear(self.parameters['gear'])
         tow = CommandedTow(
-            build_model(load_gear(self.parameters['gear'])),
+            build_model(gear),
             Command(length, length, speed),
             heading=math.radians(self.parameters['heading_deg']),
             truth_rate_hz=rate,
+            acting=acting(gear),
         )
         return tow, round(SECOND / rate)
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import Protocol
 
+from trawl_ros.effects.acting import NONE, Acting
 from trawl_ros.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -40,6 +41,8 @@ class CommandedTow:
         First heading, ENU yaw, rad.
     truth_rate_hz
         How often truth is asked for: `MAX_TRUTH_HZ` divided by a whole number.
+    acting
+        Effects that the plant has beyond the model.
 
     Raises
     ------
@@ -50,7 +53,13 @@ class CommandedTow:
     """
 
     def __init__(
-        self, model: GearModel, start: Command, *, heading: float, truth_rate_hz: float
+        self,
+        model: GearModel,
+        start: Command,
+        *,
+        heading: float,
+        truth_rate_hz: float,
+        acting: Acting = NONE,
     ) -> None:
         every = MAX_TRUTH_HZ / truth_rate_hz
         if abs(every - round(every)) > 1e-9 * every:
@@ -58,7 +67,9 @@ class CommandedTow:
                 f'parameter truth_rate_hz: found {truth_rate_hz:g}, expected {MAX_TRUTH_HZ:g} '
                 'divided by a whole number (Hz)'
             )
-        self.simulation = Simulation(model, start, heading=heading, period=1.0 / MAX_TRUTH_HZ)
+        self.simulation = Simulation(
+            model, start, heading=heading, period=1.0 / MAX_TRUTH_HZ, acting=acting
+        )
         self._steps = round(every)
         self._started = False
 

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from trawl_ros.gear.records import CurrentAt, TemperatureAt
+from trawl_ros.gear.records import CurrentAt, EffectRecord, TemperatureAt
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.faults import FaultRecord
 from trawl_ros.scenario.sea import SeaRecord
@@ -125,9 +125,9 @@ class CoefficientOverrides(Record):
 class ScenarioRecord(Record):
     """A trial, as its YAML file has it.
 
-    ``record`` says which topics go into the bag: ``pictures`` are the sonar's image, scan and
-    points, ``instruments`` all else that is measured. ``truth_rate_hz`` is how often there is
-    truth; instruments look at all of it.
+    ``effects`` are those that the plant has beside the gear file's. ``record`` says which topics go
+    into the bag: ``pictures`` are the sonar's image, scan and points, ``instruments`` all else that
+    is measured. ``truth_rate_hz`` is how often there is truth; instruments look at all of it.
     """
 
     description: Annotated[str, Field(min_length=1, max_length=300)]
@@ -135,6 +135,7 @@ class ScenarioRecord(Record):
     refine: RefineRecord = RefineRecord()
     coefficients: CoefficientOverrides = CoefficientOverrides()
     water: WaterOverrides = WaterOverrides()
+    effects: Annotated[tuple[EffectRecord, ...], Field(max_length=20)] = ()
     sea: SeaRecord = SeaRecord()
     instruments: str | dict[str, Any] = 'default'
     faults: Annotated[tuple[FaultRecord, ...], Field(max_length=1000)] = ()

@@ -89,6 +89,7 @@ class Trial:
                 stamp=stamp,
                 period=1.0 / scenario.record.truth_rate_hz / steps,
                 sea=sea,
+                acting=scenario.acting,
             )
         except SeabedTouched as reason:
             raise SeabedTouched(f'{scenario.path}: start: {reason}') from reason

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from trawl_ros.effects.acting import Acting, acting
+from trawl_ros.effects.showing import Showing
 from trawl_ros.errors import InstrumentError, ScenarioError, TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -22,6 +24,7 @@ from trawl_ros.instruments.parameters import (
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import build_water
 from trawl_ros.scenario.driving import NOBODY, AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
 from trawl_ros.scenario.surroundings import build_surroundings
@@ -121,6 +124,15 @@ class Scenario:
         """The water around the instruments."""
         return build_surroundings(self.plant)
 
+    @cached_property
+    def acting(self) -> Acting:
+        """Effects that the plant has beyond the model."""
+        return acting(self.plant)
+
+    def showing(self) -> Showing:
+        """What makes samples of a plant with these effects."""
+        return Showing(self.acting, build_water(self.plant))
+
     @property
     def faults(self) -> tuple[PlannedFault, ...]:
         """Faults of instruments that come and go."""
@@ -204,6 +216,7 @@ def _plant(gear: GearRecord, record: ScenarioRecord, path: Path) -> GearRecord:
     data = finer.model_dump()
     data['board']['coefficients'] |= record.coefficients.model_dump(exclude_none=True)
     data['water'] |= record.water.model_dump(exclude_none=True)
+    data['effects'] = (*data['effects'], *(one.model_dump() for one in record.effects))
     # Checked again: what differs must fit what stayed.
     return validated(GearRecord, data, path, ScenarioError, prefix='plant')
 

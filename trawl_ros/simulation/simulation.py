@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.effects.acting import NONE, Acting
+from trawl_ros.effects.effect import Situation, sense
 from trawl_ros.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import Tow, halfway
@@ -75,6 +77,8 @@ class Simulation:
         between lies on the cubic through both ends.
     sea
         What lifts the ship, what lies below, and what swims around.
+    acting
+        Effects beyond the model. Winches and ship are commanded by what counters and log show.
 
     Raises
     ------
@@ -93,38 +97,40 @@ class Simulation:
         stamp: int = 0,
         period: float = 0.1,
         sea: Sea = CALM,
+        acting: Acting = NONE,
     ) -> None:
         if command.turn_rate:
             raise ScenarioError(
                 'a tow starts on a straight course, found a rate of turn of '
                 f'{command.turn_rate} rad/s'
             )
-        self.model = model
+        self._plain, self._acting = model, acting
         self.sea = sea
         self.command = command
         self._period = round(period * NANOSECONDS)
         self._reached: Instant | None = None
         self._first_stamp = stamp
-        self._stepper = Stepper(model)
+        self.model = self._gear_at(stamp, command, heading)
+        self._stepper = Stepper(self.model)
         self.now = self._first(command, heading, stamp)
         self._start = (command, self.now)
         require_clear(sea.seabed, model, self.now.motion.state)
 
     def _first(self, command: Command, heading: float, stamp: int) -> Instant:
-        point = OperatingPoint(
-            command.port_length, command.starboard_length, command.speed, heading
-        )
+        towed = self._towed(command)
+        point = OperatingPoint(towed.port_length, towed.starboard_length, towed.speed, heading)
         found = require_usable(self.model, find_equilibrium(self.model, point)).equilibrium
         return Instant(
             stamp=stamp,
-            ship=Ship(np.zeros(3), heading, command.speed, 0.0),
-            winches=(Winch(command.port_length, 0.0), Winch(command.starboard_length, 0.0)),
+            ship=Ship(np.zeros(3), heading, towed.speed, 0.0),
+            winches=(Winch(towed.port_length, 0.0), Winch(towed.starboard_length, 0.0)),
             motion=at_rest(found.state),
         )
 
     def reset(self) -> None:
         """Back to the start: the same tow comes again, to the last digit."""
         self.command, self.now = self._start
+        self.model = self._gear_at(self.now.stamp, self.command, self.now.ship.heading)
         self._stepper = Stepper(self.model)
         self._reached = None
 
@@ -167,7 +173,7 @@ class Simulation:
 
     def _boundary(self, now: Instant, dt: float) -> tuple[Ship, tuple[Winch, Winch]]:
         """Ship and winches ``dt`` seconds on, under the present command."""
-        gear, wanted = self.model.gear, self.command
+        gear, wanted = self.model.gear, self._towed(self.command)
         surface = self.model.water.current(np.array(0.0))
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
         ship = ship.heaved(*self.sea.heave.at(self._seconds(now.stamp) + dt))
@@ -180,6 +186,9 @@ class Simulation:
     def _advanced(self, now: Instant, span: int, halvings: int) -> Instant:
         dt = span / NANOSECONDS
         ship, winches = self._boundary(now, dt)
+        if self._acting:
+            self.model = self._gear_at(now.stamp + span, self.command, ship.heading)
+            self._stepper.model = self.model
         try:
             motion = self._stepper.step(now.motion, tow_of(self.model, ship, winches), dt)
         except StepFailed:
@@ -188,6 +197,20 @@ class Simulation:
             half = self._advanced(now, span // 2, halvings - 1)
             return self._advanced(half, span - span // 2, halvings - 1)
         return Instant(now.stamp + span, ship, winches, motion)
+
+    def _towed(self, command: Command) -> Command:
+        """What ship and winches really do where counters and log show what is commanded."""
+        if not self._acting:
+            return command
+        shown = (command.port_length, command.starboard_length, command.speed)
+        port, starboard, speed = map(float, self._acting.towed(np.array(shown), Situation(shown)))
+        return replace(command, port_length=port, starboard_length=starboard, speed=speed)
+
+    def _gear_at(self, stamp: int, command: Command, heading: float) -> GearModel:
+        """The gear with the effects of this time."""
+        shown = (command.port_length, command.starboard_length, command.speed)
+        hours = self._seconds(stamp) / 3600.0
+        return self._acting.gear(self._plain, Situation(shown, heading, sense(heading), hours))
 
     def _seconds(self, stamp: int) -> float:
         """Since the start."""
