@@ -1,11 +1,11 @@
 """A diagnosis as figures."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown
 from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.diagnosis.screen import Screen
@@ -137,9 +137,9 @@ def confusable_figure(seen: Screen) -> Figure:
     return figure
 
 
-def largest_cosine(seen: Screen, one: object, other: object) -> float:
+def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
     """The cosine of the nearest that two effects can come to each other."""
-    a, b = (list(seen.block(which)) for which in (one, other))  # type: ignore[arg-type]
+    a, b = (list(seen.block(which)) for which in (one, other))
     information = seen.evidence.information
     roots = []
     for block in (a, b):
@@ -203,5 +203,5 @@ def coefficients_figure(found: Diagnosis) -> Figure:
     return figure
 
 
-def _words(name: str | Sequence[str]) -> str:
-    return str(name).replace('_', ' ')
+def _words(name: str) -> str:
+    return name.replace('_', ' ')

@@ -160,7 +160,7 @@ def name(
     if left.too_much:
         weighed, left = _with_second(predictor, base, seen, refits, weighed, tried)
         best = weighed[0]
-    alike = _alike(seen, best)
+    alike = _twins(seen, best.refit)
     rivals = tuple(
         other.refit.names[0]
         for other in weighed[1:]
@@ -297,10 +297,6 @@ def _cosine(seen: Screen, one: Refit, other: Candidate) -> float:
 def _nearest(seen: Screen, one: Refit) -> float:
     others = [other for other in seen.wanted if other.name not in one.names]
     return max((_cosine(seen, one, other) for other in others), default=0.0)
-
-
-def _alike(seen: Screen, best: Weighed) -> tuple[str, ...]:
-    return _twins(seen, best.refit)
 
 
 def _with_second(
