@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
+from trawl_ros.diagnosis.next_tow import propose
 from trawl_ros.diagnosis.repair import repaired, source
 from trawl_ros.diagnosis.result import result
 from trawl_ros.diagnosis.words import headline, sentences
 from trawl_ros.diagnosis.writing import write_diagnosis
 from trawl_ros.gear.load import load_gear
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.effect_predictor import EffectPredictor
 
 
 @pytest.fixture(scope='module')
@@ -73,7 +76,7 @@ def test_all_is_written(caught, tmp_path):
     bag = tmp_path / 'bag'
     bag.mkdir()
     (bag / 'bag_0.mcap').write_bytes(b'not much')
-    write_diagnosis(caught, [source(bag)], tmp_path / 'out', ['Tow on.'])
+    write_diagnosis(replace(caught, advice=('Tow on.',)), [source(bag)], tmp_path / 'out')
     found = json.loads((tmp_path / 'out' / 'diagnosis.json').read_text())
     assert {
         'verdict', 'reason', 'effects', 'ambiguous_with', 'where', 'evidence', 'channels',
@@ -130,3 +133,18 @@ def test_another_gear_is_not_diagnosed(coarse, hide):
     found = diagnose(coarse, windows, hide.names[:3])
     assert found.verdict == 'NOT_TESTABLE', found.reason
     assert 'another gear' in found.reason
+
+
+def test_the_next_tow_tells_an_effect_from_its_rival(coarse, caught):
+    seen = caught.seen
+    best = caught.best.refit.wanted[0]
+    (rival,) = [one for one in seen.wanted if one.name == 'spread_sensor']
+    predictor = EffectPredictor(build_model(coarse))
+    proposals = propose(predictor, seen, best, np.array([2.0]), [rival])
+    assert proposals
+    first = proposals[0]
+    assert first.after > first.before > 0.0
+    assert first.per_hour == pytest.approx(first.after - first.before)
+    assert all(first.per_hour >= other.per_hour for other in proposals)
+    assert 'an hour of it parts the best effect from its nearest rival' in str(first)
+    assert propose(predictor, seen, best, np.array([2.0]), []) == ()

@@ -6,16 +6,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.diagnosis.locating import Where, telling
-from trawl_ros.diagnosis.naming import Named, Weighed, name, refitted
+from trawl_ros.diagnosis.naming import Named, name, refitted
+from trawl_ros.diagnosis.next_tow import propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards
 from trawl_ros.diagnosis.rules import FEWEST_STATES, NOWHERE_NEAR, Verdict
 from trawl_ros.diagnosis.screen import Screen, screen
 from trawl_ros.diagnosis.showing import Errors, Split, errors, split
+from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.effects.acting import acting
 from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.effect_predictor import EffectPredictor
 
@@ -63,6 +66,8 @@ class Diagnosis:
     base, seen, named, where, shown
         Boards alone; first look; naming; patterns of residuals; errors on what was kept back.
         None, or empty, where it did not come to that.
+    advice
+        Sentences on what to do next where something cannot be told apart.
     """
 
     verdict: Verdict
@@ -76,6 +81,7 @@ class Diagnosis:
     named: Named | None = None
     where: tuple[Where, ...] = ()
     shown: Shown | None = None
+    advice: tuple[str, ...] = ()
 
     @property
     def best(self) -> Weighed | None:
@@ -151,13 +157,35 @@ def diagnose(
     told('predicting what was kept back')
     other = None if best is None else _placebo(predictor, base, seen, named)
     shown = _shown(predictor, base, best, other, parts)
-    return replace(known, verdict=named.verdict, reason=named.reason, named=named, shown=shown)
+    told('looking for the next tow')
+    return replace(
+        known,
+        verdict=named.verdict,
+        reason=named.reason,
+        named=named,
+        shown=shown,
+        advice=_advice(predictor, seen, named),
+    )
 
 
 def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
     """The diagnosis of recordings without a single steady window."""
     nothing = Split((), (), 'state')
     return Diagnosis('NOT_TESTABLE', reason, gear, tuple(tows), frozenset(), nothing)
+
+
+def _advice(predictor: EffectPredictor, seen: Screen, named: Named) -> tuple[str, ...]:
+    """How to tell the best effect from those that are not excluded."""
+    others = {*named.rivals, *named.alike}
+    if not named.weighed or not others:
+        return ()
+    best = named.weighed[0].refit
+    rivals = [one for one in seen.wanted if one.name in others]
+    candidate = best.wanted[0]
+    values = best.estimate.values[len(COEFFICIENTS) :][: len(candidate.start)]
+    proposals = propose(predictor, seen, candidate, values, rivals)
+    direct = [one.effect.direct for one in (*best.wanted, *rivals) if one.effect.direct]
+    return (*dict.fromkeys(direct), *map(str, proposals))
 
 
 def _placebo(predictor: EffectPredictor, base: Refit, seen: Screen, named: Named) -> Refit | None:

@@ -6,17 +6,15 @@ from typing import Any
 
 from trawl_ros import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown, values_of
-from trawl_ros.diagnosis.naming import Weighed
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import Source
 from trawl_ros.diagnosis.screen import Screen
 from trawl_ros.diagnosis.showing import unit_of
+from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.model.board import COEFFICIENTS
 
 
-def result(
-    found: Diagnosis, sources: Sequence[Source], advice: Sequence[str] = ()
-) -> dict[str, Any]:
+def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
     """Give all that was found as JSON has it; numbers that are not finite are null."""
     named, best = found.named, found.best
     sure = found.verdict in ('NAMED', 'AMBIGUOUS')
@@ -48,7 +46,7 @@ def result(
         'detection': None
         if found.seen is None
         else {'strongest': _number(found.seen.strongest), 'limit': _number(found.seen.limit)},
-        'next_tow': list(advice),
+        'next_tow': list(found.advice),
         'tows': [
             {'name': name, 'baseline': place in found.baseline}
             for place, name in enumerate(found.tows)

@@ -19,9 +19,7 @@ from trawl_ros.reporting import templates
 MODEL = 'model.yaml'
 
 
-def write_diagnosis(
-    found: Diagnosis, sources: Sequence[Source], folder: Path, advice: Sequence[str] = ()
-) -> None:
+def write_diagnosis(found: Diagnosis, sources: Sequence[Source], folder: Path) -> None:
     """Write ``diagnosis.json``, both reports, the figures, and ``model.yaml`` where there is one.
 
     Parameters
@@ -32,15 +30,13 @@ def write_diagnosis(
         The bags.
     folder
         Made if it does not exist.
-    advice
-        Sentences on what to tow next.
 
     Raises
     ------
     TrawlError
         If the folder cannot be written to.
     """
-    numbers = result(found, sources, advice)
+    numbers = result(found, sources)
     gear = repaired(found, sources)
     try:
         folder.mkdir(parents=True, exist_ok=True)

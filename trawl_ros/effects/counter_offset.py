@@ -19,4 +19,5 @@ EFFECT = CounterOffset(
     parameters=(Parameter('offset', 'm', 0.0, -50.0, 50.0, 10.0),),
     excited_by='warp length',
     confused_with=('counter_scale', 'warp_strumming'),
+    direct='Pay out warp to a mark of known distance and read the counters.',
 )

@@ -20,4 +20,5 @@ EFFECT = CounterScale(
     parameters=(Parameter('scale', '', 0.0, -0.15, 0.15, 0.03),),
     excited_by='warp length',
     confused_with=('warp_strumming', 'counter_offset'),
+    direct='Pay out warp past marks of known distance and read the counters.',
 )

@@ -32,4 +32,6 @@ EFFECT = DepthSensor(
     ),
     excited_by='depth, and time in the tow; a surfaced door shows the offset',
     confused_with=('gear_weight',),
+    direct='Read the depth sensors with doors and sonar at the surface: what '
+    'they show then is their offset.',
 )

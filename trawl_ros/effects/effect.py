@@ -95,6 +95,8 @@ class Effect:
         Effects that look much alike in common trials.
     dynamic
         Whether it shows only while something changes, and never in steady tows.
+    direct
+        How it can be seen without any tow, in one sentence; empty where it cannot.
     """
 
     name: str
@@ -103,6 +105,7 @@ class Effect:
     excited_by: str
     confused_with: tuple[str, ...] = ()
     dynamic: bool = False
+    direct: str = ''
 
     @property
     def neutral(self) -> np.ndarray:

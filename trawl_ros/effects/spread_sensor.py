@@ -25,4 +25,5 @@ EFFECT = SpreadSensor(
     ),
     excited_by='spread: warp length and speed',
     confused_with=('net_drag',),
+    direct='Hold the doors a measured distance apart at the stern and read their sensor.',
 )

@@ -19,4 +19,5 @@ EFFECT = WarpAsymmetry(
     parameters=(Parameter('port_longer', 'm', 0.0, -15.0, 15.0, 3.0),),
     excited_by='any tow, short warps most',
     confused_with=('cross_current',),
+    direct='Pay out both warps to marks of the same distance and compare the counters.',
 )

@@ -1,0 +1,195 @@
+"""The tow that would best part an effect from its rivals."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import Candidate, signatures
+from trawl_ros.diagnosis.evidence import Evidence, evidence
+from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.identification.channels import CHANNELS
+from trawl_ros.identification.linearised import Linearised, linearise
+from trawl_ros.identification.over_ground import GroundTrack
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.effect_predictor import EffectPredictor
+
+STATES = 3
+"""Steady states of a tow that is proposed."""
+
+STATE_MINUTES = 20.0
+"""A state takes so long, with what the gear takes to settle."""
+
+TOLD = 3
+"""So many tows are proposed."""
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A tow of some steady states (warp length m, speed m/s), on the same or the reciprocal track.
+
+    ``before`` and ``after`` are the χ² by which an effect is better than its nearest rival, with
+    the tows at hand and with this one too.
+    """
+
+    states: tuple[tuple[float, float], ...]
+    reciprocal: bool
+    before: float
+    after: float
+
+    @property
+    def hours(self) -> float:
+        """How long it takes."""
+        return len(self.states) * STATE_MINUTES / 60.0
+
+    @property
+    def per_hour(self) -> float:
+        """What an hour of it gains."""
+        return (self.after - self.before) / self.hours
+
+    def __str__(self) -> str:
+        lengths, speeds = zip(*self.states, strict=True)
+        many = len(set(lengths)) > 1
+        what = (
+            f'warp lengths of {", ".join(f"{length:.0f}" for length in lengths)} m at '
+            f'{speeds[0]:.1f} m/s'
+            if many
+            else f'speeds of {", ".join(f"{speed:.1f}" for speed in speeds)} m/s with '
+            f'{lengths[0]:.0f} m of warp'
+        )
+        track = ', on the reciprocal track' if self.reciprocal else ''
+        return (
+            f'Tow {what}{track}: an hour of it parts the best effect from its nearest rival by '
+            f'{self.per_hour:.1f} of χ² more (so far {self.before:.1f}).'
+        )
+
+
+def propose(
+    predictor: EffectPredictor,
+    seen: Screen,
+    best: Candidate,
+    values: np.ndarray,
+    rivals: Sequence[Candidate],
+) -> tuple[Proposal, ...]:
+    """Look up tows like those at hand, and those on the reciprocal track.
+
+    Parameters
+    ----------
+    predictor
+        The gear as it is believed.
+    seen
+        The first look.
+    best, values
+        The effect, and its values (m,) as they were found.
+    rivals
+        Effects from which it is to be told.
+
+    Returns
+    -------
+    tuple
+        The best few, the best first; none where no rival is given.
+    """
+    if not rivals:
+        return ()
+    units = np.concatenate([candidate.scale for candidate in seen.wanted])
+    now = evidence(seen.fit, seen.columns, units)
+    before = _apart(seen, now, best, values, rivals)
+    known = dict(zip(_places(seen), seen.fit.windows, strict=True))
+    solved: dict[tuple[float, float], Linearised] = {}
+    found = []
+    for states in _tows(seen):
+        for reciprocal in (False, True):
+            try:
+                parts = [
+                    _window_of(_solved(predictor, seen, known, solved, state), number, reciprocal)
+                    for number, state in enumerate(states)
+                ]
+            except NoSteadyState:
+                continue
+            fit = replace(seen.fit, windows=(*seen.fit.windows, *parts))
+            more = signatures(predictor, parts, seen.wanted)
+            after = evidence(fit, [*seen.columns, *more], units)
+            apart = _apart(seen, after, best, values, rivals)
+            found.append(Proposal(states, reciprocal, before, apart))
+    ranked = sorted(found, key=lambda proposal: -proposal.per_hour)
+    return tuple(proposal for proposal in ranked[:TOLD] if proposal.per_hour > 0.0)
+
+
+def _apart(
+    seen: Screen, there: Evidence, best: Candidate, values: np.ndarray, rivals: Sequence[Candidate]
+) -> float:
+    """χ² that the nearest rival cannot explain of what an effect changes."""
+    block = list(seen.block(best))
+    scaled = (values - best.start) / best.scale
+    left = []
+    for rival in rivals:
+        rest = there.without(seen.block(rival)).information[np.ix_(block, block)]
+        left.append(float(scaled @ rest @ scaled))
+    return min(left)
+
+
+def _places(seen: Screen) -> list[tuple[float, float, int]]:
+    return [
+        (float(part.inputs[:2].mean()), float(part.inputs[2]), part.window.index)
+        for part in seen.fit.windows
+    ]
+
+
+def _tows(seen: Screen) -> list[tuple[tuple[float, float], ...]]:
+    """Speed steps at the shortest and longest warp, warp steps at the lowest and highest speed."""
+    lengths, speeds, _ = (np.array(column) for column in zip(*_places(seen), strict=True))
+    steps = [np.linspace(values.min(), values.max(), STATES) for values in (lengths, speeds)]
+    found = [tuple((float(end), float(u)) for u in steps[1]) for end in steps[0][[0, -1]]]
+    found += [tuple((float(w), float(end)) for w in steps[0]) for end in steps[1][[0, -1]]]
+    return found
+
+
+def _solved(
+    predictor: EffectPredictor,
+    seen: Screen,
+    known: dict[tuple[float, float, int], Linearised],
+    solved: dict[tuple[float, float], Linearised],
+    state: tuple[float, float],
+) -> Linearised:
+    """The gear in a state that was not towed, as instruments would show it."""
+    if state in solved:
+        return solved[state]
+    length, speed = state
+    near = min(known, key=lambda at: abs(at[0] / length - 1.0) + abs(at[1] / speed - 1.0))
+    part = known[near]
+    noise = {
+        name: float(np.median([w.window.noise[name] for w in known.values()
+                               if name in w.window.noise]))
+        for name in part.window.means
+    }  # fmt: skip
+    asked = {'port_length': length, 'starboard_length': length, 'speed': speed}
+    window = replace(part.window, means={**part.window.means, **asked}, noise=noise)
+    board = seen.fit.coefficients[: len(COEFFICIENTS)]
+    found = linearise(predictor, OBSERVABLES, window, board, (part.state, None), even=False)
+    means = {**window.means, **dict(zip(found.channels, map(float, found.values), strict=True))}
+    bias = {name: CHANNELS[name].bias_std(mean) for name, mean in means.items()}
+    window = replace(window, means=means, bias=bias, to_come={})
+    solved[state] = replace(found, window=window, measured=np.array(found.values))
+    return solved[state]
+
+
+def _window_of(part: Linearised, number: int, reciprocal: bool) -> Linearised:
+    """The same as a window of a tow of its own."""
+    window: SteadyWindow = part.window
+    heading = 0.0 if window.sense > 0.0 else math.pi
+    if reciprocal:
+        heading = math.pi - heading
+    place = -1 - number
+    window = replace(
+        window,
+        index=place,
+        state=place,
+        tow=1_000_000,
+        hours=number * STATE_MINUTES / 60.0,
+        track=GroundTrack(heading, 0.0, 0.0, False),
+    )
+    return replace(part, window=window)

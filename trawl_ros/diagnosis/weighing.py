@@ -1,0 +1,204 @@
+"""Effects that were refitted, weighed against each other and by what they leave over."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import Candidate
+from trawl_ros.diagnosis.evidence import Evidence, evidence
+from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.rules import ALIKE, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
+from trawl_ros.diagnosis.screen import Screen, blocks_of
+from trawl_ros.model.board import COEFFICIENTS
+
+DRAWS = 100
+"""How often tows are drawn anew."""
+
+CONFIDENCE = 0.95
+GAIN_DRAWS = 2000
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """One effect, or two, beside the others.
+
+    Attributes
+    ----------
+    refit
+        With all windows solved anew.
+    delta_chi2, delta_bic
+        By how much it lowers both against the boards alone, with one noise for all.
+    gains
+        What each left-out unit gains by it, χ².
+    share
+        Part of resampled trials in which it is the best.
+    cosine
+        The largest with any other effect that is not of its class.
+    """
+
+    refit: Refit
+    delta_chi2: float
+    delta_bic: float
+    gains: np.ndarray
+    share: float
+    cosine: float
+
+    @property
+    def gain(self) -> tuple[float, float, float]:
+        """Mean gain of a unit and the ends of its interval."""
+        number = len(self.gains)
+        drawn = np.random.default_rng(0).integers(number, size=(GAIN_DRAWS, number))
+        # Gains are far from normal: a unit that excites the effect gains most of all.
+        means = self.gains[drawn].mean(axis=1)
+        low, high = np.quantile(means, (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE))
+        return float(self.gains.mean()), float(low), float(high)
+
+
+@dataclass(frozen=True)
+class LeftOver:
+    """What an effect leaves over: its probability, and its part of the χ² explained."""
+
+    probability: float
+    share: float
+
+    @property
+    def too_much(self) -> bool:
+        """Whether there must be more than the effect."""
+        return leaves_too_much(self.probability, self.share)
+
+
+def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, ...]:
+    """All refits with one noise, best first."""
+    likeliest = min(refits, key=lambda one: one.fit.surprise)
+    scales = likeliest.fit.scales
+    before = base.cost(scales)
+    penalty = float(np.log(seen.readings))
+    deltas = [2.0 * (before - one.cost(scales)) for one in refits]
+    criteria = [delta - one.number * penalty for delta, one in zip(deltas, refits, strict=True)]
+    gains, shares = _resampled(seen, refits, criteria)
+    found = [
+        Weighed(one, delta, criterion, gain, share, _nearest(seen, one))
+        for one, delta, criterion, gain, share in zip(
+            refits, deltas, criteria, gains, shares, strict=True
+        )
+    ]
+    return tuple(sorted(found, key=lambda one: one.delta_bic, reverse=True))
+
+
+def _resampled(
+    seen: Screen, refits: Sequence[Refit], criteria: Sequence[float]
+) -> tuple[list[np.ndarray], list[float]]:
+    """Gains of each unit left out, and shares of resampled trials in which each is the best.
+
+    Both to first order; ``criteria`` are what refits came to, by which the order is set right.
+    """
+    blocks = [[p for candidate in one.wanted for p in seen.block(candidate)] for one in refits]
+    number = len(seen.fit.errors)
+    if number >= FEWEST_UNITS:
+        left_out = [
+            seen.resampled([other for other in range(number) if other != tow])
+            for tow in range(number)
+        ]
+    else:
+        states = [part.window.state for part in seen.fit.windows]
+        left_out = [
+            seen.of_windows([row for row, own in enumerate(states) if own != state])
+            for state in dict.fromkeys(states)
+        ]
+    trials = left_out
+    if number >= FEWEST_TOWS:
+        chance = np.random.default_rng(0)
+        trials = [
+            seen.resampled(chance.integers(number, size=number).tolist()) for _ in range(DRAWS)
+        ]
+    gains = [
+        np.array([seen.evidence.chi2(block) - part.chi2(block) for part in left_out])
+        for block in blocks
+    ]
+    # First order counts the same noise as smaller, and the more so the more there is to explain.
+    first = int(np.argmax(criteria))
+    scale = criteria[first] / max(_penalised(seen, refits[first].wanted), 1.0)
+    corrections = {
+        one.names[0]: criterion - scale * _penalised(seen, one.wanted)
+        for one, criterion in zip(refits, criteria, strict=True)
+        if len(one.wanted) == 1
+    }
+
+    def best(part: Evidence) -> str:
+        return max(
+            seen.wanted,
+            key=lambda one: scale * seen.penalised(one, part) + corrections.get(one.name, 0.0),
+        ).name
+
+    names = [best(part) for part in trials]
+    shares = []
+    for one in refits:
+        alike = {*one.names, *twins(seen, one)}
+        shares.append(float(np.mean([name in alike for name in names])))
+    return gains, shares
+
+
+def _penalised(seen: Screen, wanted: Sequence[Candidate]) -> float:
+    """By how much candidates together lower the information criterion, to first order."""
+    block = [place for candidate in wanted for place in seen.block(candidate)]
+    freedom = seen.evidence.freedom(block)
+    return seen.evidence.chi2(block) - freedom * float(np.log(seen.readings))
+
+
+def twins(seen: Screen, one: Refit) -> tuple[str, ...]:
+    """Effects that could do nearly the same as the one that was refitted."""
+    if len(one.wanted) != 1:
+        return ()
+    (candidate,) = one.wanted
+    return tuple(
+        dict.fromkeys(
+            other.name
+            for other in seen.wanted
+            if other.name != candidate.name and _cosine(seen, one, other) > ALIKE
+        )
+    )
+
+
+def _cosine(seen: Screen, one: Refit, other: Candidate) -> float:
+    """Of what the refitted effect changes with what another could do."""
+    rows = [place for candidate in one.wanted for place in seen.block(candidate)]
+    starts = np.concatenate([candidate.start for candidate in one.wanted])
+    scale = np.concatenate([candidate.scale for candidate in one.wanted])
+    values = (one.estimate.values[len(COEFFICIENTS) :] - starts) / scale
+    return seen.evidence.covered(rows, values, seen.block(other))
+
+
+def _nearest(seen: Screen, one: Refit) -> float:
+    others = [other for other in seen.wanted if other.name not in one.names]
+    return max((_cosine(seen, one, other) for other in others), default=0.0)
+
+
+def left_over(base: Refit, seen: Screen, one: Refit) -> LeftOver:
+    """What the patterns of the most improbable channel still show beside a refit.
+
+    Parameters
+    ----------
+    base
+        The boards alone.
+    seen
+        The first look, whose noise and patterns are used.
+    one
+        The refit.
+    """
+    board = len(COEFFICIENTS)
+    fit = replace(one.fit, scales=seen.fit.scales)
+    shapes = {part.window.index: own for part, own in zip(seen.fit.windows, seen.shapes)}
+    columns = []
+    for part in fit.windows:
+        columns.append(np.hstack((part.by_coefficients[:, board:], shapes[part.window.index])))
+    number = one.number
+    units = np.concatenate((fit.prior.std[board:], np.ones(len(seen.patterns))))
+    found = evidence(fit, columns, units).without(range(number))
+    blocks = blocks_of(seen.patterns, number).values()
+    worst = max(blocks, key=found.strength)
+    explained = 2.0 * (base.cost(fit.scales) - one.cost(fit.scales))
+    return LeftOver(
+        probability=min(1.0, len(blocks) * 10.0 ** -found.strength(worst)),
+        share=found.chi2(worst) / max(explained, 1.0),
+    )
