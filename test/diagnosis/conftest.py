@@ -19,7 +19,7 @@ from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.studies.identification.plant import Look
 from trawl_ros.studies.identification.readings import AS_STATED, steady_windows
 
-TOWS = 4
+TOWS = 3
 STATES = ((800.0, 2.2), (600.0, 2.4), (450.0, 2.2), (300.0, 2.4), (600.0, 2.2))
 HOURS = 0.5
 """Between two states."""

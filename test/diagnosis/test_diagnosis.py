@@ -19,7 +19,7 @@ from trawl_ros.solver.effect_predictor import EffectPredictor
 
 @pytest.fixture(scope='module')
 def clean(coarse, hide):
-    return diagnose(coarse, hide.trial(coarse, hide.nothing, 1), hide.names[:4])
+    return diagnose(coarse, hide.trial(coarse, hide.nothing, 1), hide.names[:3])
 
 
 @pytest.fixture(scope='module')
@@ -29,7 +29,7 @@ def with_catch(coarse, hide):
 
 @pytest.fixture(scope='module')
 def caught(coarse, hide, with_catch):
-    return diagnose(coarse, with_catch, hide.names[:4])
+    return diagnose(coarse, with_catch, hide.names[:3])
 
 
 def test_nothing_is_found_where_nothing_is(clean):
@@ -68,7 +68,7 @@ def test_the_repaired_gear_leaves_no_discrepancy(caught, with_catch, hide, tmp_p
     (effect,) = gear.effects
     assert effect.name == 'catch_build_up'
     assert effect.provenance.evidence['delta_bic'] > 10.0
-    again = diagnose(gear, with_catch, hide.names[:4])
+    again = diagnose(gear, with_catch, hide.names[:3])
     assert again.verdict == 'NO_DISCREPANCY', again.reason
 
 
@@ -129,8 +129,8 @@ def test_another_gear_is_not_diagnosed(coarse, hide):
     def other(values):
         return {name: value * (1.6 if 'depth' in name else 0.5) for name, value in values.items()}
 
-    windows = hide.trial(coarse, hide.Hidden(shown=other), 6, tows=3)
-    found = diagnose(coarse, windows, hide.names[:3])
+    windows = hide.trial(coarse, hide.Hidden(shown=other), 6, tows=2)
+    found = diagnose(coarse, windows, hide.names[:2])
     assert found.verdict == 'NOT_TESTABLE', found.reason
     assert 'another gear' in found.reason
 
