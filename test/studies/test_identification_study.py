@@ -76,6 +76,11 @@ def test_the_spread_is_that_over_the_bound(factor, ok):
     rows = spread_rows(trials, PRIOR)
     assert rows[0].value == pytest.approx(factor, rel=0.05)
     assert rows[0].ok is ok
+    named = {row.what: row for row in rows}
+    assert named['bound of each board over that of all'].value == pytest.approx(1.0)
+    assert named['bound of each board over that of all'].target is None
+    median = named['spread of estimates over the bound of each board, the median trial']
+    assert median.value == pytest.approx(factor, rel=0.08)
 
 
 def test_errors_are_set_beside_those_of_a_perfect_model():

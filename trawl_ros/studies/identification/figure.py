@@ -33,7 +33,7 @@ def trials_figure(coverage: Sequence[Trial], bound: Sequence[Trial], prior: Boar
     covered.axhline(95.0, color=style.FAINT, linewidth=0.8)
     covered.set_ylim(top=101.0)
     if bound:
-        _draw_rows(spread, spread_rows(bound, prior)[2:], SPREAD)
+        _draw_rows(spread, spread_rows(bound, prior)[-len(COEFFICIENTS) :], SPREAD)
     spread.set_ylabel('error over its bound')
     spread.axhline(1.0, color=style.FAINT, linewidth=0.8)
     _draw_errors(errors, coverage)
