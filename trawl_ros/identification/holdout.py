@@ -77,6 +77,8 @@ def hold_out(
         relinearise_final=NEAR_ENOUGH,
         tolerance=NEAR_ENOUGH,
         iterations_final=STEPS,
+        # They are stopped before they are at rest.
+        second_start=False,
     )
     for number, left_out in enumerate(parts, start=1):
         if begun is not None:
