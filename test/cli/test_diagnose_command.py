@@ -1,11 +1,13 @@
 """``trawl diagnose`` and ``trawl effects`` from outside."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
+from trawl_ros.instruments.samples import RangeSample
 
 
 @pytest.fixture
@@ -35,6 +37,19 @@ def test_one_channel_cannot_tell(run, steady_tow, coarse_gear, tmp_path):
     assert done.exit_code == 11, done.output
     assert 'no readings' in done.output
     assert (tmp_path / 'out' / 'report.html').exists()
+
+
+@pytest.mark.parametrize('spread', [float('nan'), 120.0])
+def test_a_dead_sensor_cannot_tell(run, steady_tow, coarse_gear, tmp_path, spread):
+    """All NaN, and the same number all the time."""
+    samples = [
+        replace(sample, distance=spread) if isinstance(sample, RangeSample) else sample
+        for sample in steady_tow.samples()
+    ]
+    bag = steady_tow.write(tmp_path / 'bag', samples)
+    done = run('diagnose', bag, '--out', tmp_path / 'out', '--gear', coarse_gear)
+    assert done.exit_code == 11, done.output
+    assert 'door_spread' in done.output or 'frozen' in done.output
 
 
 def test_what_is_no_bag_is_refused(run, tmp_path):

@@ -2,19 +2,22 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from trawl_ros.diagnosis import naming
 from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
+from trawl_ros.diagnosis.refit import refit
 from trawl_ros.diagnosis.repair import repaired, source
 from trawl_ros.diagnosis.result import result
 from trawl_ros.diagnosis.words import headline, sentences
 from trawl_ros.diagnosis.writing import write_diagnosis
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 
 @pytest.fixture(scope='module')
@@ -139,7 +142,7 @@ def test_the_next_tow_tells_an_effect_from_its_rival(coarse, caught):
     seen = caught.seen
     best = caught.best.refit.wanted[0]
     (rival,) = [one for one in seen.wanted if one.name == 'spread_sensor']
-    predictor = EffectPredictor(build_model(coarse))
+    predictor = Predictor(build_model(coarse))
     proposals = propose(predictor, seen, best, np.array([2.0]), [rival])
     assert proposals
     first = proposals[0]
@@ -148,3 +151,17 @@ def test_the_next_tow_tells_an_effect_from_its_rival(coarse, caught):
     assert all(first.per_hour >= other.per_hour for other in proposals)
     assert 'an hour of it parts the best effect from its nearest rival' in str(first)
     assert propose(predictor, seen, best, np.array([2.0]), []) == ()
+
+
+def test_what_leaves_a_towed_state_without_steady_state_explains_nothing(
+    coarse, caught, monkeypatch
+):
+    def lossy(*args):
+        found = refit(*args)
+        fewer = replace(found.fit, windows=found.fit.windows[:-1])
+        return replace(found, estimator=SimpleNamespace(fit=fewer))
+
+    monkeypatch.setattr(naming, 'refit', lossy)
+    wanted = caught.best.refit.wanted
+    predictor = Predictor(build_model(coarse))
+    assert naming.refitted(predictor, caught.base, caught.seen, wanted) is None

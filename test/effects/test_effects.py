@@ -1,6 +1,7 @@
 """Each effect does nothing where it is neutral, and what it does has the derivatives it claims."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.effects.effect import Situation
 from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
 from trawl_ros.solver.predict import Predictor
 
 INPUTS = np.array([451.0, 449.0, 2.2])
@@ -38,7 +38,7 @@ def plain(model, coefficients):
 @pytest.mark.parametrize('name', NAMES)
 def test_where_it_is_neutral_it_does_nothing(model, coefficients, plain, name):
     effect = catalogue()[name]
-    predictor = EffectPredictor(model, free=(effect,), at=AT)
+    predictor = Predictor(model, free=(effect,), at=AT)
     values = np.concatenate((coefficients, effect.neutral))
     found = predictor.predict(values, *INPUTS, start=plain.state)
     np.testing.assert_allclose(found.values, plain.values, rtol=1e-7, atol=1e-9)
@@ -49,7 +49,7 @@ def test_where_it_is_neutral_it_does_nothing(model, coefficients, plain, name):
 @pytest.mark.parametrize('name', [name for name in NAMES if not catalogue()[name].dynamic])
 def test_it_has_the_derivatives_it_claims(model, coefficients, plain, name):
     effect = catalogue()[name]
-    predictor = EffectPredictor(model, free=(effect,), at=AT)
+    predictor = Predictor(model, free=(effect,), at=AT)
     here = np.concatenate((coefficients, strong(effect), INPUTS))
 
     def predicted(at):
@@ -72,19 +72,19 @@ def test_it_has_the_derivatives_it_claims(model, coefficients, plain, name):
 def test_what_shows_in_motion_alone_does_not_show_in_steady_tows(model, coefficients, plain, name):
     effect = catalogue()[name]
     values = np.concatenate((coefficients, strong(effect)))
-    found = EffectPredictor(model, free=(effect,)).predict(values, *INPUTS, start=plain.state)
+    found = Predictor(model, free=(effect,)).predict(values, *INPUTS, start=plain.state)
     np.testing.assert_allclose(found.values, plain.values, rtol=1e-7, atol=1e-9)
 
 
 def test_signatures_of_all_at_once_are_those_of_each(model, coefficients, plain):
     effects = [effect for effect in catalogue().values() if not effect.dynamic]
-    predictor = EffectPredictor(model, at=AT)
+    predictor = Predictor(model, at=AT)
     wanted = [Active(effect, effect.neutral) for effect in effects]
     together = predictor.signatures(coefficients, INPUTS, plain.state, wanted)
     assert together.shape == (len(OBSERVABLES), sum(len(one.values) for one in wanted))
     column = 0
     for effect in effects:
-        alone = EffectPredictor(model, free=(effect,), at=AT).predict(
+        alone = Predictor(model, free=(effect,), at=AT).predict(
             np.concatenate((coefficients, effect.neutral)), *INPUTS, start=plain.state
         )
         number = len(effect.parameters)
@@ -99,7 +99,7 @@ def test_a_shear_turns_round_with_the_ship(model, coefficients, plain):
     effect = catalogue()['current_shear']
     values = np.concatenate((coefficients, [0.03]))
     ahead, back = (
-        EffectPredictor(model, free=(effect,), at=replace(AT, sense=sense)).predict(
+        Predictor(model, free=(effect,), at=replace(AT, sense=sense)).predict(
             values, *INPUTS, start=plain.state
         )
         for sense in (1.0, -1.0)
@@ -111,7 +111,7 @@ def test_a_shear_turns_round_with_the_ship(model, coefficients, plain):
 
 def test_free_effects_are_not_there_in_tows_without_them(model, coefficients, plain):
     effect = catalogue()['tension_cell']
-    predictor = EffectPredictor(model, free=(effect,), absent=True)
+    predictor = Predictor(model, free=(effect,), absent=True)
     values = np.concatenate((coefficients, [5e3, 0.1]))
     found = predictor.predict(values, *INPUTS, start=plain.state)
     np.testing.assert_allclose(found.values, plain.values, rtol=1e-9)
@@ -120,7 +120,7 @@ def test_free_effects_are_not_there_in_tows_without_them(model, coefficients, pl
 
 def test_fixed_effects_act_on_what_is_shown(model, coefficients, plain):
     fixed = Acting((Active(catalogue()['tension_cell'], np.array([1e3, 0.1])),))
-    found = EffectPredictor(model, fixed).predict(coefficients, *INPUTS, start=plain.state)
+    found = Predictor(model, fixed).predict(coefficients, *INPUTS, start=plain.state)
     tension = OBSERVABLES.index('port_tension')
     assert found.values[tension] == pytest.approx(1.1 * plain.values[tension] + 1e3)
     np.testing.assert_allclose(found.jacobian[tension], 1.1 * plain.jacobian[tension], rtol=1e-6)
@@ -135,3 +135,22 @@ def test_one_of_the_same_name_takes_its_place(gear):
     assert [active.name for active in changed.effects] == ['heave', 'counter_offset']
     assert changed.of(effects['heave']).values == pytest.approx([0.3])
     assert changed.of(effects['counter_scale']).values == pytest.approx([0.0])
+
+
+def test_the_net_is_estimated_along_beside_effects(model, coefficients, plain):
+    fixed = Acting((Active(catalogue()['tension_cell'], np.array([1e3, 0.1])),))
+    predictor = Predictor(model, fixed)
+    found = predictor.predict(coefficients, *INPUTS, start=plain.state)
+    size = 1e-3
+    up, down = (
+        predictor.with_net(1.0 + sign * size, 1.0).predict(coefficients, *INPUTS, found.state)
+        for sign in (1.0, -1.0)
+    )
+    slope = (up.values - down.values) / (2.0 * size)
+    claimed = predictor.by_net(coefficients, found.state)[:, 0]
+    np.testing.assert_allclose(claimed, slope, rtol=1e-3, atol=1e-3 * np.abs(slope).max())
+
+
+def test_a_gear_without_effects_is_the_same_in_every_window(model):
+    predictor = Predictor(model)
+    assert predictor.in_window(SimpleNamespace(tow=3, hours=2.0, sense=-1.0)) is predictor

@@ -60,6 +60,7 @@ def test_the_likelier_of_two_fits_stays(sea, prior, exact):
     estimator._fit = replace(estimator._fit, windows=parts, coefficients=near)
     estimate = estimator.finish()
     assert not estimate.converged
+    assert estimator.history[-1].cost == pytest.approx(estimate.cost)
     assert estimate.values[0] < sea.TRUTH[0] + LOW * sea.STD[0]
 
 

@@ -13,7 +13,7 @@ from trawl_ros.identification.linearised import Linearised
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 WIDE = 5.0
 """So many times further than is common an effect is taken to go where it is estimated."""
@@ -47,7 +47,7 @@ class Candidate:
 
 
 def candidates(
-    effects: Mapping[str, Effect], predictor: EffectPredictor, depths: np.ndarray
+    effects: Mapping[str, Effect], predictor: Predictor, depths: np.ndarray
 ) -> tuple[Candidate, ...]:
     """All that steady tows may show.
 
@@ -73,7 +73,7 @@ def candidates(
 
 
 def signatures(
-    predictor: EffectPredictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
+    predictor: Predictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
 ) -> list[np.ndarray]:
     """What the candidates would change in windows that were solved.
 
@@ -87,7 +87,7 @@ def signatures(
     number = sum(len(one.values) for one in active)
     found = []
     for part in parts:
-        there = predictor.in_window(part.window)
+        there = predictor.situated(part.window)
         rows = [OBSERVABLES.index(name) for name in part.channels]
         if there.absent or not active:
             found.append(np.zeros((len(rows), number)))

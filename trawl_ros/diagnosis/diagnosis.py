@@ -20,7 +20,7 @@ from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 Told = Callable[[str], None]
 
@@ -118,7 +118,7 @@ def diagnose(
     """
     parts = split(windows, baseline)
     model = build_model(gear)
-    predictor = EffectPredictor(model, acting(gear), without=baseline)
+    predictor = Predictor(model, acting(gear), without=baseline)
     known = Diagnosis('NOT_TESTABLE', '', gear, tuple(tows), baseline, parts)
     examined = {window.state for window in windows if window.tow not in baseline}
     if len(examined) < FEWEST_STATES:
@@ -174,7 +174,7 @@ def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
     return Diagnosis('NOT_TESTABLE', reason, gear, tuple(tows), frozenset(), nothing)
 
 
-def _advice(predictor: EffectPredictor, seen: Screen, named: Named) -> tuple[str, ...]:
+def _advice(predictor: Predictor, seen: Screen, named: Named) -> tuple[str, ...]:
     """How to tell the best effect from those that are not excluded."""
     others = {*named.rivals, *named.alike}
     if not named.weighed or not others:
@@ -188,7 +188,7 @@ def _advice(predictor: EffectPredictor, seen: Screen, named: Named) -> tuple[str
     return (*dict.fromkeys(direct), *map(str, proposals))
 
 
-def _placebo(predictor: EffectPredictor, base: Refit, seen: Screen, named: Named) -> Refit | None:
+def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> Refit | None:
     """The best effect that is neither named nor of its class."""
     taken = {*named.weighed[0].refit.names, *named.alike}
     for other in named.weighed[1:]:
@@ -201,7 +201,7 @@ def _placebo(predictor: EffectPredictor, base: Refit, seen: Screen, named: Named
 
 
 def _shown(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     base: Refit,
     best: Refit | None,
     other: Refit | None,
@@ -210,15 +210,18 @@ def _shown(
     if not parts.showing:
         return None
 
-    def of(one: Refit | None) -> Errors | None:
-        if one is None:
-            return None
-        free = replace(predictor, free=tuple(candidate.effect for candidate in one.wanted))
-        return errors(free, one, parts.showing)
-
-    before = of(base)
-    assert before is not None
-    return Shown(before, of(best), of(other), None if other is None else other.names[0])
+    there = [one for one in (base, best, other) if one is not None]
+    free = [
+        replace(predictor, free=tuple(candidate.effect for candidate in one.wanted))
+        for one in there
+    ]
+    found = iter(errors(list(zip(free, there, strict=True)), parts.showing))
+    return Shown(
+        before=next(found),
+        after=None if best is None else next(found),
+        placebo=None if other is None else next(found),
+        instead=None if other is None else other.names[0],
+    )
 
 
 def _removed(before: Errors, after: Errors | None) -> float | None:

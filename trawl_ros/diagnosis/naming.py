@@ -19,7 +19,7 @@ from trawl_ros.diagnosis.rules import (
 )
 from trawl_ros.diagnosis.screen import Screen
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 PAIR = 2
 """Effects at once, at most."""
@@ -52,7 +52,7 @@ class Named:
 
 
 def name(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     base: Refit,
     seen: Screen,
     tried: Callable[[str], None] = lambda what: None,
@@ -120,20 +120,26 @@ def name(
 
 
 def refitted(
-    predictor: EffectPredictor, base: Refit, seen: Screen, wanted: Sequence[Candidate]
+    predictor: Predictor, base: Refit, seen: Screen, wanted: Sequence[Candidate]
 ) -> Refit | None:
-    """Refit boards and effects together, from where they are seen to first order."""
+    """Refit boards and effects together, from where they are seen to first order.
+
+    None where a state that was towed has no steady state then: that explains nothing.
+    """
     rows = [place for candidate in wanted for place in seen.block(candidate)]
     columns = [own[:, rows] for own in seen.columns]
     parts = extended(base.fit, wanted, columns, base.fit.options).windows
     scale = np.concatenate([candidate.scale for candidate in wanted])
     starts = np.concatenate([candidate.start for candidate in wanted])
     values = starts + scale * seen.evidence.values(rows)
-    return refit(predictor, base.fit, wanted, values, parts, base.fit.options)
+    found = refit(predictor, base.fit, wanted, values, parts, base.fit.options)
+    if found is None or len(found.fit.windows) < len(base.fit.windows):
+        return None
+    return found
 
 
 def _with_second(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     base: Refit,
     seen: Screen,
     refits: Sequence[Refit],

@@ -16,7 +16,7 @@ from trawl_ros.identification.over_ground import GroundTrack
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 STATES = 3
 """Steady states of a tow that is proposed."""
@@ -69,7 +69,7 @@ class Proposal:
 
 
 def propose(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     seen: Screen,
     best: Candidate,
     values: np.ndarray,
@@ -95,24 +95,25 @@ def propose(
     """
     if not rivals:
         return ()
-    units = np.concatenate([candidate.scale for candidate in seen.wanted])
-    now = evidence(seen.fit, seen.columns, units)
+    now = evidence(seen.fit, seen.columns, seen.units)
     before = _apart(seen, now, best, values, rivals)
     known = dict(zip(_places(seen), seen.fit.windows, strict=True))
     solved: dict[tuple[float, float], Linearised] = {}
+    another = 1 + max(part.window.tow for part in seen.fit.windows)
     found = []
     for states in _tows(seen):
         for reciprocal in (False, True):
             try:
-                parts = [
-                    _window_of(_solved(predictor, seen, known, solved, state), number, reciprocal)
-                    for number, state in enumerate(states)
-                ]
+                states_solved = [_solved(predictor, seen, known, solved, one) for one in states]
             except NoSteadyState:
                 continue
+            parts = [
+                _window_of(part, another, number, reciprocal)
+                for number, part in enumerate(states_solved)
+            ]
             fit = replace(seen.fit, windows=(*seen.fit.windows, *parts))
             more = signatures(predictor, parts, seen.wanted)
-            after = evidence(fit, [*seen.columns, *more], units)
+            after = evidence(fit, [*seen.columns, *more], seen.units)
             apart = _apart(seen, after, best, values, rivals)
             found.append(Proposal(states, reciprocal, before, apart))
     ranked = sorted(found, key=lambda proposal: -proposal.per_hour)
@@ -149,7 +150,7 @@ def _tows(seen: Screen) -> list[tuple[tuple[float, float], ...]]:
 
 
 def _solved(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     seen: Screen,
     known: dict[tuple[float, float, int], Linearised],
     solved: dict[tuple[float, float], Linearised],
@@ -177,7 +178,7 @@ def _solved(
     return solved[state]
 
 
-def _window_of(part: Linearised, number: int, reciprocal: bool) -> Linearised:
+def _window_of(part: Linearised, tow: int, number: int, reciprocal: bool) -> Linearised:
     """The same as a window of a tow of its own."""
     window: SteadyWindow = part.window
     heading = 0.0 if window.sense > 0.0 else math.pi
@@ -188,7 +189,7 @@ def _window_of(part: Linearised, number: int, reciprocal: bool) -> Linearised:
         window,
         index=place,
         state=place,
-        tow=1_000_000,
+        tow=tow,
         hours=number * STATE_MINUTES / 60.0,
         track=GroundTrack(heading, 0.0, 0.0, False),
     )

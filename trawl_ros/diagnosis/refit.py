@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, extended_prior
-from trawl_ros.identification.estimate import Estimate
+from trawl_ros.identification.estimate import Estimate, on_bound
 from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.fit import Fit
@@ -15,7 +15,7 @@ from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 OPTIONS = EstimatorOptions(second_start=False, iterations_final=12, halvings=3)
 """A fit that lacks an effect explains its readings badly, from wherever it is started."""
@@ -63,15 +63,13 @@ class Refit:
 
     def at_bound(self) -> bool:
         """Whether a value of an effect rests on a bound of what is possible."""
-        return any(name.split(' at ')[0] in self._values for name in self.estimate.active_bounds)
-
-    @property
-    def _values(self) -> tuple[str, ...]:
-        return self.fit.prior.names[len(COEFFICIENTS) :]
+        extra, prior = slice(len(COEFFICIENTS), None), self.fit.prior
+        low, high = on_bound(self.estimate.values, prior)
+        return bool(np.any(low[extra] | high[extra]))
 
 
 def fit_boards(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     prior: BoardPrior,
     windows: Sequence[SteadyWindow],
     options: EstimatorOptions = OPTIONS,
@@ -85,7 +83,7 @@ def fit_boards(
 
 
 def refit(
-    predictor: EffectPredictor,
+    predictor: Predictor,
     base: Fit,
     wanted: Sequence[Candidate],
     values: np.ndarray,

@@ -9,8 +9,8 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown, values_of
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import Source
 from trawl_ros.diagnosis.screen import Screen
-from trawl_ros.diagnosis.showing import unit_of
 from trawl_ros.diagnosis.weighing import Weighed
+from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.model.board import COEFFICIENTS
 
 
@@ -93,7 +93,7 @@ def _channels(shown: Shown | None) -> dict[str, Any]:
         return {}
     return {
         name: {
-            'unit': unit_of(name),
+            'unit': CHANNELS[name].unit,
             'before': _number(before),
             'after': None if shown.after is None else _number(shown.after.rms.get(name)),
             'placebo': None if shown.placebo is None else _number(shown.placebo.rms.get(name)),

@@ -14,7 +14,7 @@ from trawl_ros.identification.aim import aim
 from trawl_ros.identification.error_terms import TowErrors
 from trawl_ros.identification.fit import Fit
 from trawl_ros.identification.marginal import reweighted
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,11 @@ class Screen:
     shapes: tuple[np.ndarray, ...]
     evidence: Evidence
     limit: float
+
+    @property
+    def units(self) -> np.ndarray:
+        """In which the values of all candidates are counted."""
+        return np.concatenate([candidate.scale for candidate in self.wanted])
 
     def block(self, candidate: Candidate) -> range:
         """Where the values of a candidate stand."""
@@ -85,10 +90,6 @@ class Screen:
         """Whether something is there that is not in the model."""
         return self.strongest > self.limit
 
-    def values(self, candidate: Candidate) -> np.ndarray:
-        """Most likely values (m,), to first order and with no other effect."""
-        return candidate.start + candidate.scale * self.evidence.values(self.block(candidate))
-
     def detectable(self, candidate: Candidate) -> np.ndarray:
         """Departures (m,) from where it was looked for that these data show, each value alone."""
         return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit)
@@ -99,26 +100,19 @@ class Screen:
         block = self.block(candidate)
         return found.chi2(block) - found.freedom(block) * float(np.log(self.readings))
 
-    def covered(self, candidate: Candidate, other: Candidate) -> float:
-        """Cosine of what the most likely values of one change with what another could do."""
-        block = self.block(candidate)
-        return self.evidence.covered(block, self.evidence.values(block), self.block(other))
-
     def resampled(self, tows: Sequence[int]) -> Evidence:
         """Evidence of some of the tows, by their place, one of them perhaps several times."""
         errors: list[TowErrors] = [self.fit.errors[tow] for tow in tows]
         weights = [self.weights[tow] for tow in tows]
-        units = np.concatenate([candidate.scale for candidate in self.wanted])
-        return evidence(self.fit, self.columns, units, tows=errors, weights=weights)
+        return evidence(self.fit, self.columns, self.units, tows=errors, weights=weights)
 
     def of_windows(self, rows: Sequence[int]) -> Evidence:
         """Evidence of some of the windows."""
         fit = replace(self.fit, windows=tuple(self.fit.windows[row] for row in rows))
-        units = np.concatenate([candidate.scale for candidate in self.wanted])
-        return evidence(fit, [self.columns[row] for row in rows], units)
+        return evidence(fit, [self.columns[row] for row in rows], self.units)
 
 
-def screen(predictor: EffectPredictor, base: Fit, effects: Mapping[str, Effect]) -> Screen:
+def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Screen:
     """Look for all effects.
 
     Parameters

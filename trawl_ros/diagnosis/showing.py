@@ -7,11 +7,11 @@ import numpy as np
 
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.errors import NoSteadyState
-from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
-from trawl_ros.identification.linearised import linearise
+from trawl_ros.identification.linearised import Linearised, linearise, measured_inputs
+from trawl_ros.identification.residuals import residuals
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
+from trawl_ros.solver.predict import Predictor
 
 FEWEST_TOWS = 3
 """With fewer tows, steady states of all of them are kept back instead of a tow."""
@@ -74,44 +74,40 @@ class Errors:
         return max(0.0, float(np.mean(ratios)) - 1.0)
 
 
-def errors(predictor: EffectPredictor, one: Refit, windows: Sequence[SteadyWindow]) -> Errors:
-    """Errors of a fit on windows it has not seen; those without steady state are left out.
+def errors(
+    fits: Sequence[tuple[Predictor, Refit]], windows: Sequence[SteadyWindow]
+) -> list[Errors]:
+    """Errors of fits on windows that none of them has seen.
+
+    Windows for which any of them has no steady state are left out for all.
 
     Parameters
     ----------
-    predictor
-        The gear, with the effects of ``one`` free.
-    one
-        The fit.
+    fits
+        The gear with the effects of each fit free, and the fit.
     windows
         To be predicted.
     """
-    near = [part.state for part in one.fit.windows]
-    places = np.array([part.inputs for part in one.fit.windows])
-    squares: dict[str, list[tuple[float, float]]] = {}
-    seen = 0
+    rows = []
     for window in windows:
-        inputs = np.array([window.means[name] for name in INPUTS])
-        closest = near[int(np.argmin(np.abs(places / inputs - 1.0).sum(axis=1)))]
         try:
-            part = linearise(predictor, OBSERVABLES, window, one.estimate.values, (closest, None))
+            rows.append([_predicted(predictor, one, window) for predictor, one in fits])
         except NoSteadyState:
             continue
-        seen += 1
-        of_inputs = np.array([window.std(name) for name in INPUTS])
-        std = np.hypot(part.std(1), np.linalg.norm(part.by_inputs * of_inputs, axis=1))
-        left = part.measured - part.solved
-        for name, error, expected in zip(part.channels, left, std, strict=True):
-            squares.setdefault(name, []).append((float(error) ** 2, float(expected) ** 2))
-    ordered = [name for name in MEASURED if name in squares]
-    means = {name: np.sqrt(np.mean(squares[name], axis=0)) for name in ordered}
+    return [_gathered([row[place] for row in rows]) for place in range(len(fits))]
+
+
+def _predicted(predictor: Predictor, one: Refit, window: SteadyWindow) -> Linearised:
+    places = np.array([part.inputs for part in one.fit.windows])
+    away = np.abs(places / measured_inputs(window) - 1.0).sum(axis=1)
+    near = one.fit.windows[int(np.argmin(away))].state
+    return linearise(predictor, OBSERVABLES, window, one.estimate.values, (near, None))
+
+
+def _gathered(parts: Sequence[Linearised]) -> Errors:
+    found = residuals(parts)
     return Errors(
-        rms={name: float(mean[0]) for name, mean in means.items()},
-        expected={name: float(mean[1]) for name, mean in means.items()},
-        windows=seen,
+        rms={row.channel: float(np.sqrt(np.mean(row.values**2))) for row in found},
+        expected={row.channel: row.stated_std for row in found},
+        windows=len(parts),
     )
-
-
-def unit_of(channel: str) -> str:
-    """The SI unit of a channel."""
-    return CHANNELS[channel].unit

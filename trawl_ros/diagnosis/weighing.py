@@ -118,7 +118,7 @@ def _resampled(
     ]
     # First order counts the same noise as smaller, and the more so the more there is to explain.
     first = int(np.argmax(criteria))
-    scale = criteria[first] / max(_penalised(seen, refits[first].wanted), 1.0)
+    scale = max(criteria[first], 0.0) / max(_penalised(seen, refits[first].wanted), 1.0)
     corrections = {
         one.names[0]: criterion - scale * _penalised(seen, one.wanted)
         for one, criterion in zip(refits, criteria, strict=True)
@@ -188,10 +188,11 @@ def left_over(base: Refit, seen: Screen, one: Refit) -> LeftOver:
     """
     board = len(COEFFICIENTS)
     fit = replace(one.fit, scales=seen.fit.scales)
-    shapes = {part.window.index: own for part, own in zip(seen.fit.windows, seen.shapes)}
-    columns = []
-    for part in fit.windows:
-        columns.append(np.hstack((part.by_coefficients[:, board:], shapes[part.window.index])))
+    # The same windows in the same order: a refit that loses one is none.
+    columns = [
+        np.hstack((part.by_coefficients[:, board:], own))
+        for part, own in zip(fit.windows, seen.shapes, strict=True)
+    ]
     number = one.number
     units = np.concatenate((fit.prior.std[board:], np.ones(len(seen.patterns))))
     found = evidence(fit, columns, units).without(range(number))

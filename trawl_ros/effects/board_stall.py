@@ -6,12 +6,10 @@ import numpy as np
 
 from trawl_ros.effects.effect import Effect, Parameter, Situation
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.hooks import LIFT
 
 ONSET = np.radians(15.0)
 """Angle of attack (rad) from which lift is lost, with the square of what is above it."""
-
-LIFT = 1
-"""Place of C_y^F among the coefficients of eq. 14."""
 
 
 @dataclass(frozen=True)

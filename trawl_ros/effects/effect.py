@@ -28,9 +28,9 @@ class Parameter:
     neutral
         Its value where the effect is not there.
     low, high
-        Between them it is physically possible.
+        Between them it is taken to be possible; assumed.
     std
-        How far from neutral it is commonly found; scales what is estimated.
+        How far from neutral it is commonly found, assumed; scales what is estimated.
     """
 
     name: str

@@ -17,7 +17,7 @@ class Heave(Effect):
 EFFECT = Heave(
     name='heave',
     sentence='Waves pull the gear to and fro, which adds to its mean drag.',
-    parameters=(Parameter('variance', 'm²/s²', 0.0, -0.1, 1.5, 0.2),),
+    parameters=(Parameter('variance', 'm²/s²', 0.0, 0.0, 1.5, 0.2),),
     excited_by='a sea; low speed shows it most',
     confused_with=('speed_log',),
 )

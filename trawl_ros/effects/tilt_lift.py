@@ -6,9 +6,7 @@ import numpy as np
 
 from trawl_ros.effects.effect import Effect, Parameter, Situation
 from trawl_ros.model.gear_model import GearModel
-
-LIFT = 1
-"""Place of C_y^F among the coefficients of eq. 14."""
+from trawl_ros.model.hooks import LIFT
 
 
 @dataclass(frozen=True)

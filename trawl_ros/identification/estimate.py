@@ -245,14 +245,20 @@ def is_determined(values: np.ndarray, std: np.ndarray, prior: BoardPrior) -> tup
     return tuple(bool(flag) for flag in well)
 
 
+def on_bound(values: np.ndarray, prior: BoardPrior) -> tuple[np.ndarray, np.ndarray]:
+    """Which of the values rest on their lower, and which on their upper bound, bool each."""
+    near = 1e-9 * (prior.high - prior.low)
+    return values <= prior.low + near, values >= prior.high - near
+
+
 def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
     """The bounds that the values rest on, by name."""
-    near = 1e-9 * (prior.high - prior.low)
+    at_low, at_high = on_bound(values, prior)
     found = []
     for i, name in enumerate(prior.names):
-        if values[i] <= prior.low[i] + near[i]:
+        if at_low[i]:
             found.append(f'{name} at its lower bound {prior.low[i]:g}')
-        elif values[i] >= prior.high[i] - near[i]:
+        elif at_high[i]:
             found.append(f'{name} at its upper bound {prior.high[i]:g}')
     return tuple(found)
 

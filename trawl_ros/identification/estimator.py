@@ -153,13 +153,13 @@ class Estimator:
         doubtful = self._fit.misfit > POOR or not converged
         if self.options.second_start and self._fit.windows and doubtful:
             # The first windows, with what was known then, may have led into another valley.
-            first, without = self._fit, self._without
+            first, without, course = self._fit, self._without, list(self.history)
             self._from_start()
             again, why = self._rest_with_all()
             if _likelier(self._fit, first):
                 converged, reason = again, why
             else:
-                self._fit, self._without = first, without
+                self._fit, self._without, self.history = first, without, course
         return self._publish(None, converged, reason) if self._fit.windows else None
 
     def begin(self, parts: Sequence[Linearised], coefficients: np.ndarray) -> None:

@@ -10,7 +10,6 @@ from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import WindowOptions
 from trawl_ros.model.gear_model import build_model, build_water
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
 from trawl_ros.solver.predict import Predictor
 
 NET_STD = 0.2
@@ -36,10 +35,9 @@ def board_prior(gear: GearRecord) -> BoardPrior:
     )
 
 
-def predictor_for(gear: GearRecord) -> Predictor | EffectPredictor:
+def predictor_for(gear: GearRecord) -> Predictor:
     """The model of a gear as the estimator asks it, with the effects its file switches on."""
-    there, model = acting(gear), build_model(gear)
-    return EffectPredictor(model, there) if there else Predictor(model)
+    return Predictor(build_model(gear), acting(gear))
 
 
 def identification_for(

@@ -35,7 +35,6 @@ from trawl_ros.identification.planning_states import (
 from trawl_ros.identification.planning_time import Timetable, ability_of, minutes_of
 from trawl_ros.identification.planning_windows import imagined_windows
 from trawl_ros.identification.window_records import WindowOptions
-from trawl_ros.solver.effect_predictor import EffectPredictor
 from trawl_ros.solver.predict import Predictor
 
 STALE = 1.0
@@ -106,7 +105,7 @@ class Adviser:
     def __init__(
         self,
         gear: GearRecord,
-        predictor: Predictor | EffectPredictor,
+        predictor: Predictor,
         limits: Limits | None = None,
         windows: WindowOptions | None = None,
     ) -> None:

@@ -16,7 +16,6 @@ from trawl_ros.identification.linearised import Linearised, linearise
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.solver.effect_predictor import EffectPredictor
 from trawl_ros.solver.equilibrium import Equilibrium, require_usable
 from trawl_ros.solver.predict import Predictor
 
@@ -133,7 +132,7 @@ class Explorer:
 
     def __init__(
         self,
-        predictor: Predictor | EffectPredictor,
+        predictor: Predictor,
         coefficients: np.ndarray,
         limits: Limits | None = None,
     ) -> None:
@@ -188,12 +187,12 @@ class Explorer:
             )
 
         starts = (min(known, key=distance).part.state, None) if known else (None,)
-        model = self.predictor.model.with_coefficients(self.coefficients)
         try:
             asked = _asked(manoeuvre)
             part = linearise(
                 self.predictor, OBSERVABLES, asked, self.coefficients, starts, even=False
             )
+            model = self.predictor.gear(self.coefficients, part.inputs)
             steady = require_usable(model, part.state)
         except NoSteadyState as reason:
             return Refused(manoeuvre, reason.reason)

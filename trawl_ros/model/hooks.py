@@ -9,6 +9,9 @@ from typing import Protocol
 
 import numpy as np
 
+LIFT = 1
+"""Place of C_y^F among the coefficients that a board's law gives."""
+
 
 class Bend(Protocol):
     """Changes the law of the boards (eq. 14)."""

@@ -50,7 +50,7 @@ class Water:
         depths
             Where it is given (n,), m, rising; it stays constant above and below.
         currents
-            To the east and north there (n, 2), m/s; straight lines join them.
+            To the east and north there (n, 2), m/s; between them as `Water` has it.
         """
         together = np.union1d(self.depths, depths)
         more = np.column_stack([np.interp(together, depths, column) for column in currents.T])

@@ -66,7 +66,7 @@ def chained(
                     [(acting, one, replace(at, inputs=_three(one))) for one in both])
         )  # fmt: skip
     by_inputs = _carried(model, found, jacobian, acting, rows, at)
-    by_coefficients = _sensor_slopes(acting, found, at)[:, None] * jacobian[:, :-3]
+    by_coefficients = sensor_slopes(acting, found, at)[:, None] * jacobian[:, :-3]
     return np.hstack((by_coefficients, by_inputs))
 
 
@@ -159,10 +159,10 @@ def _carried(
             ]
         )
     change = along + direct + jacobian[:, -3:] @ towed
-    return _sensor_slopes(acting, found, at)[:, None] * change + shown
+    return sensor_slopes(acting, found, at)[:, None] * change + shown
 
 
-def _sensor_slopes(acting: Acting, found: Equilibrium, at: Situation) -> np.ndarray:
+def sensor_slopes(acting: Acting, found: Equilibrium, at: Situation) -> np.ndarray:
     """By how much each sensor's reading grows with the observable it shows (n_observables,)."""
     values = found.observables.array()
     if not acting:

@@ -1,19 +1,31 @@
-"""Predictions of what a tow shows, with their derivatives: what identification asks for."""
+"""Predictions of what a tow shows, with their derivatives: what identification asks for.
 
-from dataclasses import dataclass
+The gear may have effects beyond the model, whose strengths may be asked for along with the board.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
+from trawl_ros.effects.acting import NONE, Acting, Active
+from trawl_ros.effects.effect import Effect, Situation
+from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.effect_sensitivity import by_effects, chained, sensor_slopes, shown_values
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import net_sensitivities, sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
 
+ANYWHERE = Situation((0.0, 0.0, 0.0))
+
 
 @dataclass(frozen=True)
 class Prediction:
-    """``values`` (n_observables,) and ``jacobian`` (n_observables, 15) by `PARAMETERS`; ``slow``
+    """``values`` (n_observables,) as they are shown and ``jacobian`` (n_observables, 15 + m) by
+    `PARAMETERS`, the m values of free effects standing behind the coefficients; ``slow``
     (n_observables,) is how the gear comes to rest, per metre of net depth; ``state`` is what the
     next prediction nearby may start from.
     """
@@ -24,16 +36,82 @@ class Prediction:
     state: Equilibrium
 
 
-class Predictor:
-    """The equilibrium model of one gear as a function of coefficients and operating point."""
+class Towed(Protocol):
+    """What of a stretch of towing effects may depend on."""
 
-    def __init__(self, model: GearModel) -> None:
-        self.model = model
-        self._last: tuple[bytes, Prediction] | None = None
+    @property
+    def tow(self) -> int:
+        """Number of the tow."""
+        ...
+
+    @property
+    def hours(self) -> float:
+        """Since it began."""
+        ...
+
+    @property
+    def sense(self) -> float:
+        """Which way the ship goes on her track, as `trawl_ros.effects.effect.sense` has it."""
+        ...
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """The equilibrium model of a gear as a function of coefficients, operating point and effects.
+
+    Attributes
+    ----------
+    model
+        The gear without effects.
+    fixed
+        Effects that are there with values that are known.
+    free
+        Effects whose values stand behind the twelve coefficients.
+    at
+        The situation it predicts for, but for warp lengths and speed.
+    without
+        Tows in which the free effects are not there.
+    absent
+        Whether it predicts for one of these.
+    """
+
+    model: GearModel
+    fixed: Acting = NONE
+    free: tuple[Effect, ...] = ()
+    at: Situation = ANYWHERE
+    without: frozenset[int] = frozenset()
+    absent: bool = False
+    _last: dict[bytes, Prediction] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    def acting(self, coefficients: np.ndarray) -> Acting:
+        """The effects with the values behind the coefficients."""
+        there, place = self.fixed, len(COEFFICIENTS)
+        for effect in self.free:
+            number = len(effect.parameters)
+            if not self.absent:
+                there = there.having(Active(effect, coefficients[place : place + number]))
+            place += number
+        return there
+
+    def in_window(self, window: Towed) -> 'Predictor':
+        """The predictor for a stretch of steady towing; itself where no effect could tell."""
+        return self.situated(window) if self.fixed or self.free else self
+
+    def situated(self, window: Towed) -> 'Predictor':
+        """The predictor in the situation of a stretch of steady towing."""
+        at = Situation((0.0, 0.0, 0.0), sense=window.sense, hours=window.hours)
+        return replace(self, at=at, absent=window.tow in self.without)
+
+    def gear(self, coefficients: np.ndarray, inputs: np.ndarray) -> GearModel:
+        """The gear with its effects, where counters and log show ``inputs`` (3,)."""
+        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        return self.acting(coefficients).gear(board, self._situation(inputs))
 
     def with_net(self, drag: float, weight: float) -> 'Predictor':
         """The predictor of a gear whose net has this many times the drag and weight in water."""
-        return Predictor(self.model.with_net(drag, weight))
+        return replace(self, model=self.model.with_net(drag, weight))
 
     def by_net(self, coefficients: np.ndarray, found: Equilibrium) -> np.ndarray:
         """Derivatives (n_observables, 2) by factors on drag and weight in water of the net.
@@ -43,7 +121,14 @@ class Predictor:
         coefficients, found
             Of a prediction, which has the steady state.
         """
-        return net_sensitivities(self.model.with_coefficients(coefficients), found)
+        point, acting = found.point, self.acting(coefficients)
+        inputs = np.array([point.port_length, point.starboard_length, point.speed])
+        by_net = net_sensitivities(self.gear(coefficients, inputs), found)
+        return sensor_slopes(acting, found, self._situation(inputs))[:, None] * by_net
+
+    def _situation(self, inputs: np.ndarray) -> Situation:
+        port, starboard, speed = map(float, inputs)
+        return replace(self.at, inputs=(port, starboard, speed))
 
     def predict(
         self,
@@ -53,33 +138,69 @@ class Predictor:
         speed: float,
         start: Equilibrium | None = None,
     ) -> Prediction:
-        """Observables and their derivatives at a steady state.
+        """What instruments show in a steady state, and its derivatives.
 
         Parameters
         ----------
-        coefficients : (12,) array
-            In the order of `COEFFICIENTS`.
-        port_length, starboard_length
-            Warp lengths, m.
-        speed
-            Through the water, m/s.
+        coefficients : (12 + m,) array
+            In the order of `COEFFICIENTS`, and the values of the free effects.
+        port_length, starboard_length, speed
+            As counters (m) and log (m/s) show them.
         start
             The ``state`` of an earlier prediction nearby; a cold start is made without one only.
 
         Raises
         ------
         NoSteadyState
-            When the gear has none there with these coefficients.
+            When the gear has none there.
         """
         question = np.array([*coefficients, port_length, starboard_length, speed]).tobytes()
-        last, self._last = self._last, None
-        if last is not None and last[0] == question:
+        last = self._last.pop(question, None)
+        self._last.clear()
+        if last is not None:
             # A window is looked at before it is used, which need not be solved for twice.
-            return last[1]
-        model = self.model.with_coefficients(coefficients)
-        point = OperatingPoint(port_length, starboard_length, speed)
-        found = find_equilibrium(model, point, start, cold=start is None)
-        values, jacobian = found.observables.array(), sensitivities(model, found)
-        answer = Prediction(values, jacobian, slow_mode(model, found).shape, found)
-        self._last = question, answer
+            return last
+        inputs = np.array([port_length, starboard_length, speed])
+        at, acting = self._situation(inputs), self.acting(coefficients)
+        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        gear = acting.gear(board, at)
+        port, starboard, through = map(float, acting.towed(inputs, at))
+        point = OperatingPoint(port, starboard, through)
+        found = find_equilibrium(gear, point, start, cold=start is None)
+        values, jacobian = found.observables.array(), sensitivities(gear, found)
+        shown = chained(board, found, jacobian, acting, inputs, at)
+        extra = np.zeros((len(values), len(coefficients) - len(COEFFICIENTS)))
+        if self.free and not self.absent:
+            wanted = [acting.of(effect) for effect in self.free]
+            extra = by_effects(board, found, jacobian, acting, wanted, inputs, at)
+        answer = Prediction(
+            shown_values(acting, values, at),
+            np.hstack((shown[:, :-3], extra, shown[:, -3:])),
+            slow_mode(gear, found).shape,
+            found,
+        )
+        self._last[question] = answer
         return answer
+
+    def signatures(
+        self,
+        coefficients: np.ndarray,
+        inputs: np.ndarray,
+        found: Equilibrium,
+        wanted: Sequence[Active],
+    ) -> np.ndarray:
+        """What effects would change (n_observables, m) in a state that was predicted, per unit.
+
+        Parameters
+        ----------
+        coefficients, inputs
+            The prediction's (12,), and warp lengths and speed (3,).
+        found
+            Its state.
+        wanted
+            The effects.
+        """
+        at, acting = self._situation(inputs), self.acting(coefficients)
+        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        jacobian = sensitivities(acting.gear(board, at), found)
+        return by_effects(board, found, jacobian, acting, wanted, inputs, at)
