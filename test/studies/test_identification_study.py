@@ -24,7 +24,7 @@ from trawl_ros.studies.identification.readings import (
     steady_windows,
     wrong_by,
 )
-from trawl_ros.studies.identification.report import JSON, PAGE, REPORT
+from trawl_ros.studies.identification.report import REPORT
 from trawl_ros.studies.identification.rows import coverage_rows, held_out_rows, spread_rows
 from trawl_ros.studies.identification.trial import Task, Trial, run_trial
 
@@ -195,9 +195,9 @@ def test_the_command_makes_a_report_and_goes_on_where_it_was(tmp_path):
     first = CliRunner().invoke(trawl, [*few, '1'])
     assert first.exit_code == 0, first.output
     assert 'targets are reached' in first.output
-    records = json.loads((out / JSON).read_text())['rows']
+    records = json.loads((out / 'identification.json').read_text())['rows']
     assert {'what', 'value', 'low', 'high', 'target', 'ok', 'note'} <= set(records[0])
-    for name in (REPORT, PAGE):
+    for name in (REPORT, 'identification.html'):
         text = (out / name).read_text()
         assert all(record['what'] in text for record in records)
     made = (out / FILE).read_text()

@@ -14,6 +14,10 @@ from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
+from trawl_ros.studies.discrepancy.report import REPORT as DISCREPANCY_REPORT
+from trawl_ros.studies.discrepancy.report import write_discrepancy
+from trawl_ros.studies.discrepancy.study import Plan as DiscrepancyPlan
+from trawl_ros.studies.discrepancy.study import run_blind
 from trawl_ros.studies.identification.report import REPORT as IDENTIFICATION_REPORT
 from trawl_ros.studies.identification.report import write_identification
 from trawl_ros.studies.identification.study import Plan as IdentificationPlan
@@ -160,6 +164,61 @@ def identification(
     write_identification(out, plan, found.sections, found.figure)
     rows = [row for _, section in found.sections for row in section]
     _say(rows, out / IDENTIFICATION_REPORT, console)
+
+
+@command.command('discrepancy')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
+@click.option('--force', is_flag=True, help='Begin anew, whatever is there.')
+@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@click.option('--seed', default=DiscrepancyPlan.seed, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
+@click.option('--clean', default=DiscrepancyPlan.clean, show_default=True,
+              type=click.IntRange(0, 10_000), help='Trials with nothing hidden.')  # fmt: skip
+@click.option('--inside', default=DiscrepancyPlan.inside, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each effect of the catalogue, '
+              'strength and side.')  # fmt: skip
+@click.option('--outside', default=DiscrepancyPlan.outside, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each other effect, strength and '
+              'side.')  # fmt: skip
+@click.option('--pairs', default=DiscrepancyPlan.pairs, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each pair of effects.')  # fmt: skip
+@click.option('--around', default=DiscrepancyPlan.around, show_default=True,
+              type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--scheduler', help='Address of a Dask cluster, which must see --out under the '
+              'same path.')  # fmt: skip
+def discrepancy(
+    out: Path,
+    force: bool,
+    gear: str,
+    seed: int,
+    clean: int,
+    inside: int,
+    outside: int,
+    pairs: int,
+    around: int,
+    scheduler: str | None,
+) -> None:
+    """Hide effects in trials of another plant, and count how often they are found and named.
+
+    Writes discrepancy.json, .md, .html and .png; a target that is missed is part of the report.
+    Trials that are in the folder already are not made again: after Ctrl-C the same command goes
+    on where it was.
+    """
+    load_gear(gear)
+    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, around)
+    console = error_console()
+    try:
+        trials = run_blind(
+            plan,
+            out,
+            lambda title, number: _counted(title, number, console),
+            scheduler=scheduler,
+            force=force,
+        )
+    except KeyboardInterrupt:
+        console.print(f'stopped; the trials made so far are kept in {out}')
+        raise SystemExit(INTERRUPTED) from None
+    _say(write_discrepancy(out, plan, trials), out / DISCREPANCY_REPORT, console)
 
 
 @contextmanager

@@ -76,8 +76,8 @@ def fit_boards(
 ) -> Refit | None:
     """Fit the boards alone; None where no window has a steady state."""
     estimator = Estimator(predictor, prior, OBSERVABLES, options)
-    for window in windows:
-        estimator.add(window)
+    # All at once: what the first windows alone would say is not asked, and may lead astray.
+    estimator.take(windows)
     estimate = estimator.finish()
     return None if estimate is None else Refit((), estimator, estimate)
 

@@ -130,7 +130,7 @@ class Estimator:
         ``near`` is a steady state to start from, beside those of other windows.
         """
         try:
-            part = self._linearise(window, self.coefficients, self._inputs_of(window), near)
+            part = self._linearise(window, self.coefficients, self._inputs_of(window), start=near)
         except NoSteadyState:
             self._without.append(window)
             return None
@@ -167,6 +167,10 @@ class Estimator:
         at these coefficients.
         """
         self._fit = replace(self._fit, windows=tuple(parts), coefficients=np.array(coefficients))
+
+    def take(self, windows: Sequence[SteadyWindow]) -> None:
+        """Take windows without looking at them; `finish` solves all of them at once."""
+        self._without += windows
 
     def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
         """An estimator with the windows of some states only, starting from this estimate."""
@@ -213,17 +217,21 @@ class Estimator:
         window: SteadyWindow,
         coefficients: np.ndarray,
         inputs: np.ndarray | None = None,
-        near: Any = None,
+        *,
+        start: Any = None,
+        near: Sequence[Linearised] = (),
     ) -> Linearised:
+        """Solve a window, starting from a state, or from the one of the most similar window."""
+
         def distance(part: Linearised) -> float:
             return sum(
                 abs(window.means[name] / part.window.means[name] - 1.0)
                 for name in ('port_length', 'starboard_length', 'speed')
             )
 
-        starts: list[Any] = [] if near is None else [near]
-        if self._fit.windows:
-            starts.append(min(self._fit.windows, key=distance).state)
+        starts: list[Any] = [] if start is None else [start]
+        if known := (*self._fit.windows, *near):
+            starts.append(min(known, key=distance).state)
         starts.append(None)
         return linearise(
             self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
@@ -249,13 +257,13 @@ class Estimator:
         solved = {part.window.index: part for part in self._fit.windows}
         windows = sorted((*self.windows, *self._without), key=lambda window: window.index)
         self._without = []
-        parts = []
+        parts: list[Linearised] = []
         for window in windows:
             part, inputs = solved.get(window.index), self._inputs_of(window)
             threshold = self.options.relinearise_final
             if part is None or far(part, self.coefficients, inputs, self._fit.net, threshold):
                 try:
-                    part = self._linearise(window, self.coefficients, inputs)
+                    part = self._linearise(window, self.coefficients, inputs, near=parts)
                 except NoSteadyState:
                     self._without.append(window)
                     continue

@@ -1,6 +1,6 @@
 """All windows beside the model at one set of coefficients: cost, rows, what is known."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -39,11 +39,15 @@ LEAST_SCALE = 0.3
 """Noise is never taken to be less than this part of what is stated."""
 
 
+Known = tuple[tuple[Linearised, ...], EstimatorOptions, tuple[TowErrors, ...]]
+
+
 @dataclass(frozen=True)
 class Fit:
     """Linearised windows, coefficients (12,), and factors on the stated noise by group.
 
-    ``weights`` of the readings are found where none are given.
+    ``weights`` of the readings are found where none are given. ``known`` are windows and their
+    errors as they were worked out once: fits that are made of each other share them.
     """
 
     windows: tuple[Linearised, ...]
@@ -52,11 +56,16 @@ class Fit:
     prior: BoardPrior
     options: EstimatorOptions
     weights: tuple[np.ndarray, ...] | None = None
+    known: Known | None = field(default=None, repr=False, compare=False)
 
-    @cached_property
+    @property
     def errors(self) -> tuple[TowErrors, ...]:
         """What can be wrong with the readings, tow by tow."""
-        return tow_errors(self.windows, self.scheme)
+        known = self.known
+        if known is None or known[0] is not self.windows or known[1] is not self.options:
+            known = (self.windows, self.options, tow_errors(self.windows, self.scheme))
+            object.__setattr__(self, 'known', known)
+        return known[2]
 
     @property
     def scheme(self) -> Scheme:

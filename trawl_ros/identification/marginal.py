@@ -197,7 +197,7 @@ def _eliminated(rows: np.ndarray, number: int) -> np.ndarray:
 
 def triangular(rows: np.ndarray) -> np.ndarray:
     """The triangle of a QR decomposition, whose squares are those of the rows."""
-    return np.linalg.qr(rows)[1]
+    return np.asarray(np.linalg.qr(rows, mode='r'))
 
 
 def _explained(

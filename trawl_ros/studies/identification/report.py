@@ -1,63 +1,41 @@
 """The report of the study: JSON, Markdown, a self-contained page and a figure."""
 
-import base64
-import json
 import os
 from collections.abc import Sequence
-from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 from matplotlib.figure import Figure
 
 from trawl_ros.benchmark.machine import cpu_model, software
-from trawl_ros.plots.style import DPI
-from trawl_ros.reporting import number, templates
 from trawl_ros.studies.identification.plant import HELD_OUT, TOWS
 from trawl_ros.studies.identification.readings import CORRELATION_S
 from trawl_ros.studies.identification.study import COVERAGE, Plan
 from trawl_ros.studies.identification.trial import WRONG_BY
-from trawl_ros.studies.row import Row
+from trawl_ros.studies.page import Page, Section, write_page
 
-JSON, REPORT, PAGE, FIGURE = (f'identification.{kind}' for kind in ('json', 'md', 'html', 'png'))
-
-Section = tuple[str, Sequence[Row]]
+REPORT = 'identification.md'
+ALTERNATIVE = 'Coverage and spread by coefficient, errors on tows left out'
+CAPTION = (
+    'Above: how often the 95 % interval of a coefficient covers the truth. Middle: root mean '
+    'square error over the Bayesian Cramér–Rao bound. Below: errors on tows left out, those of a '
+    'perfect model on the same data, and what is asked for. Bars are 95 % intervals, the green '
+    'bands what is asked for.'
+)
 
 
 def write_identification(
     folder: Path, plan: Plan, sections: Sequence[Section], figure: Figure
 ) -> None:
     """Write ``identification.json``, ``.md``, ``.html`` and ``.png`` into a folder."""
-    records = [row.record() for _, rows in sections for row in rows]
-    text = json.dumps({'rows': records}, indent=1, ensure_ascii=False)
-    (folder / JSON).write_text(text + '\n', encoding='utf-8')
-    picture = BytesIO()
-    figure.savefig(picture, format='png', dpi=DPI)
-    (folder / FIGURE).write_bytes(picture.getvalue())
-    asked = [row for _, rows in sections for row in rows if row.asked]
-    content: dict[str, Any] = {
-        'sections': [section for section in sections if section[1]],
-        'asked': asked,
-        'plan': plan,
-        'options': _options(plan),
-        'method': _method(plan),
-        'figure': FIGURE,
-        'data': base64.b64encode(picture.getvalue()).decode('ascii'),
-    }
-    environment = templates('trawl_ros.studies')
-    environment.filters['wanted'] = wanted
-    for name in (REPORT, PAGE):
-        page = environment.get_template(f'{name}.j2').render(content)
-        (folder / name).write_text(page.rstrip() + '\n', encoding='utf-8')
-
-
-def wanted(row: Row) -> str:
-    """What a row was asked for, in words."""
-    if row.least is not None and row.target is not None:
-        return f'{number(row.least)} to {number(row.target)}'
-    if row.least is not None:
-        return f'at least {number(row.least)}'
-    return '' if row.target is None else f'at most {number(row.target)}'
+    page = Page(
+        name='identification',
+        title='What identification is worth',
+        command=f'trawl study identification{_options(plan)}',
+        method=_method(plan),
+        alternative=ALTERNATIVE,
+        caption=CAPTION,
+    )
+    write_page(folder, page, sections, figure)
 
 
 def _options(plan: Plan) -> str:

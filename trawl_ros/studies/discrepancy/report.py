@@ -1,0 +1,76 @@
+"""The page of the blind tests."""
+
+import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from trawl_ros.benchmark.machine import cpu_model, software
+from trawl_ros.studies.discrepancy.figure import verdicts_figure
+from trawl_ros.studies.discrepancy.making import DROPOUTS, WRONG_BY
+from trawl_ros.studies.discrepancy.plant import FRICTION, NORMAL_DRAG
+from trawl_ros.studies.discrepancy.rows import all_rows
+from trawl_ros.studies.discrepancy.study import PLANTS, Plan, Scored
+from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.page import Page, write_page
+from trawl_ros.studies.row import Row
+
+REPORT = 'discrepancy.md'
+ALTERNATIVE = 'Verdicts by strength, and hidden effects beside what they were named'
+CAPTION = (
+    'Above: what was said of trials with nothing hidden, with effects of the catalogue at three '
+    'strengths in smallest detectable sizes, with effects the catalogue does not have, and with '
+    'two at once. Below: each hidden effect beside what it was named, in trials.'
+)
+
+
+def write_discrepancy(folder: Path, plan: Plan, trials: Sequence[Scored]) -> list[Row]:
+    """Write ``discrepancy.json``, ``.md``, ``.html`` and ``.png``, and give the rows."""
+    sections = all_rows(trials)
+    page = Page(
+        name='discrepancy',
+        title='How often the missing effect is found',
+        command=f'trawl study discrepancy{_options(plan)}',
+        method=_method(plan, trials),
+        alternative=ALTERNATIVE,
+        caption=CAPTION,
+    )
+    write_page(folder, page, sections, verdicts_figure(trials))
+    return [row for _, rows in sections for row in rows]
+
+
+def _options(plan: Plan) -> str:
+    usual = asdict(Plan())
+    words = [f'--{key} {value}' for key, value in asdict(plan).items() if value != usual[key]]
+    return ''.join(f' {word}' for word in words)
+
+
+def _method(plan: Plan, trials: Sequence[Scored]) -> str:
+    """How trials were made, in sentences."""
+    not_testable = [trial for trial in trials if trial.diagnosis is None]
+    why = Counter(trial.key['why_not'].split(' of ')[0] for trial in not_testable)
+    listed = ', '.join(f'{name} {count}' for name, count in why.most_common()) or 'none'
+    versions = ', '.join(f'{name} {version}' for name, version in software().items())
+    states = len(PLAN[0].states)
+    return (
+        f'A trial has {len(PLAN)} tows of {states} steady states, 300 to 900 m of warp at 2.0 to '
+        f'2.4 m/s, eastward and back in turn; nothing is hidden in the first {BASELINE}, which the '
+        'diagnosis is told are a baseline. Every third of the others is kept back from naming, '
+        'and shows what the repair is worth. The plant is not the model: '
+        f'{plan.cut}, netting and its ropes with {NORMAL_DRAG:g} times the drag across and '
+        f'{FRICTION:g} times that along the twine; {PLANTS} plants have boards drawn from half of '
+        "the prior's spread. Windows are worked out from steady states of the plant with noise of "
+        'which a part is autoregressive, offsets and errors of scale by sensor and tow, noise and '
+        f'biases {100.0 * WRONG_BY:g} % larger or smaller than stated, states some metres and '
+        f'hundredths of m/s off the plan, and {100.0 * DROPOUTS:g} % of the means of optional '
+        'channels missing. What is hidden is written apart from the catalogue, through the hooks '
+        'of the model, with a shape drawn for each trial. Its strength is a multiple of the '
+        "smallest detectable size by the plant's own likelihood, found before any diagnosis; of an "
+        'effect outside the catalogue only what neither coefficients nor the best effect of the '
+        'catalogue could mimic counts. The diagnosis runs in a process of its own and reads a '
+        'file of windows with a random name; the score sees diagnosis.json and the key alone. '
+        f'{len(trials)} trials, of which {len(not_testable)} are not testable, for the size would '
+        f'not be possible or the gear could not be towed ({listed}). '
+        f'On {os.cpu_count()} cores of {cpu_model()}, with {versions}.'
+    )

@@ -1,0 +1,159 @@
+"""How large a hidden effect must be to be seen, from the plant's own likelihood.
+
+The plant, linearised around its board, says how what the effect changes compares with the errors of
+the instruments and with what coefficients could mimic. No detector has part in it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.stats import norm
+
+from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures
+from trawl_ros.diagnosis.evidence import POWER, evidence
+from trawl_ros.diagnosis.showing import split
+from trawl_ros.effects.catalogue import catalogue
+from trawl_ros.errors import NoSteadyState
+from trawl_ros.identification.channels import MEASURED
+from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.fit import AS_STATED, Fit
+from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.predict import Predictor
+from trawl_ros.studies.discrepancy.hidden import Hidden
+from trawl_ros.studies.discrepancy.plant import Plant
+from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.identification.plant import Look
+
+ALARM = 0.01 / 30.0
+"""Probability at which one of some thirty looks is an alarm, so that all of them are one in 1 %."""
+
+SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
+"""An effect this many standard deviations strong is seen in 80 % of trials."""
+
+ROUNDS = 3
+"""Of probing with a size near the one that is wanted."""
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """The plant linearised around its board in the windows that decide."""
+
+    plant: Plant
+    fit: Fit
+
+    def detectable(self, hidden: Hidden, sign: float, *, beside_catalogue: bool) -> float:
+        """Smallest size that is seen in 80 % of trials, infinite if none that is possible is.
+
+        Parameters
+        ----------
+        hidden, sign
+            The effect, and to which side.
+        beside_catalogue
+            Whether what the best effect of the catalogue could mimic does not count.
+        """
+        most = hidden.most[0] if sign < 0.0 else hidden.most[1]
+        size = min(hidden.probe, most)
+        for _ in range(ROUNDS):
+            try:
+                seen = self._sigmas(hidden, sign * size, beside_catalogue)
+            except NoSteadyState:
+                size *= 0.5
+                continue
+            if seen <= 0.0:
+                return np.inf
+            wanted = size * SIGMAS / seen
+            if abs(wanted / size - 1.0) < 0.05 or wanted > most:
+                return float(wanted)
+            size = wanted
+        return float(size)
+
+    def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
+        """How many standard deviations strong an effect is."""
+        changed = self.plant.towed([(hidden, size)])
+        rows = [OBSERVABLES.index(name) for name in MEASURED]
+        columns = [
+            (there.values - clean.values)[rows][:, None]
+            for there, clean in zip(_flat(changed), _flat(self.plant.looks), strict=True)
+        ]
+        chosen = {part.window.index for part in self.fit.windows}
+        columns = [own for number, own in enumerate(columns) if number in chosen]
+        if not beside_catalogue:
+            return float(np.sqrt(evidence(self.fit, columns, np.ones(1)).information[0, 0]))
+        mimics = self._mimics
+        number = mimics[0].shape[1]
+        both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
+        found = evidence(self.fit, both, np.ones(number + 1))
+        left = [found.information[0, 0]]
+        for block in self._blocks:
+            cosine = found.covered([0], np.ones(1), [place + 1 for place in block])
+            left.append(found.information[0, 0] * (1.0 - cosine**2))
+        return float(np.sqrt(max(0.0, min(left))))
+
+    @cached_property
+    def _wanted(self) -> tuple[Candidate, ...]:
+        predictor = Predictor(self.plant.model, without=frozenset(range(BASELINE)))
+        depths = np.array([part.window.means['net_depth'] for part in self.fit.windows])
+        return candidates(catalogue(), predictor, depths)
+
+    @property
+    def _blocks(self) -> list[range]:
+        found: list[range] = []
+        for candidate in self._wanted:
+            first = found[-1].stop if found else 0
+            found.append(range(first, first + len(candidate.start)))
+        return found
+
+    @cached_property
+    def _mimics(self) -> list[np.ndarray]:
+        predictor = Predictor(self.plant.model, without=frozenset(range(BASELINE)))
+        return signatures(predictor, self.fit.windows, self._wanted)
+
+
+def likelihood(plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow]) -> Likelihood:
+    """Linearise a plant.
+
+    Parameters
+    ----------
+    plant
+        The plant.
+    prior
+        What is known of the boards before.
+    windows
+        All windows of the plan, with nothing hidden and without noise, their indices in the order
+        of the plan; those that decide are used.
+    """
+    deciding = {window.index for window in split(windows, frozenset(range(BASELINE))).deciding}
+    rows = [OBSERVABLES.index(name) for name in MEASURED]
+    parts = []
+    states = [state for tow in PLAN for state in tow.states]
+    for window, state in zip(windows, states, strict=True):
+        if window.index not in deciding:
+            continue
+        clean = plant.clean[state]
+        parts.append(
+            Linearised(
+                window=window,
+                channels=MEASURED,
+                at=plant.coefficients,
+                inputs=np.array(clean.look.inputs),
+                net=np.ones(2),
+                measured=clean.look.values[rows],
+                values=clean.look.values[rows],
+                by_coefficients=clean.look.by_coefficients[rows],
+                by_inputs=clean.look.by_inputs[rows],
+                by_net=np.zeros((len(rows), 2)),
+                slow=clean.slow[rows],
+                state=clean.state,
+            )
+        )
+    options = EstimatorOptions()
+    return Likelihood(plant, Fit(tuple(parts), plant.coefficients, AS_STATED, prior, options))
+
+
+def _flat(tows: Sequence[Sequence[Look]]) -> list[Look]:
+    return [look for tow in tows for look in tow]
