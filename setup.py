@@ -15,6 +15,7 @@ NODES = (
     'autotrawl_node',
     'autopilot_node',
     'identification_node',
+    'discrepancy_node',
     'bag_recorder',
     'bag_player',
 )

@@ -45,6 +45,7 @@ def scored(verdict, names=(), hidden=('catch_build_up',), series='inside', stren
         'sizes': [2.0] * len(hidden),
         'coefficients': truth.tolist(),
         'why_not': '',
+        'floor': {'net_depth': 1.0},
     }
     diagnosis = {
         'verdict': verdict,
@@ -53,6 +54,9 @@ def scored(verdict, names=(), hidden=('catch_build_up',), series='inside', stren
             for name in names
         ],
         'ambiguous_with': more.get('ambiguous', []),
+        'channels': {
+            'net_depth': {'before': 3.0, 'after': 1.2, 'placebo': 2.9, 'expected': 1.0},
+        },
         'excess_removed': more.get('removed', 0.9),
         'excess_removed_by_placebo': 0.1,
         'coefficients': {
@@ -157,7 +161,7 @@ def test_alarms_and_foreign_effects_are_counted():
 
 def test_a_repair_is_measured_against_the_truth():
     rows = repair_rows([scored('NAMED', ['catch_build_up'])])
-    assert [row.value for row in rows] == pytest.approx([90.0, 10.0, 0.1, 100.0])
+    assert [row.value for row in rows] == pytest.approx([94.5, 7.375, 90.0, 0.1, 100.0])
 
 
 def test_shuffled_keys_score_as_chance_would():

@@ -87,5 +87,5 @@ def _print(found: Diagnosis, out: Path) -> None:
     for sentence in sentences(found):
         console.print(sentence, markup=False)
     console.print(f'Report: {out / "report.html"}', markup=False)
-    if found.verdict == 'NAMED':
-        console.print(f'The gear with the effect in it: {out / MODEL}', markup=False)
+    if found.repair is not None:
+        console.print(f'The gear with that in it: {out / MODEL}', markup=False)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import Named, name, refitted
 from trawl_ros.diagnosis.next_tow import propose
@@ -68,6 +69,8 @@ class Diagnosis:
         None, or empty, where it did not come to that.
     advice
         Sentences on what to do next where something cannot be told apart.
+    empirical
+        The term that explains what no effect does, where there is one.
     """
 
     verdict: Verdict
@@ -82,11 +85,19 @@ class Diagnosis:
     where: tuple[Where, ...] = ()
     shown: Shown | None = None
     advice: tuple[str, ...] = ()
+    empirical: Empirical | None = None
 
     @property
     def best(self) -> Weighed | None:
         """The best effect, or two, where something was detected and refitted."""
         return self.named.weighed[0] if self.named and self.named.weighed else None
+
+    @property
+    def repair(self) -> Weighed | None:
+        """What goes into the gear: the effect that is named, or an empirical term."""
+        if self.empirical is not None:
+            return self.empirical.weighed
+        return self.best if self.verdict == 'NAMED' else None
 
 
 def diagnose(
@@ -154,6 +165,11 @@ def diagnose(
             'explain, and no effect brings them near: it is another gear',
         )
     best = named.weighed[0].refit if named.weighed else None
+    found = None
+    if named.verdict == 'UNKNOWN':
+        told('looking for an empirical term')
+        found = empirical(predictor, base, seen)
+        best = best if found is None else found.weighed.refit
     told('predicting what was kept back')
     other = None if best is None else _placebo(predictor, base, seen, named)
     shown = _shown(predictor, base, best, other, parts)
@@ -165,6 +181,7 @@ def diagnose(
         named=named,
         shown=shown,
         advice=_advice(predictor, seen, named),
+        empirical=found,
     )
 
 
@@ -189,13 +206,16 @@ def _advice(predictor: Predictor, seen: Screen, named: Named) -> tuple[str, ...]
 
 
 def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> Refit | None:
-    """The best effect that is neither named nor of its class."""
+    """The best effect that is neither named nor of its class.
+
+    Where none is named, only one that was refitted already will do.
+    """
     taken = {*named.weighed[0].refit.names, *named.alike}
     for other in named.weighed[1:]:
         if not taken & set(other.refit.names):
             return other.refit
     rest = [one for one in seen.wanted if one.name not in taken]
-    if not rest:
+    if not rest or named.verdict == 'UNKNOWN':
         return None
     return refitted(predictor, base, seen, (max(rest, key=seen.penalised),))
 

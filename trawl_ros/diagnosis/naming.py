@@ -132,10 +132,17 @@ def refitted(
     scale = np.concatenate([candidate.scale for candidate in wanted])
     starts = np.concatenate([candidate.start for candidate in wanted])
     values = starts + scale * seen.evidence.values(rows)
-    found = refit(predictor, base.fit, wanted, values, parts, base.fit.options)
-    if found is None or len(found.fit.windows) < len(base.fit.windows):
-        return None
-    return found
+    best: Refit | None = None
+    # First order may lead astray: then from where there is nothing but the boards.
+    for start in (values, starts):
+        found = refit(predictor, base.fit, wanted, start, parts, base.fit.options)
+        if found is None or len(found.fit.windows) < len(base.fit.windows):
+            continue
+        if best is None or found.fit.surprise < best.fit.surprise:
+            best = found
+        if best.fit.surprise < base.fit.surprise:
+            break
+    return best
 
 
 def _with_second(

@@ -10,6 +10,7 @@ import yaml
 from trawl_ros import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.gear.records import (
     CoefficientsRecord,
     EffectRecord,
@@ -46,14 +47,15 @@ def source(bag: Path) -> Source:
 
 
 def repaired(found: Diagnosis, sources: Sequence[Source]) -> GearRecord | None:
-    """The gear with boards as refitted and the best effect, or two, in it.
+    """The gear with boards as refitted and in it the effect that is named, or two, or an empirical
+    term.
 
-    None where nothing has been named: a gear file is to hold what is known.
+    None where nothing has been named and no term does: a gear file is to hold what is known.
     """
-    best = found.best
-    if best is None or found.verdict != 'NAMED':
+    best = found.repair
+    if best is None:
         return None
-    return with_effects(found.gear, best.refit, _provenance(found, sources))
+    return with_effects(found.gear, best.refit, _provenance(best, sources))
 
 
 def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> GearRecord:
@@ -78,9 +80,7 @@ def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> Gear
     )
 
 
-def _provenance(found: Diagnosis, sources: Sequence[Source]) -> ProvenanceRecord:
-    best = found.best
-    assert best is not None
+def _provenance(best: Weighed, sources: Sequence[Source]) -> ProvenanceRecord:
     return ProvenanceRecord(
         found_by=f'trawl diagnose {__version__}',
         bags=tuple(SourceRecord(bag=one.bag, sha256=one.sha256) for one in sources),

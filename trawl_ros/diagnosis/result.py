@@ -24,6 +24,7 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
         'reason': found.reason,
         'effects': _effects(found) if sure else [],
         'ambiguous_with': list(dict.fromkeys(ambiguous)) if sure else [],
+        'empirical': _empirical(found),
         'where': [
             {
                 'channel': where.channel,
@@ -46,6 +47,12 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
         'detection': None
         if found.seen is None
         else {'strongest': _number(found.seen.strongest), 'limit': _number(found.seen.limit)},
+        'left_over': None
+        if named is None
+        else {
+            'probability': _number(named.left_over.probability),
+            'share': _number(named.left_over.share),
+        },
         'next_tow': list(found.advice),
         'tows': [
             {'name': name, 'baseline': place in found.baseline}
@@ -71,6 +78,28 @@ def _effects(found: Diagnosis) -> list[dict[str, Any]]:
         }
         for name, values in values_of(best.refit).items()
     ]
+
+
+def _empirical(found: Diagnosis) -> dict[str, Any] | None:
+    """The term, which is labelled what it is: empirical."""
+    if found.empirical is None:
+        return None
+    weighed, term = found.empirical.weighed, found.empirical.term
+    values = values_of(weighed.refit)[term.name]
+    return {
+        'name': term.name,
+        'label': 'empirical',
+        'sentence': term.sentence,
+        'nearest_reading': term.reading,
+        'parameters': {
+            name: {'value': value, 'low': low, 'high': high, 'unit': unit}
+            for name, (value, low, high, unit) in values.items()
+        },
+        'delta_chi2': _number(weighed.delta_chi2),
+        'delta_bic': _number(weighed.delta_bic),
+        'placebo_chi2': _number(found.empirical.placebo),
+        'left_over': _number(found.empirical.left_over.probability),
+    }
 
 
 def _evidence(weighed: Sequence[Weighed]) -> dict[str, Any]:

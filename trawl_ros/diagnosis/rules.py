@@ -13,6 +13,9 @@ Verdict = Literal['NO_DISCREPANCY', 'NAMED', 'AMBIGUOUS', 'UNKNOWN', 'NOT_TESTAB
 FALSE_ALARMS = 0.01
 """Part of trials without any effect in which a discrepancy is seen nevertheless."""
 
+NOISE_TO_EXPLAIN = 1.7
+"""Noise found over noise stated from where it is asked whether it is noise."""
+
 RIVAL = 6.0
 """An effect whose χ² is worse than the best one's by less is not excluded."""
 
@@ -45,6 +48,9 @@ FEWEST_UNITS = 3
 NOWHERE_NEAR = 10.0
 """Noise found over noise stated, boards alone, from where it is another gear if no effect has a
 name."""
+
+EMPIRICAL_OVER_PLACEBO = 1.5
+"""An empirical term explains so many times the χ² of the best placebo, or is none."""
 
 SCREENED = 4
 """So many effects of those that are not excluded are refitted."""

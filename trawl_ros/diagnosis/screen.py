@@ -8,13 +8,17 @@ import numpy as np
 from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
 from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
 from trawl_ros.diagnosis.patterns import Pattern, patterns
-from trawl_ros.diagnosis.rules import FALSE_ALARMS
+from trawl_ros.diagnosis.rules import FALSE_ALARMS, NOISE_TO_EXPLAIN
 from trawl_ros.effects.effect import Effect
 from trawl_ros.identification.aim import aim
 from trawl_ros.identification.error_terms import TowErrors
 from trawl_ros.identification.fit import Fit
 from trawl_ros.identification.marginal import reweighted
+from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.solver.predict import Predictor
+
+USUAL_PATTERN, FAR = 3.0, 1e3
+"""How large patterns commonly are where something is wrong, in std of a reading, and at most."""
 
 
 @dataclass(frozen=True)
@@ -127,12 +131,16 @@ def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Sc
     depths = np.array([part.window.means['net_depth'] for part in base.windows])
     wanted = candidates(effects, predictor, depths)
     columns = signatures(predictor, base.windows, wanted)
-    free = extended(base, wanted, columns, base.options)
+    shapes, of_shapes = patterns(base.windows)
     # Noise is what no effect explains: found with all of them free.
+    free = extended(base, wanted, columns, base.options)
     explained = aim(replace(free, scales=base.scales), free.prior.low, free.prior.high)
+    if max(explained.scales) > NOISE_TO_EXPLAIN:
+        # Then it is no noise, but something that no effect knows: patterns are to have it.
+        free = with_patterns(free, of_shapes)
+        explained = aim(replace(free, scales=base.scales), free.prior.low, free.prior.high)
     weights = reweighted(explained.marginal, base.options.huber)
     fit = replace(base, scales=explained.scales)
-    shapes, of_shapes = patterns(base.windows)
     both = [np.hstack(pair) for pair in zip(columns, of_shapes, strict=True)]
     units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])
     found = evidence(fit, both, units, weights=weights)
@@ -144,6 +152,29 @@ def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Sc
     blocks += blocks_of(shapes, number).values()
     limit = threshold(found, blocks, FALSE_ALARMS)
     return Screen(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
+
+
+def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:
+    """A fit in which sizes of patterns stand behind all else."""
+    number = shapes[0].shape[1]
+    nothing, far = np.zeros(number), np.full(number, FAR)
+    parts = tuple(
+        replace(
+            part,
+            at=np.concatenate((part.at, nothing)),
+            by_coefficients=np.hstack((part.by_coefficients, own)),
+        )
+        for part, own in zip(fit.windows, shapes, strict=True)
+    )
+    prior = BoardPrior(
+        start=np.concatenate((fit.prior.start, nothing)),
+        std=np.concatenate((fit.prior.std, np.full(number, USUAL_PATTERN))),
+        low=np.concatenate((fit.prior.low, -far)),
+        high=np.concatenate((fit.prior.high, far)),
+        names=(*fit.prior.names, *('' for _ in range(number))),
+    )
+    coefficients = np.concatenate((fit.coefficients, nothing))
+    return replace(fit, windows=parts, coefficients=coefficients, prior=prior)
 
 
 def blocks_of(shapes: Sequence[Pattern], first: int) -> dict[str, range]:

@@ -41,7 +41,17 @@ def sentences(found: Diagnosis) -> tuple[str, ...]:
             f'was left out gains {best.gain[0]:.1f} of χ² ({best.gain[1]:.1f} to '
             f'{best.gain[2]:.1f}), and in {best.share:.0%} of resampled trials it is the best.'
         )
+    if found.empirical is not None:
+        term, weighed = found.empirical.term, found.empirical.weighed
+        ((value, low, high, unit),) = values_of(weighed.refit)[term.name].values()
+        said.append(
+            f'Empirical, not a cause: {term.sentence[0].lower()}{term.sentence[1:-1]}, by '
+            f'{value:.3g}{" " + unit if unit else ""} ({low:.3g} to {high:.3g}); the nearest '
+            f'physical reading is {term.reading}. It lowers χ² by {weighed.delta_chi2:.0f}, the '
+            f'best placebo by {found.empirical.placebo:.0f}.'
+        )
     if shown is not None and shown.removed is not None and best is not None:
+        it = 'it' if found.empirical is None else 'the empirical term'
         kept = 'tows' if found.split.by == 'tow' else 'steady states'
         placebo = (
             ''
@@ -49,7 +59,7 @@ def sentences(found: Diagnosis) -> tuple[str, ...]:
             else f'; the best other effect, {shown.instead}, removes {shown.removed_by_placebo:.0%}'
         )
         said.append(
-            f'On {kept} that decided nothing it removes {shown.removed:.0%} of the error beyond '
+            f'On {kept} that decided nothing {it} removes {shown.removed:.0%} of the error beyond '
             f'what instruments explain{placebo}.'
         )
     if found.split.by == 'state' and found.split.showing:

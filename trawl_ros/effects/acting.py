@@ -1,11 +1,13 @@
 """The effects that a gear file switches on, acting together."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.effects.effect import Effect, Readings, Situation
+from trawl_ros.empirical.dictionary import dictionary
 from trawl_ros.errors import GearError
 from trawl_ros.gear.records import EffectRecord, GearRecord
 from trawl_ros.model.gear_model import GearModel
@@ -80,10 +82,10 @@ def acting(gear: GearRecord) -> Acting:
 
 
 def _active(number: int, record: EffectRecord) -> Active:
-    known = catalogue()
+    known: Mapping[str, Effect] = {**catalogue(), **dictionary()}
     key = f'effects.{number}'
     if record.name not in known:
-        listed = ', '.join(known)
+        listed = ', '.join(catalogue())
         raise GearError(f'{key}.name: found {record.name}, expected one of {listed}')
     effect = known[record.name]
     names = [parameter.name for parameter in effect.parameters]

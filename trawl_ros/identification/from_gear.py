@@ -8,6 +8,7 @@ from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.pipeline import Identification
 from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import WindowOptions
+from trawl_ros.identification.windows import SteadyWindowFinder
 from trawl_ros.model.gear_model import build_model, build_water
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
@@ -38,6 +39,11 @@ def board_prior(gear: GearRecord) -> BoardPrior:
 def predictor_for(gear: GearRecord) -> Predictor:
     """The model of a gear as the estimator asks it, with the effects its file switches on."""
     return Predictor(build_model(gear), acting(gear))
+
+
+def finder_for(gear: GearRecord, options: WindowOptions | None = None) -> SteadyWindowFinder:
+    """The finder of steady windows for a gear, whose water turns pressure into depth."""
+    return SteadyWindowFinder(build_water(gear).depth, options or WindowOptions())
 
 
 def identification_for(

@@ -1,6 +1,6 @@
 """What can be seen of a gear: the numbers that people and instruments look at."""
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -47,7 +47,7 @@ class Observables:
 
     def array(self) -> np.ndarray:
         """All values in the order of `OBSERVABLES`."""
-        return np.array(astuple(self))
+        return np.array([getattr(self, name) for name in OBSERVABLES])
 
     @property
     def door_depth(self) -> float:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trawl_ros.model.assembly import forces, linearised
+from trawl_ros.model.assembly import board_loads, forces, linearised
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
@@ -57,7 +57,14 @@ def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
     """
     stiffness = linearised(model, found.state, found.tow).stiffness
     moved = [_perturbed(model, found, index) for index in range(len(PARAMETERS))]
-    pushes = np.column_stack([forces(*case).imag / STEP for case in moved])
+    pushes = np.zeros((model.dof, len(PARAMETERS)))
+    boards = slice(model.dof - 12, None)
+    for index, (changed, state, tow) in enumerate(moved):
+        if index < len(COEFFICIENTS):
+            # Coefficients push the boards and nothing else.
+            pushes[boards, index] = board_loads(changed, state).imag.ravel() / STEP
+        else:
+            pushes[:, index] = forces(changed, state, tow).imag / STEP
     shifts = solve_refined(model.pattern, stiffness, pushes)
     result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
     for index, (changed, state, tow) in enumerate(moved):

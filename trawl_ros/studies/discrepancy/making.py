@@ -7,16 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.diagnosis.showing import split
 from trawl_ros.errors import NoSteadyState
-from trawl_ros.identification.channels import CHANNELS
+from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.identification.over_ground import GroundTrack
 from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.studies.discrepancy.inside import INSIDE
 from trawl_ros.studies.discrepancy.outside import OUTSIDE
 from trawl_ros.studies.discrepancy.plant import Plant, draw_plant
 from trawl_ros.studies.discrepancy.strength import Likelihood, likelihood
-from trawl_ros.studies.discrepancy.tows import PLAN
+from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
 from trawl_ros.studies.identification.plant import Cut, Look
 from trawl_ros.studies.identification.readings import AS_STATED, steady_windows, wrong_by
 
@@ -60,7 +62,10 @@ class Spec:
 
 @dataclass(frozen=True)
 class Key:
-    """What is hidden in a trial, ``testable`` or not; read by the scorer alone."""
+    """What is hidden in a trial, ``testable`` or not; read by the scorer alone.
+
+    ``floor`` are errors, by channel, that the plant itself would have on what is kept back.
+    """
 
     spec: Spec
     sizes: tuple[float, ...]
@@ -69,6 +74,7 @@ class Key:
     testable: bool
     why_not: str
     coefficients: tuple[float, ...]
+    floor: Mapping[str, float]
 
     def record(self) -> dict[str, Any]:
         """As JSON has it; sizes that are infinite are null."""
@@ -96,7 +102,7 @@ def make(spec: Spec, gear: str, cut: Cut, seed: int) -> tuple[Key, tuple[SteadyW
 
     def key(why_not: str = '') -> Key:
         coefficients = tuple(map(float, plant.coefficients))
-        return Key(spec, sizes, units, detectable, not why_not, why_not, coefficients)
+        return Key(spec, sizes, units, detectable, not why_not, why_not, coefficients, {})
 
     for hidden, size in zip(drawn, sizes, strict=True):
         most = hidden.most[0] if size < 0.0 else hidden.most[1]
@@ -106,16 +112,34 @@ def make(spec: Spec, gear: str, cut: Cut, seed: int) -> tuple[Key, tuple[SteadyW
         tows = plant.towed(list(zip(drawn, sizes, strict=True)))
     except NoSteadyState as reason:
         return key(f'cannot be towed: {reason}'), None
-    return key(), windows_of(tows, chance)
+    windows, looks = windows_of(tows, chance)
+    return replace(key(), floor=_floor(windows, looks)), windows
+
+
+def _floor(windows: Sequence[SteadyWindow], looks: Sequence[Look]) -> dict[str, float]:
+    """Errors that the plant itself would have on the windows that are kept back, by channel."""
+    showing = {window.index for window in split(windows, frozenset(range(BASELINE))).showing}
+    errors: dict[str, list[float]] = {}
+    for window, look in zip(windows, looks, strict=True):
+        if window.index not in showing:
+            continue
+        inputs = np.array([window.means[name] for name in INPUTS])
+        predicted = look.values + look.by_inputs @ (inputs - np.array(look.inputs))
+        for name in MEASURED:
+            if name in window.means:
+                error = window.means[name] - float(predicted[OBSERVABLES.index(name)])
+                errors.setdefault(name, []).append(error)
+    return {name: float(np.sqrt(np.mean(np.square(own)))) for name, own in errors.items()}
 
 
 def windows_of(
     tows: Sequence[Sequence[Look]], chance: np.random.Generator
-) -> tuple[SteadyWindow, ...]:
-    """Windows as instruments give them, of states that are not quite as planned."""
+) -> tuple[tuple[SteadyWindow, ...], tuple[Look, ...]]:
+    """Windows as instruments give them, of states that are not quite as planned, and the states."""
     jittered = [[_jittered(look, chance) for look in tow] for tow in tows]
     windows = steady_windows(jittered, wrong_by(WRONG_BY, chance), chance)
-    return tuple(_as_seen(window, number, chance) for number, window in enumerate(windows))
+    seen = tuple(_as_seen(window, number, chance) for number, window in enumerate(windows))
+    return seen, tuple(look for tow in jittered for look in tow)
 
 
 def _jittered(look: Look, chance: np.random.Generator) -> Look:

@@ -163,8 +163,11 @@ def repair_rows(trials: Sequence[Scored]) -> list[Row]:
         for trial in chosen(trials, 'inside')
         if trial.key['spec']['strength'] >= 3.0 and named_right(trial)
     ]
-    removed = [100.0 * v for t in named if (v := _of(t)['excess_removed']) is not None]
-    placebo = [100.0 * v for t in named if (v := _of(t)['excess_removed_by_placebo']) is not None]
+    removed, placebo = (
+        [100.0 * part for trial in named if (part := _removed(trial, by)) is not None]
+        for by in ('after', 'placebo')
+    )
+    claimed = [100.0 * v for t in named if (v := _of(t)['excess_removed']) is not None]
     ratios = [ratio for trial in named if (ratio := _coefficient_ratio(trial)) is not None]
     inside = [_covered(trial) for trial in named]
     return [
@@ -172,6 +175,7 @@ def repair_rows(trials: Sequence[Scored]) -> list[Row]:
                 least=80.0),
         _median('held-out excess error removed by the best wrong effect', placebo, '%',
                 most=20.0),
+        _median('the same as diagnosis.json has it, beyond what sensors state', claimed, '%'),
         _median('error of the coefficients with the effect named over that without', ratios, '',
                 most=1.0 / 3.0),
         _rate('amplitude intervals that cover the hidden size',
@@ -237,6 +241,18 @@ def named_right(trial: Scored) -> bool:
 def _of(trial: Scored) -> dict[str, Any]:
     assert trial.diagnosis is not None
     return trial.diagnosis
+
+
+def _removed(trial: Scored, by: str) -> float | None:
+    """Part of the mean square error beyond that of the plant itself which a repair removes."""
+    before, after = 0.0, 0.0
+    for name, channel in _of(trial)['channels'].items():
+        if channel[by] is None or name not in trial.key['floor']:
+            return None
+        floor = trial.key['floor'][name]
+        before += (channel['before'] ** 2 - floor**2) / channel['expected'] ** 2
+        after += (channel[by] ** 2 - floor**2) / channel['expected'] ** 2
+    return 1.0 - after / before if before > 0.0 else None
 
 
 def _coefficient_ratio(trial: Scored) -> float | None:

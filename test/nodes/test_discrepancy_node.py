@@ -1,0 +1,90 @@
+"""`discrepancy_node` raises a finding while tows go on, and writes the report at the end."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
+
+from trawl_ros.instruments.samples import WinchSample  # noqa: E402
+from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
+from trawl_ros.messages.stamps import SECOND  # noqa: E402
+from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
+from trawl_ros.nodes.discrepancy_node import FINDINGS, DiscrepancyNode  # noqa: E402
+from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.solver.equilibrium import steady_state  # noqa: E402
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+DOMAIN = 97
+LEGS = ((300.0, 2.4), (450.0, 2.1), (600.0, 2.4), (600.0, 2.1))
+TOWS, LEG_S, APART_S = 3, 60, 3000
+TOO_MUCH = 1.12
+"""What cells of the second and third tow show."""
+
+
+class Listener(TrawlNode):
+    """Hears findings."""
+
+    SPECS = ()
+
+    def __init__(self, **kwargs):
+        super().__init__('listener', **kwargs)
+        self.found = []
+        self.listen(FINDINGS, self._take, CONSUMER)
+
+    def _take(self, message: DiagnosticArray) -> None:
+        self.found.append(read_statuses(message))
+
+
+def tight(sample):
+    if isinstance(sample, WinchSample):
+        port, starboard = sample.tensions
+        return replace(sample, tensions=(TOO_MUCH * port, TOO_MUCH * starboard))
+    return sample
+
+
+@pytest.fixture(scope='module')
+def bag(steady_tow, model, tmp_path_factory):
+    states = [
+        (length, speed, steady_state(model, length, speed).observables) for length, speed in LEGS
+    ]
+    tow = replace(steady_tow, states=tuple(states))
+    samples = []
+    for number in range(TOWS):
+        own = tow.samples(start=1000 * SECOND + number * APART_S * SECOND, seed=number, leg_s=LEG_S)
+        samples += own if number == 0 else map(tight, own)
+    return tow.write(tmp_path_factory.mktemp('tows') / 'bag', samples)
+
+
+def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
+    open_graph, bag, coarse_gear, tmp_path
+):
+    with open_graph(DOMAIN) as graph:
+        node = graph.add(
+            DiscrepancyNode, gear=str(coarse_gear), output=str(tmp_path / 'report'),
+            baseline_tows=1, settle_s=10.0, settle_passages=0.0, window_s=20.0,
+        )  # fmt: skip
+        listener = graph.add(Listener)
+        assert node.statuses()[0].level == OK
+        player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['discrepancy_node'])
+        graph.until(lambda: player.exit_code is not None)
+        graph.remove(player)
+        graph.until(lambda: listener.found and node._watching.idle, timeout_s=120.0)
+        graph.settle()
+        node.finish_work()
+        graph.settle()
+        verdict, *findings = listener.found[-1]
+        assert verdict.values['verdict'] in ('NAMED', 'AMBIGUOUS')
+        assert verdict.level == WARN
+        (finding,) = findings
+        assert finding.name == 'discrepancy: tension_cell'
+        assert float(finding.values['scale low']) < float(finding.values['scale'])
+        assert node.statuses()[0].level == WARN
+    written = json.loads((tmp_path / 'report' / 'diagnosis.json').read_text())
+    assert written['verdict'] == verdict.values['verdict']
+    assert (tmp_path / 'report' / 'report.html').exists()

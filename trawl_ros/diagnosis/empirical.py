@@ -1,0 +1,92 @@
+"""Where no effect fits: the empirical term that does best, beside placebos of all terms.
+
+A placebo is a term whose sign is drawn anew for each window. It has the same size in every window
+and goes with nothing, so what the best of all placebos explains is what the best of so many terms
+explains by chance.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import candidates, signatures
+from trawl_ros.diagnosis.evidence import Evidence, evidence
+from trawl_ros.diagnosis.naming import refitted
+from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.rules import EMPIRICAL_OVER_PLACEBO, LEAST_BIC
+from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, weigh
+from trawl_ros.empirical.dictionary import dictionary
+from trawl_ros.empirical.term import Term
+from trawl_ros.solver.predict import Predictor
+
+PLACEBOS = 20
+REFITTED = 2
+"""So many terms are tried, until one leads to a gear with steady states."""
+
+
+@dataclass(frozen=True)
+class Empirical:
+    """A term that explains what no effect does.
+
+    Attributes
+    ----------
+    weighed
+        Its refit, and what it explains.
+    placebo
+        The largest χ² that any term of `PLACEBOS` placebo dictionaries explains.
+    left_over
+        What it leaves over.
+    """
+
+    weighed: Weighed
+    placebo: float
+    left_over: LeftOver
+
+    @property
+    def term(self) -> Term:
+        """The term."""
+        return dictionary()[self.weighed.refit.names[0]]
+
+
+def empirical(predictor: Predictor, base: Refit, seen: Screen) -> Empirical | None:
+    """Find the best term; None where placebos do nearly as well.
+
+    Parameters
+    ----------
+    predictor
+        The gear as it is believed.
+    base
+        Boards alone.
+    seen
+        What was detected.
+    """
+    depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
+    wanted = candidates(dictionary(), predictor, depths)
+    columns = signatures(predictor, base.fit.windows, wanted)
+    units = np.concatenate([candidate.scale for candidate in wanted])
+
+    def gathered(some: list[np.ndarray]) -> Evidence:
+        return evidence(seen.fit, some, units, weights=seen.weights)
+
+    terms = replace(seen, wanted=wanted, columns=tuple(columns), evidence=gathered(columns))
+    placebo = 0.0
+    chance = np.random.default_rng(0)
+    for _ in range(PLACEBOS):
+        signs = chance.choice((-1.0, 1.0), size=len(columns))
+        fake = gathered([sign * own for sign, own in zip(signs, columns, strict=True)])
+        placebo = max(placebo, *(fake.chi2([place]) for place in range(len(wanted))))
+    ranked = sorted(wanted, key=terms.penalised, reverse=True)
+    best = terms.evidence.chi2(terms.block(ranked[0]))
+    if best < EMPIRICAL_OVER_PLACEBO * placebo:
+        return None
+    for candidate in ranked[:REFITTED]:
+        found = refitted(predictor, base, terms, (candidate,))
+        if found is not None:
+            break
+    if found is None:
+        return None
+    (first,) = weigh(base, terms, [found])
+    if first.delta_bic < LEAST_BIC:
+        return None
+    return Empirical(first, placebo, left_over(base, terms, first.refit))
