@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import Named, name, refitted
 from trawl_ros.diagnosis.next_tow import propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards
-from trawl_ros.diagnosis.rules import FEWEST_STATES, NOWHERE_NEAR, Verdict
+from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, Verdict
 from trawl_ros.diagnosis.screen import Screen, screen
 from trawl_ros.diagnosis.showing import Errors, Split, errors, split
 from trawl_ros.diagnosis.weighing import Weighed
@@ -24,6 +24,9 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 
 Told = Callable[[str], None]
+
+PLACEBO_STEPS = 3
+"""A wrong effect has no place to come to rest at, and what it is worth is seen before."""
 
 
 @dataclass(frozen=True)
@@ -157,19 +160,19 @@ def diagnose(
             shown=_shown(predictor, base, None, None, parts),
         )
     named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
-    noise = float(np.median(base.fit.scales))
-    if named.verdict == 'UNKNOWN' and noise > NOWHERE_NEAR:
-        return replace(
-            known,
-            reason=f'readings are {noise:.0f} times further from the model than their errors '
-            'explain, and no effect brings them near: it is another gear',
-        )
     best = named.weighed[0].refit if named.weighed else None
     found = None
     if named.verdict == 'UNKNOWN':
         told('looking for an empirical term')
         found = empirical(predictor, base, seen)
         best = best if found is None else found.weighed.refit
+        noise, left = (float(np.median(one.fit.scales)) for one in (base, best or base))
+        if noise > NOWHERE_NEAR and left > NEAR:
+            return replace(
+                known,
+                reason=f'readings are {noise:.0f} times further from the model than their errors '
+                'explain, and no effect brings them near: it is another gear',
+            )
     told('predicting what was kept back')
     other = None if best is None else _placebo(predictor, base, seen, named)
     shown = _shown(predictor, base, best, other, parts)
@@ -217,7 +220,8 @@ def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> R
     rest = [one for one in seen.wanted if one.name not in taken]
     if not rest or named.verdict == 'UNKNOWN':
         return None
-    return refitted(predictor, base, seen, (max(rest, key=seen.penalised),))
+    options = replace(base.fit.options, iterations_final=PLACEBO_STEPS)
+    return refitted(predictor, base, seen, (max(rest, key=seen.penalised),), options)
 
 
 def _shown(

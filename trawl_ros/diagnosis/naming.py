@@ -8,7 +8,9 @@ import numpy as np
 from trawl_ros.diagnosis.candidates import Candidate, extended
 from trawl_ros.diagnosis.refit import Refit, refit
 from trawl_ros.diagnosis.rules import (
+    BOUND_SHARE,
     LEAST_BIC,
+    NEARLY_ALIKE,
     RIVAL,
     SCREEN,
     SCREEN_SHARE,
@@ -19,6 +21,7 @@ from trawl_ros.diagnosis.rules import (
 )
 from trawl_ros.diagnosis.screen import Screen
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
+from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.solver.predict import Predictor
 
 PAIR = 2
@@ -93,19 +96,14 @@ def name(
             (),
             LeftOver(0.0, 1.0),
         )
-    weighed = weigh(base, seen, refits)
+    weighed = _possible_first(weigh(base, seen, refits))
     best = weighed[0]
     left = left_over(base, seen, best.refit)
-    if left.too_much:
+    if left.too_much or _nearest(seen, weighed):
         weighed, left = _with_second(predictor, base, seen, refits, weighed, tried)
         best = weighed[0]
     alike = twins(seen, best.refit)
-    rivals = tuple(
-        other.refit.names[0]
-        for other in weighed[1:]
-        if best.delta_bic - other.delta_bic < RIVAL
-        and other.refit.names[0] not in (*best.refit.names, *alike)
-    )
+    rivals = _rivals(seen, weighed)
     grounds = Grounds(
         delta_bic=best.delta_bic,
         gain_low=best.gain[1],
@@ -114,17 +112,60 @@ def name(
         left_over=left.probability,
         left_share=left.share,
         rivals=rivals,
+        noise=max(best.refit.fit.scales),
     )
     verdict, reason = judge(grounds)
     return Named(verdict, reason, weighed, alike, rivals, left)
 
 
+def _possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
+    """Effects in order, but behind one that does nearly as well what would rest on a bound."""
+    best = weighed[0]
+    if not best.refit.at_bound():
+        return weighed
+    for other in weighed[1:]:
+        near = best.delta_bic - other.delta_bic < BOUND_SHARE * best.delta_bic
+        if near and not other.refit.at_bound():
+            return (other, *(one for one in weighed if one is not other))
+    return weighed
+
+
+def _rivals(seen: Screen, weighed: Sequence[Weighed]) -> tuple[str, ...]:
+    """Effects that are not excluded and not of the class of the best."""
+    best = weighed[0]
+    taken = {*best.refit.names, *twins(seen, best.refit)}
+    return tuple(
+        other.refit.names[0]
+        for other in weighed[1:]
+        if best.delta_bic - other.delta_bic < RIVAL
+        and other.refit.names[0] not in taken
+        and not other.refit.at_bound()
+    )
+
+
+def _nearest(seen: Screen, weighed: Sequence[Weighed]) -> str | None:
+    """What does nearly as well as the best, or nearly the same: then both may be there."""
+    rivals = _rivals(seen, weighed)
+    alike = [
+        name
+        for other in weighed[1:]
+        for name in other.refit.names
+        if name in twins(seen, weighed[0].refit, NEARLY_ALIKE)
+    ]
+    return next(iter((*rivals, *alike)), None)
+
+
 def refitted(
-    predictor: Predictor, base: Refit, seen: Screen, wanted: Sequence[Candidate]
+    predictor: Predictor,
+    base: Refit,
+    seen: Screen,
+    wanted: Sequence[Candidate],
+    options: EstimatorOptions | None = None,
 ) -> Refit | None:
     """Refit boards and effects together, from where they are seen to first order.
 
-    None where a state that was towed has no steady state then: that explains nothing.
+    With other ``options`` than those of the boards alone, where there are any. None where a state
+    that was towed has no steady state then: that explains nothing.
     """
     rows = [place for candidate in wanted for place in seen.block(candidate)]
     columns = [own[:, rows] for own in seen.columns]
@@ -135,7 +176,7 @@ def refitted(
     best: Refit | None = None
     # First order may lead astray: then from where there is nothing but the boards.
     for start in (values, starts):
-        found = refit(predictor, base.fit, wanted, start, parts, base.fit.options)
+        found = refit(predictor, base.fit, wanted, start, parts, options or base.fit.options)
         if found is None or len(found.fit.windows) < len(base.fit.windows):
             continue
         if best is None or found.fit.surprise < best.fit.surprise:
@@ -153,24 +194,28 @@ def _with_second(
     weighed: tuple[Weighed, ...],
     tried: Callable[[str], None],
 ) -> tuple[tuple[Weighed, ...], LeftOver]:
-    """Weigh the best effect together with the one that explains most of what it leaves over, and
-    that one alone; and what is left over then.
+    """Weigh the best effect together with its rival, or with the one that explains most of what it
+    leaves over, and that one alone; and what is left over then.
     """
     (first,) = weighed[0].refit.wanted
     rest = seen.evidence.without(seen.block(first))
     others = [one for one in seen.wanted if one.name != first.name]
-    second = max(others, key=lambda one: seen.penalised(one, rest))
+    near = _nearest(seen, weighed)
+    second = max(
+        [one for one in others if one.name == near] or others,
+        key=lambda one: seen.penalised(one, rest),
+    )
     more = []
     if second.name not in [one.names[0] for one in refits]:
         tried(second.name)
         more.append(refitted(predictor, base, seen, (second,)))
     tried(f'{first.name} and {second.name}')
     more.append(refitted(predictor, base, seen, (first, second)))
-    found = weigh(base, seen, [*refits, *(one for one in more if one is not None)])
+    found = _possible_first(weigh(base, seen, [*refits, *(one for one in more if one is not None)]))
     pair = next((one for one in found if len(one.refit.wanted) == PAIR), None)
     alone = [one for one in found if one is not pair]
     left = left_over(base, seen, alone[0].refit)
-    if left.too_much and pair is not None:
+    if pair is not None:
         with_both = left_over(base, seen, pair.refit)
         if not with_both.too_much and pair.delta_bic > LEAST_BIC + alone[0].delta_bic:
             return (pair, *alone), with_both

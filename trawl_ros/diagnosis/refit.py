@@ -18,7 +18,7 @@ from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 OPTIONS = EstimatorOptions(
-    second_start=False, iterations_final=8, halvings=2, relinearise_final=0.1, tolerance=0.05
+    second_start=False, iterations_final=14, halvings=3, relinearise_final=0.1, tolerance=0.05
 )
 """A fit that lacks an effect explains its readings badly, from wherever it is started."""
 

@@ -52,6 +52,7 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
         else {
             'probability': _number(named.left_over.probability),
             'share': _number(named.left_over.share),
+            'noise': None if best is None else max(best.refit.fit.scales),
         },
         'next_tow': list(found.advice),
         'tows': [

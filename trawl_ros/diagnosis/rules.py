@@ -32,9 +32,19 @@ LEFT_SHARE = 0.1
 """Part of the χ² that an effect explains: what it leaves over is taken for another form of the same
 where it is less, for at sea no effect has the very form that a catalogue gives it."""
 
+FIT_AT_ALL = 1e-8
+"""Probability below which even a small part of what is explained is too much to be left over."""
+
 ALIKE = 0.98
 """Cosine from where two effects are one class for the trial at hand: with less than 0.98 the right
 one of two is named in 97 % of trials at six times the detectable size."""
+
+NEARLY_ALIKE = 0.9
+"""Cosine from where two effects may be there at once and pass for one of them."""
+
+BOUND_SHARE = 0.05
+"""An effect whose values would rest on a bound stands behind one that is worse by less than this
+part of what it explains, and whose values are possible."""
 
 FEWEST_STATES = 3
 """Steady states without which nothing can be tested."""
@@ -45,9 +55,9 @@ FEWEST_TOWS = 8
 FEWEST_UNITS = 3
 """With fewer tows it is steady states that are left out."""
 
-NOWHERE_NEAR = 10.0
+NOWHERE_NEAR, NEAR = 10.0, 3.0
 """Noise found over noise stated, boards alone, from where it is another gear if no effect has a
-name."""
+name, and neither effect nor empirical term brings it below the second."""
 
 EMPIRICAL_OVER_PLACEBO = 1.5
 """An empirical term explains so many times the χ² of the best placebo, or is none."""
@@ -78,6 +88,8 @@ class Grounds:
         Probability of what is left over, and its part of what is explained.
     rivals
         Effects that are not excluded and not of its class.
+    noise
+        Largest noise found over noise stated, with the effect.
     """
 
     delta_bic: float
@@ -87,11 +99,12 @@ class Grounds:
     left_over: float
     left_share: float
     rivals: tuple[str, ...]
+    noise: float = 1.0
 
 
 def leaves_too_much(left_over: float, left_share: float) -> bool:
     """Whether there must be more than the effect."""
-    return left_over < FIT and left_share > LEFT_SHARE
+    return left_over < FIT_AT_ALL or (left_over < FIT and left_share > LEFT_SHARE)
 
 
 def judge(grounds: Grounds) -> tuple[Verdict, str]:
@@ -100,6 +113,10 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
         return 'UNKNOWN', (
             'what the best effect leaves over does not look like errors '
             f'(probability {grounds.left_over:.1g})'
+        )
+    if grounds.noise > NOISE_TO_EXPLAIN:
+        return 'UNKNOWN', (
+            f'with the best effect noise would have to be {grounds.noise:.1f} times what is stated'
         )
     if grounds.rivals:
         return 'AMBIGUOUS', f'{", ".join(grounds.rivals)} would explain it nearly as well'

@@ -146,8 +146,8 @@ def _penalised(seen: Screen, wanted: Sequence[Candidate]) -> float:
     return seen.evidence.chi2(block) - freedom * float(np.log(seen.readings))
 
 
-def twins(seen: Screen, one: Refit) -> tuple[str, ...]:
-    """Effects that could do nearly the same as the one that was refitted."""
+def twins(seen: Screen, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
+    """Effects that could do what the one that was refitted does, with at least this cosine."""
     if len(one.wanted) != 1:
         return ()
     (candidate,) = one.wanted
@@ -155,7 +155,7 @@ def twins(seen: Screen, one: Refit) -> tuple[str, ...]:
         dict.fromkeys(
             other.name
             for other in seen.wanted
-            if other.name != candidate.name and _cosine(seen, one, other) > ALIKE
+            if other.name != candidate.name and _cosine(seen, one, other) > alike
         )
     )
 

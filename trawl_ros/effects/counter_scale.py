@@ -17,7 +17,7 @@ class CounterScale(Effect):
 EFFECT = CounterScale(
     name='counter_scale',
     sentence='The winch counters show too much or too little warp, by a part of it.',
-    parameters=(Parameter('scale', '', 0.0, -0.15, 0.15, 0.03),),
+    parameters=(Parameter('scale', '', 0.0, -0.2, 0.2, 0.03),),
     excited_by='warp length',
     confused_with=('warp_strumming', 'counter_offset'),
     direct='Pay out warp past marks of known distance and read the counters.',

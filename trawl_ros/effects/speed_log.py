@@ -19,8 +19,8 @@ EFFECT = SpeedLog(
     name='speed_log',
     sentence='The log shows too much or too little speed through the water.',
     parameters=(
-        Parameter('scale', '', 0.0, -0.25, 0.25, 0.05),
-        Parameter('bias', 'm/s', 0.0, -0.4, 0.4, 0.1),
+        Parameter('scale', '', 0.0, -0.4, 0.4, 0.05),
+        Parameter('bias', 'm/s', 0.0, -0.8, 0.8, 0.1),
     ),
     excited_by='speed',
     confused_with=('net_drag', 'heave'),

@@ -20,7 +20,7 @@ EFFECT = SpreadSensor(
     name='spread_sensor',
     sentence='The spread between the doors is shown too large or too small.',
     parameters=(
-        Parameter('scale', '', 0.0, -0.15, 0.15, 0.03),
+        Parameter('scale', '', 0.0, -0.2, 0.2, 0.03),
         Parameter('offset', 'm', 0.0, -15.0, 15.0, 3.0),
     ),
     excited_by='spread: warp length and speed',

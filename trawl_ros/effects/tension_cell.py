@@ -21,7 +21,7 @@ EFFECT = TensionCell(
     sentence='The tension cells show too much or too little.',
     parameters=(
         Parameter('offset', 'N', 0.0, -20e3, 20e3, 3e3),
-        Parameter('scale', '', 0.0, -0.2, 0.2, 0.04),
+        Parameter('scale', '', 0.0, -0.3, 0.3, 0.04),
     ),
     excited_by='tension; a slack winch shows the offset',
     confused_with=('net_drag',),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.diagnosis.showing import split
+from trawl_ros.effects.effect import Situation
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.identification.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.identification.from_gear import board_prior
@@ -18,7 +19,7 @@ from trawl_ros.studies.discrepancy.inside import INSIDE
 from trawl_ros.studies.discrepancy.outside import OUTSIDE
 from trawl_ros.studies.discrepancy.plant import Plant, draw_plant
 from trawl_ros.studies.discrepancy.strength import Likelihood, likelihood
-from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN, PlannedTow
 from trawl_ros.studies.identification.plant import Cut, Look
 from trawl_ros.studies.identification.readings import AS_STATED, steady_windows, wrong_by
 
@@ -133,12 +134,18 @@ def _floor(windows: Sequence[SteadyWindow], looks: Sequence[Look]) -> dict[str, 
 
 
 def windows_of(
-    tows: Sequence[Sequence[Look]], chance: np.random.Generator
+    tows: Sequence[Sequence[Look]],
+    chance: np.random.Generator,
+    plan: Sequence[PlannedTow] = PLAN,
 ) -> tuple[tuple[SteadyWindow, ...], tuple[Look, ...]]:
     """Windows as instruments give them, of states that are not quite as planned, and the states."""
     jittered = [[_jittered(look, chance) for look in tow] for tow in tows]
     windows = steady_windows(jittered, wrong_by(WRONG_BY, chance), chance)
-    seen = tuple(_as_seen(window, number, chance) for number, window in enumerate(windows))
+    states = [(tow, place) for tow in plan for place in range(len(tow.states))]
+    seen = tuple(
+        _as_seen(window, number, tow.moment(place), chance)
+        for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True))
+    )
     return seen, tuple(look for tow in jittered for look in tow)
 
 
@@ -150,9 +157,9 @@ def _jittered(look: Look, chance: np.random.Generator) -> Look:
     return replace(look, state=state, values=values)
 
 
-def _as_seen(window: SteadyWindow, number: int, chance: np.random.Generator) -> SteadyWindow:
-    tow, place = divmod(number, len(PLAN[0].states))
-    at = PLAN[tow].moment(place)
+def _as_seen(
+    window: SteadyWindow, number: int, at: Situation, chance: np.random.Generator
+) -> SteadyWindow:
     # Windows without a channel that is required are none.
     lost = {
         name for name in window.means if not CHANNELS[name].required and chance.uniform() < DROPOUTS

@@ -235,7 +235,8 @@ def right(trial: Scored, of: Callable[[dict[str, Any]], set[str]]) -> bool:
 
 def named_right(trial: Scored) -> bool:
     """Whether there is one name, and the right one."""
-    return verdict(trial) == 'NAMED' and right(trial, names_of)
+    alone = len(_of(trial)['effects']) == 1
+    return verdict(trial) == 'NAMED' and alone and right(trial, names_of)
 
 
 def _of(trial: Scored) -> dict[str, Any]:

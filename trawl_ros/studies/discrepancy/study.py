@@ -65,9 +65,9 @@ class Plan:
     gear: str = 'kaifuha'
     seed: int = SEED
     clean: int = 100
-    inside: int = 2
+    inside: int = 1
     outside: int = 1
-    pairs: int = 2
+    pairs: int = 1
     around: int = FINER.around
 
     @property
