@@ -26,6 +26,8 @@ def test_an_effect_with_all_grounds_is_named():
     [
         ({'left_over': 1e-5}, 'UNKNOWN', 'does not look like errors'),
         ({'left_over': 1e-5, 'left_share': 0.05, 'rivals': ('heave',)}, 'AMBIGUOUS', 'heave'),
+        ({'left_over': 1e-10, 'left_share': 0.01}, 'UNKNOWN', 'does not look like errors'),
+        ({'noise': 1.8}, 'UNKNOWN', '1.8 times what is stated'),
         ({'rivals': ('heave',)}, 'AMBIGUOUS', 'heave would explain it nearly as well'),
         ({'delta_bic': 9.0}, 'UNKNOWN', 'lowers BIC by 9.0 only'),
         ({'at_bound': True}, 'UNKNOWN', 'stronger than is possible'),

@@ -73,7 +73,8 @@ def empirical(predictor: Predictor, base: Refit, seen: Screen) -> Empirical | No
     placebo = 0.0
     chance = np.random.default_rng(0)
     for _ in range(PLACEBOS):
-        signs = chance.choice((-1.0, 1.0), size=len(columns))
+        # As many of each: the same sign in all windows would be the term itself.
+        signs = chance.permutation(np.resize((1.0, -1.0), len(columns)))
         fake = gathered([sign * own for sign, own in zip(signs, columns, strict=True)])
         placebo = max(placebo, *(fake.chi2([place]) for place in range(len(wanted))))
     ranked = sorted(wanted, key=terms.penalised, reverse=True)
