@@ -12,6 +12,7 @@ from rich.console import Console
 
 from trawl_ros.bags.reader import summarise
 from trawl_ros.cli.demo_folder import DemoFolder
+from trawl_ros.cli.demo_hidden import hidden_effect
 from trawl_ros.cli.demo_report import load_result, print_result
 from trawl_ros.cli.files import FOLDER, SCENARIO
 from trawl_ros.cli.processes import Processes
@@ -67,7 +68,8 @@ def command(out: Path, scenario: Path) -> None:
     """Tow a sea trial through the ROS graph, record it, replay it, and refit the boards.
 
     Every node is a process of its own; they talk by DDS on this machine only. The folder
-    takes the bag, identification.json, figures, and summary.json.
+    takes the bag, identification.json, figures, and summary.json. At the end something is hidden
+    in a trial, found, and repaired: the folder's part 'hidden' has the reports.
     """
     path = packaged(scenario, 'scenarios').resolve()
     loaded = load_scenario(path)
@@ -111,6 +113,7 @@ def command(out: Path, scenario: Path) -> None:
     )
     print_result(result, truth)
     _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
+    hidden_effect(folder.hidden, console)
 
 
 def _monitor(environment: Mapping[str, str]) -> 'Monitor':

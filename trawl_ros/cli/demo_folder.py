@@ -30,6 +30,7 @@ class DemoFolder:
 
     FIGURES = ('history.png', 'gear.png')
     RESULTS = 'identification'
+    HIDDEN = 'hidden'
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -57,6 +58,11 @@ class DemoFolder:
         """Where `identification_node` puts its report."""
         return self.path / self.RESULTS
 
+    @property
+    def hidden(self) -> Path:
+        """Where the diagnosis of a hidden effect goes."""
+        return self.path / self.HIDDEN
+
     def gather_results(self) -> list[str]:
         """Move the report up, beside the rest; give the names of its files."""
         names = sorted(file.name for file in self.results.iterdir())
@@ -82,7 +88,7 @@ class DemoFolder:
             )
 
     def _clear(self) -> None:
-        for folder in (self.bag, self.logs, self.results):
+        for folder in (self.bag, self.logs, self.results, self.hidden):
             if folder.is_dir():
                 shutil.rmtree(folder)
         results = (self.path / name for name in ('identification.json', 'report.html'))
