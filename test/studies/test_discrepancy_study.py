@@ -161,7 +161,7 @@ def test_alarms_and_foreign_effects_are_counted():
 
 def test_a_repair_is_measured_against_the_truth():
     rows = repair_rows([scored('NAMED', ['catch_build_up'])])
-    assert [row.value for row in rows] == pytest.approx([94.5, 7.375, 90.0, 0.1, 100.0])
+    assert [row.value for row in rows] == pytest.approx([94.5, 7.375, 0.1, 100.0])
 
 
 def test_shuffled_keys_score_as_chance_would():

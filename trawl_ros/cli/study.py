@@ -175,11 +175,11 @@ def identification(
 @click.option('--clean', default=DiscrepancyPlan.clean, show_default=True,
               type=click.IntRange(0, 10_000), help='Trials with nothing hidden.')  # fmt: skip
 @click.option('--inside', default=DiscrepancyPlan.inside, show_default=True,
-              type=click.IntRange(0, 1000), help='Trials of each effect of the catalogue, '
-              'strength and side.')  # fmt: skip
+              type=click.IntRange(0, 1000), help='Trials of each effect of the catalogue '
+              'and strength.')  # fmt: skip
 @click.option('--outside', default=DiscrepancyPlan.outside, show_default=True,
-              type=click.IntRange(0, 1000), help='Trials of each other effect, strength and '
-              'side.')  # fmt: skip
+              type=click.IntRange(0, 1000),
+              help='Trials of each other effect and strength.')  # fmt: skip
 @click.option('--pairs', default=DiscrepancyPlan.pairs, show_default=True,
               type=click.IntRange(0, 1000), help='Trials of each pair of effects.')  # fmt: skip
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,

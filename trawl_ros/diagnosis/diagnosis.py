@@ -7,7 +7,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.locating import Where, telling
-from trawl_ros.diagnosis.naming import Named, name, refitted
+from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards
 from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, Verdict
@@ -220,7 +220,7 @@ def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> R
     rest = [one for one in seen.wanted if one.name not in taken]
     if not rest or named.verdict == 'UNKNOWN':
         return None
-    options = replace(base.fit.options, iterations_final=PLACEBO_STEPS)
+    options = replace(REFITTING, iterations_final=PLACEBO_STEPS)
     return refitted(predictor, base, seen, (max(rest, key=seen.penalised),), options)
 
 
@@ -249,9 +249,11 @@ def _shown(
 
 
 def _removed(before: Errors, after: Errors | None) -> float | None:
-    if after is None or before.excess <= 0.0:
+    # In the same units: a gear with an effect may feel errors of warp lengths more.
+    was = before.excess(before.expected)
+    if after is None or was <= 0.0:
         return None
-    return 1.0 - after.excess / before.excess
+    return 1.0 - after.excess(before.expected) / was
 
 
 def values_of(one: Refit) -> Mapping[str, Mapping[str, tuple[float, float, float, str]]]:

@@ -51,10 +51,13 @@ class Evidence:
         """How many of these values, or combinations of them, the data see."""
         return int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
 
-    def strength(self, block: Sequence[int]) -> float:
-        """-log₁₀ of the probability of as large a χ² where these values are not there."""
+    def strength(self, block: Sequence[int], doubt: float = 1.0) -> float:
+        """-log₁₀ of the probability of as large a χ² where these values are not there.
+
+        With all errors ``doubt`` times as large as they are taken to be.
+        """
         freedom = self.freedom(block)
-        return tail(self.chi2(block), freedom) if freedom else 0.0
+        return tail(self.chi2(block) / doubt**2, freedom) if freedom else 0.0
 
     def values(self, block: Sequence[int]) -> np.ndarray:
         """Most likely values, from where they were linearised, in units of the columns."""
@@ -163,7 +166,9 @@ def threshold(
     return float(np.quantile(largest, 1.0 - false_alarms))
 
 
-def detectable(found: Evidence, block: Sequence[int], limit: float) -> np.ndarray:
+def detectable(
+    found: Evidence, block: Sequence[int], limit: float, doubt: float = 1.0
+) -> np.ndarray:
     """Sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
-    sigmas = float(norm.isf(0.5 * 10.0**-limit)) + POWER
+    sigmas = doubt * float(norm.isf(0.5 * 10.0**-limit)) + POWER
     return sigmas * found.std(block)

@@ -164,7 +164,7 @@ def gap_figure(shown: Shown) -> Figure:
     width = 0.8 / len(bars)
     for number, (label, errors, colour) in enumerate(bars):
         assert errors is not None
-        heights = [errors.rms.get(name, np.nan) / errors.expected.get(name, np.nan)
+        heights = [errors.rms.get(name, np.nan) / shown.before.expected[name]
                    for name in channels]  # fmt: skip
         shift = (number - 0.5 * (len(bars) - 1)) * width
         axes.bar(places + shift, heights, width, color=colour, label=label)

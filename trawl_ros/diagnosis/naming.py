@@ -1,12 +1,12 @@
 """Second look: the best effects refitted, weighed against each other, and judged."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, extended
-from trawl_ros.diagnosis.refit import Refit, refit
+from trawl_ros.diagnosis.refit import OPTIONS, Refit, refit
 from trawl_ros.diagnosis.rules import (
     BOUND_SHARE,
     LEAST_BIC,
@@ -23,6 +23,9 @@ from trawl_ros.diagnosis.screen import Screen
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.solver.predict import Predictor
+
+REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)
+"""Options of a refit, which starts near to where it comes to rest."""
 
 PAIR = 2
 """Effects at once, at most."""
@@ -164,7 +167,7 @@ def refitted(
 ) -> Refit | None:
     """Refit boards and effects together, from where they are seen to first order.
 
-    With other ``options`` than those of the boards alone, where there are any. None where a state
+    With ``options``, or those of a refit. None where a state
     that was towed has no steady state then: that explains nothing.
     """
     rows = [place for candidate in wanted for place in seen.block(candidate)]
@@ -176,7 +179,7 @@ def refitted(
     best: Refit | None = None
     # First order may lead astray: then from where there is nothing but the boards.
     for start in (values, starts):
-        found = refit(predictor, base.fit, wanted, start, parts, options or base.fit.options)
+        found = refit(predictor, base.fit, wanted, start, parts, options or REFITTING)
         if found is None or len(found.fit.windows) < len(base.fit.windows):
             continue
         if best is None or found.fit.surprise < best.fit.surprise:

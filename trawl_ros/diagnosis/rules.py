@@ -13,6 +13,10 @@ Verdict = Literal['NO_DISCREPANCY', 'NAMED', 'AMBIGUOUS', 'UNKNOWN', 'NOT_TESTAB
 FALSE_ALARMS = 0.01
 """Part of trials without any effect in which a discrepancy is seen nevertheless."""
 
+DOUBT = 1.3
+"""Errors of calibration and of the model may be so many times what they are taken to be, before
+something is seen: neither is found from the data, as noise is."""
+
 NOISE_TO_EXPLAIN = 1.7
 """Noise found over noise stated from where it is asked whether it is noise."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
 from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
 from trawl_ros.diagnosis.patterns import Pattern, patterns
-from trawl_ros.diagnosis.rules import FALSE_ALARMS, NOISE_TO_EXPLAIN
+from trawl_ros.diagnosis.rules import DOUBT, FALSE_ALARMS, NOISE_TO_EXPLAIN
 from trawl_ros.effects.effect import Effect
 from trawl_ros.identification.aim import aim
 from trawl_ros.identification.error_terms import TowErrors
@@ -81,12 +81,12 @@ class Screen:
 
     def strength(self, candidate: Candidate) -> float:
         """Of the evidence for one."""
-        return self.evidence.strength(self.block(candidate))
+        return self.evidence.strength(self.block(candidate), DOUBT)
 
     @property
     def strongest(self) -> float:
         """Of all evidence."""
-        of_channels = [self.evidence.strength(block) for block in self.channels.values()]
+        of_channels = [self.evidence.strength(block, DOUBT) for block in self.channels.values()]
         return max([self.strength(candidate) for candidate in self.wanted] + of_channels)
 
     @property
@@ -96,7 +96,7 @@ class Screen:
 
     def detectable(self, candidate: Candidate) -> np.ndarray:
         """Departures (m,) from where it was looked for that these data show, each value alone."""
-        return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit)
+        return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit, DOUBT)
 
     def penalised(self, candidate: Candidate, found: Evidence | None = None) -> float:
         """By how much it lowers the information criterion of Bayes, to first order."""

@@ -65,12 +65,11 @@ class Errors:
     expected: Mapping[str, float]
     windows: int
 
-    @property
-    def excess(self) -> float:
-        """Mean square of all channels in what is expected, beyond what is expected."""
+    def excess(self, expected: Mapping[str, float]) -> float:
+        """Mean square of all channels in what is expected of them, beyond that."""
         if not self.rms:
             return 0.0
-        ratios = [(self.rms[name] / self.expected[name]) ** 2 for name in self.rms]
+        ratios = [(self.rms[name] / expected[name]) ** 2 for name in self.rms]
         return max(0.0, float(np.mean(ratios)) - 1.0)
 
 

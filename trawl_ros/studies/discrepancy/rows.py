@@ -167,7 +167,6 @@ def repair_rows(trials: Sequence[Scored]) -> list[Row]:
         [100.0 * part for trial in named if (part := _removed(trial, by)) is not None]
         for by in ('after', 'placebo')
     )
-    claimed = [100.0 * v for t in named if (v := _of(t)['excess_removed']) is not None]
     ratios = [ratio for trial in named if (ratio := _coefficient_ratio(trial)) is not None]
     inside = [_covered(trial) for trial in named]
     return [
@@ -175,7 +174,6 @@ def repair_rows(trials: Sequence[Scored]) -> list[Row]:
                 least=80.0),
         _median('held-out excess error removed by the best wrong effect', placebo, '%',
                 most=20.0),
-        _median('the same as diagnosis.json has it, beyond what sensors state', claimed, '%'),
         _median('error of the coefficients with the effect named over that without', ratios, '',
                 most=1.0 / 3.0),
         _rate('amplitude intervals that cover the hidden size',

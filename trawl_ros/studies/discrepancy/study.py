@@ -19,8 +19,8 @@ from trawl_ros.studies.discrepancy.outside import OUTSIDE
 from trawl_ros.studies.discrepancy.windows_file import write_windows
 from trawl_ros.studies.identification.plant import Cut
 
-SEED = 31
-"""Of the study as it is reported; rules and tests were chosen by looking at trials of seed 1."""
+SEED = 32
+"""Of the study as it is reported; rules were chosen by looking at trials of 1 and 31."""
 
 FINER = Cut(around=12, lines=2, unjoined=True)
 """Plant and model."""
@@ -53,9 +53,9 @@ class Plan:
     clean
         Trials without any effect.
     inside
-        Trials of each effect of the catalogue, strength and side.
+        Trials of each effect of the catalogue and strength, to both sides in turn.
     outside
-        Trials of each effect that is not in it, strength and side.
+        Trials of each effect that is not in it and strength, likewise.
     pairs
         Trials of each of `PAIRS`.
     around
@@ -64,7 +64,7 @@ class Plan:
 
     gear: str = 'kaifuha'
     seed: int = SEED
-    clean: int = 100
+    clean: int = 60
     inside: int = 1
     outside: int = 1
     pairs: int = 1
@@ -93,9 +93,11 @@ class Plan:
             ('outside', OUTSIDE, OUTSIDE_STRENGTHS, self.outside),
         ):
             for name, strength in product(group, strengths):
-                for sign in group[name](np.random.default_rng(0)).signs:
-                    for _ in range(many):
-                        yield spec(kind, (name,), strength, (sign,))
+                signs = group[name](np.random.default_rng(0)).signs
+                first = int(chance.integers(len(signs)))
+                for turn in range(many):
+                    # To both sides in turn, whichever comes first.
+                    yield spec(kind, (name,), strength, (signs[(first + turn) % len(signs)],))
         for names in PAIRS:
             for _ in range(self.pairs):
                 signs = tuple(
