@@ -58,8 +58,8 @@ def test_the_gap_shrinks_on_a_tow_that_decided_nothing(caught):
     assert caught.split.by == 'tow'
     deciding = {window.tow for window in caught.split.deciding}
     assert not deciding & {window.tow for window in caught.split.showing}
-    # One tow of five windows, whose calibration is off as one tow's may be: a study asks for more.
-    assert caught.shown.removed > 0.3
+    # One tow of five windows, whose depths are off as one tow's may be: a study asks for more.
+    assert caught.shown.removed > 0.2
     assert caught.shown.removed_by_placebo < caught.shown.removed
     before, after = caught.shown.before, caught.shown.after
     assert after.rms['door_spread'] < before.rms['door_spread']

@@ -8,12 +8,14 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from trawl_ros.cli.files import FOLDER
+from trawl_ros.cli.files import FILE, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
+from trawl_ros.studies.counters import REPORT as COUNTERS_REPORT
+from trawl_ros.studies.counters import read_table, run_counters
 from trawl_ros.studies.discrepancy.report import REPORT as DISCREPANCY_REPORT
 from trawl_ros.studies.discrepancy.report import write_discrepancy
 from trawl_ros.studies.discrepancy.study import Plan as DiscrepancyPlan
@@ -164,6 +166,27 @@ def identification(
     write_identification(out, plan, found.sections, found.figure)
     rows = [row for _, section in found.sections for row in section]
     _say(rows, out / IDENTIFICATION_REPORT, console)
+
+
+@command.command('counters')
+@click.option('--table', required=True, type=FILE, help='CSV of true wire and what both counters '
+              'showed, in fathoms: wire_out_fm, winch_stbd_fm, winch_port_fm.')  # fmt: skip
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+def counters(table: Path, out: Path, force: bool) -> None:
+    """Diagnose a simulated trial whose winch counters err as measured ones did.
+
+    With tows of a baseline and without. Writes counters.json, .md, .html and .png.
+    """
+    known = read_table(table)
+    empty_folder(out, force=force).mkdir(parents=True, exist_ok=True)
+    console = error_console()
+    try:
+        rows = run_counters(known, out, lambda title, number: _counted(title, number, console))
+    except KeyboardInterrupt:
+        console.print('stopped; no report is written')
+        raise SystemExit(INTERRUPTED) from None
+    _say(rows, out / COUNTERS_REPORT, console)
 
 
 @command.command('discrepancy')

@@ -1,0 +1,169 @@
+"""Counters that err as measured ones did: a trial with them, and what the diagnosis makes of it."""
+
+import csv
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, values_of
+from trawl_ros.diagnosis.figures import gap_figure
+from trawl_ros.diagnosis.words import headline
+from trawl_ros.effects.effect import Situation
+from trawl_ros.errors import TrawlError
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.studies.discrepancy.hidden import Hidden
+from trawl_ros.studies.discrepancy.making import windows_of
+from trawl_ros.studies.discrepancy.plant import draw_plant
+from trawl_ros.studies.discrepancy.study import FINER
+from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.page import Page, write_page
+from trawl_ros.studies.row import Row
+
+REPORT = 'counters.md'
+FATHOM = 1.8288
+COLUMNS = ('wire_out_fm', 'winch_stbd_fm', 'winch_port_fm')
+MOST_ROWS = 10_000
+ROUNDS = 2
+"""So many times the tows of the plan are towed."""
+
+SEED = 41
+GEAR = 'kaifuha'
+ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
+"""What about 3 % and about 13 m are."""
+
+Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
+
+
+@dataclass(frozen=True)
+class Table:
+    """True wire (n,) and what the counters of both winches showed (n,), m."""
+
+    wire: np.ndarray
+    port: np.ndarray
+    starboard: np.ndarray
+
+    def lines(self) -> tuple[float, float]:
+        """Scale and offset (m) of straight lines through both sides, on average."""
+        fits = [np.polyfit(self.wire, side, 1) for side in (self.port, self.starboard)]
+        scale, offset = np.mean(fits, axis=0)
+        return float(scale - 1.0), float(offset)
+
+    def hidden(self) -> Hidden:
+        """Counters that show what these did."""
+
+        def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+            port = np.interp(inputs[0], self.port, self.wire)
+            starboard = np.interp(inputs[1], self.starboard, self.wire)
+            return np.array([port, starboard, inputs[2]])
+
+        return Hidden('counters', '', 1.0, (0.0, 1.0), towed=towed)
+
+
+def read_table(path: Path) -> Table:
+    """Read true wire and counters in fathoms.
+
+    Raises
+    ------
+    TrawlError
+        If the file is no such table.
+    """
+    try:
+        with path.open(newline='', encoding='utf-8') as file:
+            rows = [
+                [float(row[name]) for name in COLUMNS]
+                for row in islice(csv.DictReader(file), MOST_ROWS)
+            ]
+    except (OSError, ValueError, KeyError, TypeError) as reason:
+        listed = ', '.join(COLUMNS)
+        raise TrawlError(f'{path}: cannot be read, expected columns {listed} ({reason})') from None
+    columns = FATHOM * np.array(rows).reshape(-1, len(COLUMNS)).T
+    if len(rows) < 3 or not np.all(np.diff(columns) > 0.0):
+        raise TrawlError(f'{path}: expected at least 3 rows of finite numbers that rise')
+    wire, starboard, port = columns
+    return Table(wire, port, starboard)
+
+
+def run_counters(table: Table, folder: Path, steps: Steps) -> list[Row]:
+    """Make the trial, diagnose it with and without a baseline, and write the page.
+
+    Parameters
+    ----------
+    table
+        The measured counters.
+    folder
+        Takes ``counters.json``, ``.md``, ``.html`` and ``.png``.
+    steps
+        Shows progress.
+    """
+    with steps('counters', 3) as done:
+        plant = draw_plant(GEAR, FINER, SEED, 0)
+        looks = plant.towed([(table.hidden(), 1.0)])
+        examined = [*looks[BASELINE:]] * ROUNDS
+        plan = [*PLAN[BASELINE:]] * ROUNDS
+        tows = [*[*looks[:BASELINE]] * ROUNDS, *examined]
+        windows, _ = windows_of(
+            tows, np.random.default_rng(SEED), [*[*PLAN[:BASELINE]] * ROUNDS, *plan]
+        )
+        done()
+        before = ROUNDS * BASELINE
+        with_baseline = _diagnosed(windows, len(tows), before)
+        done()
+        alone = tuple(window for window in windows if window.tow >= before)
+        without = _diagnosed(alone, len(tows), 0)
+        done()
+    rows = _rows(table, with_baseline, without)
+    shown = with_baseline.shown
+    figure = Figure() if shown is None or shown.after is None else gap_figure(shown)
+    page = Page(
+        name='counters',
+        title='Winch counters that err as measured ones did',
+        command='trawl study counters --table FILE',
+        method=(
+            'True wire beside what the counters of both winches showed drives a simulated trial: '
+            f'where the table has a counter, the gear is towed with the wire beside it. {before} '
+            f'tows of a baseline with sound counters and {len(examined)} with these, '
+            f'{len(PLAN[0].states)} steady states each; plant, noise and biases as in the blind '
+            f'tests, seed {SEED}. With the baseline: {with_baseline.verdict}. '
+            f'{headline(with_baseline)} Without it: {without.verdict}. {headline(without)}'
+        ),
+        alternative='Errors on tows that decided nothing, before and after',
+        caption='Errors on tows that decided nothing, with boards alone, with the counters '
+        'repaired, and with the best other effect.',
+    )
+    write_page(folder, page, [('Counters', rows)], figure)
+    return rows
+
+
+def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> Diagnosis:
+    names = [f'tow {number + 1}' for number in range(tows)]
+    return diagnose(FINER.model(GEAR), windows, names, frozenset(range(baseline)))
+
+
+def _rows(table: Table, found: Diagnosis, without: Diagnosis) -> list[Row]:
+    scale, offset = table.lines()
+    values = {} if found.repair is None else values_of(found.repair.refit)
+    nothing = (np.nan, np.nan, np.nan, '')
+    part = values.get('counter_scale', {}).get('scale', nothing)
+    metres = values.get('counter_offset', {}).get('offset', nothing)
+    shown = found.shown
+    removed = np.nan if shown is None or shown.removed is None else 100.0 * shown.removed
+    other = None if shown is None else shown.removed_by_placebo
+    named = [] if without.best is None else list(without.best.refit.names)
+    others = [] if without.named is None else [*without.named.rivals, *without.named.alike]
+    return [
+        Row('counter_scale with a baseline', 100.0 * part[0], 100.0 * part[1], 100.0 * part[2],
+            '%', ABOUT_SCALE[1], f'a line through the table has {100.0 * scale:.2f} %',
+            ABOUT_SCALE[0]),
+        Row('counter_offset with a baseline', metres[0], metres[1], metres[2], 'm',
+            ABOUT_OFFSET[1], f'a line through the table has {offset:.1f} m', ABOUT_OFFSET[0]),
+        Row('held-out excess error removed', removed, unit='%', least=50.0,
+            note='' if other is None or shown is None else
+            f'the best other effect, {shown.instead}, removes {100.0 * other:.0f} %'),
+        Row('effects not told apart without a baseline', float(len({*named, *others})),
+            note=f'{without.verdict}: {", ".join(dict.fromkeys((*named, *others))) or "none"}'),
+    ]  # fmt: skip
