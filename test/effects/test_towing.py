@@ -10,6 +10,7 @@ from trawl_ros.effects.showing import Showing
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.identification.from_gear import board_prior, predictor_for
 from trawl_ros.instruments.samples import (
+    AttitudeSample,
     PressureSample,
     RangeSample,
     VelocitySample,
@@ -83,6 +84,16 @@ def test_a_drift_goes_on_from_the_first_sample(affected):
     later = replace(first, stamp=first.stamp + 1800 * 10**9)
     assert water.depth(showing(first).pressure) == pytest.approx(104.0)
     assert water.depth(showing(later).pressure) == pytest.approx(105.0)
+
+
+def test_an_empirical_term_of_attitude_is_shown(gear):
+    record = EffectRecord(name='empirical_port_pitch_offset', values={'size': 0.05})
+    tilted = gear.model_copy(update={'effects': (record,)})
+    showing = Showing(acting(tilted), build_water(tilted))
+    port = showing(AttitudeSample(0, 'port', 0.1, 0.2, 0.01))
+    assert (port.pitch, port.roll) == pytest.approx((0.15, 0.2))
+    starboard = AttitudeSample(0, 'starboard', 0.1, 0.2, 0.01)
+    assert showing(starboard) == starboard
 
 
 def test_without_effects_samples_pass_unchanged(gear):

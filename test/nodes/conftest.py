@@ -20,6 +20,9 @@ description: A short tow with a change of everything
 gear: gear.yaml
 seed: 5
 heading_deg: 30.0
+effects:
+  - {name: tension_cell, values: {scale: 0.1}}
+  - {name: warp_strumming, values: {factor: 1.3}}
 sea:
   heave: {height_m: 1.0, period_s: 8.0, growth_minutes: 0.25}
   seabed: {profile: [{distance_m: 0.0, depth_m: 250.0}, {distance_m: 1000.0, depth_m: 260.0}]}

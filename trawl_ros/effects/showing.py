@@ -11,6 +11,7 @@ import numpy as np
 from trawl_ros.effects.acting import Acting
 from trawl_ros.effects.effect import Readings, Situation
 from trawl_ros.instruments.samples import (
+    AttitudeSample,
     PressureSample,
     RangeSample,
     Sample,
@@ -82,6 +83,11 @@ class Showing:
                 name = RANGES[sample.what]
                 distance = self._sensors({name: sample.distance}, at)[name]
                 return replace(sample, distance=distance)
+            case AttitudeSample():
+                names = (f'{sample.side}_pitch', f'{sample.side}_roll')
+                true = dict(zip(names, (sample.pitch, sample.roll), strict=True))
+                pitch, roll = (self._sensors(true, at)[name] for name in names)
+                return replace(sample, pitch=pitch, roll=roll)
             case _:
                 return sample
 
