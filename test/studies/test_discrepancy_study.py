@@ -183,7 +183,7 @@ def test_another_plan_in_the_same_folder_is_refused(tmp_path):
 @pytest.mark.slow
 def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
     out = tmp_path / 'report'
-    few = ['study', 'discrepancy', '--out', str(out), '--seed', '1', '--clean', '2', '--inside',
+    few = ['study', 'discrepancy', '--out', str(out), '--seed', '1', '--clean', '1', '--inside',
            '0', '--outside', '0', '--pairs', '0']  # fmt: skip
     first = CliRunner().invoke(trawl, few)
     assert first.exit_code == 0, first.output
@@ -193,7 +193,7 @@ def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
         text = (out / name).read_text()
         assert all(record['what'] in text for record in records)
     seen = {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()}
-    assert len(seen) == 2
+    assert len(seen) == 1
     again = CliRunner().invoke(trawl, few)
     assert again.exit_code == 0, again.output
     assert {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()} == seen

@@ -167,8 +167,8 @@ def refitted(
 ) -> Refit | None:
     """Refit boards and effects together, from where they are seen to first order.
 
-    With ``options``, or those of a refit. None where a state
-    that was towed has no steady state then: that explains nothing.
+    With ``options``, or those of a refit. None where a state that was towed has no steady state
+    then: that explains nothing.
     """
     rows = [place for candidate in wanted for place in seen.block(candidate)]
     columns = [own[:, rows] for own in seen.columns]
