@@ -28,10 +28,10 @@ REPORT = 'counters.md'
 FATHOM = 1.8288
 COLUMNS = ('wire_out_fm', 'winch_stbd_fm', 'winch_port_fm')
 MOST_ROWS = 10_000
-ROUNDS = 2
+ROUNDS = 3
 """So many times the tows of the plan are towed."""
 
-SEED = 41
+SEED = 42
 GEAR = 'kaifuha'
 ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
 """What about 3 % and about 13 m are."""
