@@ -12,6 +12,7 @@ from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.errors import TrawlError
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.studies.discrepancy.figure import kind_of
 from trawl_ros.studies.discrepancy.inside import INSIDE
 from trawl_ros.studies.discrepancy.making import Spec, make
 from trawl_ros.studies.discrepancy.outside import OUTSIDE
@@ -21,6 +22,7 @@ from trawl_ros.studies.discrepancy.rows import (
     clean_rows,
     inside_rows,
     outside_rows,
+    pair_rows,
     repair_rows,
     shuffled_rows,
 )
@@ -157,6 +159,20 @@ def test_alarms_and_foreign_effects_are_counted():
     ]
     assert value(outside_rows(outside), 'UNKNOWN at 6 times').value == 50.0
     assert value(outside_rows(outside), 'wrong name').value == 50.0
+
+
+def test_of_two_effects_both_count_and_one_is_told_apart():
+    hidden = ('net_drag', 'heave')
+    pairs = [
+        scored('NAMED', ['heave', 'net_drag'], hidden=hidden, series='pair'),
+        scored('NAMED', ['heave'], hidden=hidden, series='pair'),
+        scored('NAMED', ['speed_log'], hidden=hidden, series='pair'),
+        scored('AMBIGUOUS', ['heave'], hidden=hidden, series='pair', ambiguous=['net_drag']),
+    ]
+    assert [row.value for row in pair_rows(pairs)] == [25.0, 25.0]
+    assert [kind_of(trial) for trial in pairs] == [
+        'right name', 'one of two', 'wrong name', 'several names, the right one among them',
+    ]  # fmt: skip
 
 
 def test_a_repair_is_measured_against_the_truth():

@@ -8,10 +8,12 @@ from matplotlib.figure import Figure
 
 from trawl_ros.plots import style
 from trawl_ros.studies.discrepancy.rows import (
+    both_named,
     chosen,
     effects_of,
     named_right,
     names_of,
+    one_named,
     reported,
     right,
     verdict,
@@ -23,6 +25,8 @@ KINDS = {
     'several names, the right one among them': '#8fcfaa',
     'no discrepancy seen': '#dfe3e6',
     'UNKNOWN': '#8a9399',
+    'NOT_TESTABLE': '#b9c2d0',
+    'one of two': '#c9e4a5',
     'several names, all wrong': '#f3b98b',
     'wrong name': '#c8412b',
 }
@@ -41,10 +45,12 @@ BARS = (
 def kind_of(trial: Scored) -> str:
     """One of `KINDS`."""
     said = verdict(trial)
-    if said == 'UNKNOWN':
-        return 'UNKNOWN'
+    if said in ('UNKNOWN', 'NOT_TESTABLE'):
+        return said
     if said == 'NAMED':
-        return 'right name' if effects_of(trial) and named_right(trial) else 'wrong name'
+        if both_named(trial) or (effects_of(trial) and named_right(trial)):
+            return 'right name'
+        return 'one of two' if one_named(trial) else 'wrong name'
     if said == 'AMBIGUOUS':
         among = bool(effects_of(trial)) and right(trial, reported)
         return 'several names, ' + ('the right one among them' if among else 'all wrong')

@@ -143,17 +143,10 @@ def outside_rows(trials: Sequence[Scored]) -> list[Row]:
 def pair_rows(trials: Sequence[Scored]) -> list[Row]:
     """Two effects at once."""
     pairs = chosen(trials, 'pair')
-
-    def both(trial: Scored) -> bool:
-        return verdict(trial) == 'NAMED' and set(effects_of(trial)) <= names_of(_of(trial))
-
     return [
-        _rate('both of two effects at 3 times', [both(trial) for trial in pairs], least=50.0),
-        _rate('one of two effects named alone', [
-            verdict(trial) == 'NAMED' and not both(trial) and right(trial, names_of)
-            for trial in pairs
-        ]),
-    ]  # fmt: skip
+        _rate('both of two effects at 3 times', [both_named(trial) for trial in pairs], least=50.0),
+        _rate('one of two effects named alone', [one_named(trial) for trial in pairs]),
+    ]
 
 
 def repair_rows(trials: Sequence[Scored]) -> list[Row]:
@@ -235,6 +228,19 @@ def named_right(trial: Scored) -> bool:
     """Whether there is one name, and the right one."""
     alone = len(_of(trial)['effects']) == 1
     return verdict(trial) == 'NAMED' and alone and right(trial, names_of)
+
+
+def both_named(trial: Scored) -> bool:
+    """Whether two effects are hidden and both are named."""
+    pair = trial.key['spec']['series'] == 'pair'
+    return pair and verdict(trial) == 'NAMED' and right(trial, names_of)
+
+
+def one_named(trial: Scored) -> bool:
+    """Whether two effects are hidden and one of them is named, without any that is not there."""
+    names = names_of(_of(trial))
+    pair = trial.key['spec']['series'] == 'pair' and not both_named(trial)
+    return pair and verdict(trial) == 'NAMED' and bool(names) and names <= set(effects_of(trial))
 
 
 def _of(trial: Scored) -> dict[str, Any]:
