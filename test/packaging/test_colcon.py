@@ -19,6 +19,7 @@ EXECUTABLES = {
     'autotrawl_node',
     'autopilot_node',
     'identification_node',
+    'discrepancy_node',
     'bag_recorder',
     'bag_player',
     'trawl',

@@ -22,6 +22,9 @@ OPTIONS = EstimatorOptions(
 )
 """A fit that lacks an effect explains its readings badly, from wherever it is started."""
 
+POOR = 3.0
+"""A misfit from where the boards are fitted anew, another way."""
+
 
 @dataclass(frozen=True)
 class Refit:
@@ -77,11 +80,24 @@ def fit_boards(
     options: EstimatorOptions = OPTIONS,
 ) -> Refit | None:
     """Fit the boards alone; None where no window has a steady state."""
-    estimator = Estimator(predictor, prior, OBSERVABLES, options)
     # All at once: what the first windows alone would say is not asked, and may lead astray.
-    estimator.take(windows)
-    estimate = estimator.finish()
-    return None if estimate is None else Refit((), estimator, estimate)
+    together = Estimator(predictor, prior, OBSERVABLES, options)
+    together.take(windows)
+    estimate = together.finish()
+    found = None if estimate is None else Refit((), together, estimate)
+    if found is not None and found.fit.misfit < POOR:
+        return found
+    # Far from where they start boards may get stuck, which window by window they need not.
+    by_turns = Estimator(predictor, prior, OBSERVABLES, options)
+    for window in windows:
+        by_turns.add(window)
+    estimate = by_turns.finish()
+    again = None if estimate is None else Refit((), by_turns, estimate)
+    if found is None or again is None:
+        return found or again
+    if len(again.fit.windows) != len(found.fit.windows):
+        return max(found, again, key=lambda one: len(one.fit.windows))
+    return min(found, again, key=lambda one: one.fit.surprise)
 
 
 def refit(
