@@ -13,7 +13,7 @@ from trawl_ros.instruments.samples import WinchSample  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
 from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
-from trawl_ros.nodes.discrepancy_node import FINDINGS, DiscrepancyNode  # noqa: E402
+from trawl_ros.nodes.discrepancy_node import FINDINGS, FINISH, DiscrepancyNode  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 from trawl_ros.solver.equilibrium import steady_state  # noqa: E402
@@ -76,8 +76,9 @@ def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
         graph.remove(player)
         graph.until(lambda: listener.found and node._watching.idle, timeout_s=120.0)
         graph.settle()
-        node.finish_work()
-        graph.settle()
+        answer = graph.call(listener, FINISH)
+        assert answer.success
+        assert 'tension cell' in answer.message
         verdict, *findings = listener.found[-1]
         assert verdict.values['verdict'] in ('NAMED', 'AMBIGUOUS')
         assert verdict.level == WARN
@@ -85,6 +86,7 @@ def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
         assert finding.name == 'discrepancy: tension_cell'
         assert float(finding.values['scale low']) < float(finding.values['scale'])
         assert node.statuses()[0].level == WARN
+        node.finish_work()
     written = json.loads((tmp_path / 'report' / 'diagnosis.json').read_text())
     assert written['verdict'] == verdict.values['verdict']
     assert (tmp_path / 'report' / 'report.html').exists()

@@ -1,9 +1,11 @@
 """`discrepancy_node`: says while a tow goes on where model and measurement disagree, and why."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, unread
@@ -13,7 +15,7 @@ from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.from_gear import finder_for
-from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow, WindowOptions
+from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.nodes.finding_status import CALM, finding_statuses
@@ -23,7 +25,8 @@ from trawl_ros.nodes.qos import CONSUMER
 from trawl_ros.nodes.rewinding import Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
-from trawl_ros.nodes.watching import WatchingThread
+from trawl_ros.nodes.watching import Tried, WatchingThread
+from trawl_ros.nodes.window_parameters import WINDOW_SPECS, window_options
 
 FINDINGS = 'discrepancy/findings'
 FINISH = 'discrepancy/finish'
@@ -45,13 +48,10 @@ class DiscrepancyNode(TrawlNode):
         Text('output', '', 'Folder for the report, new or empty; none if empty.'),
         Number('baseline_tows', 0, 'tows', 0, 100, 'So many of the first tows are of a gear in '
                'order.', whole=True),
-        Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Least time the gear is '
-               'given after each change of warp length, speed or heading.'),
-        Number('settle_passages', WindowOptions.settle_passages, 'times', 0.0, 10.0, 'How often '
-               'the ship passes the length of her gear before it counts as settled.'),
-        Number('window_s', WindowOptions.window_s, 's', 20.0, 3600.0, 'Length of a steady window.'),
+        *WINDOW_SPECS,
     )  # fmt: skip
     DRAINS: ClassVar = True
+    AWAITS: ClassVar = True
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('discrepancy_node', **kwargs)
@@ -59,15 +59,9 @@ class DiscrepancyNode(TrawlNode):
         output = parameters['output']
         self._folder = empty_folder(Path(output), force=False) if output else None
         self._gear = load_gear(parameters['gear'])
-        options = WindowOptions(
-            settle_s=parameters['settle_s'],
-            settle_passages=parameters['settle_passages'],
-            window_s=parameters['window_s'],
-        )
-        self._finder = finder_for(self._gear, options)
+        self._finder = finder_for(self._gear, window_options(parameters))
         self._windows: list[SteadyWindow] = []
-        self._found: Diagnosis | None = None
-        self._trouble = ''
+        self._tried = Tried()
         self._stamp = 0
         self._rewinding = Rewinding()
         self.advertise(FINDINGS)
@@ -75,15 +69,17 @@ class DiscrepancyNode(TrawlNode):
         self._progress = Progress(self, idle=lambda: self._watching.idle)
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
-        self.create_service(Trigger, FINISH, self._finish)
+        # Alone in its group: samples still come in while the service waits for a diagnosis.
+        alone = MutuallyExclusiveCallbackGroup()
+        self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
         self._watching.start()
 
     def statuses(self) -> list[Status]:
         """What was found, or why nothing is known yet."""
-        found = self._found
+        found, trouble = self._tried.found, self._tried.trouble
         values = {'windows': str(len(self._windows))}
-        if self._trouble:
-            return [Status('discrepancy', ERROR, self._trouble, values)]
+        if trouble:
+            return [Status('discrepancy', ERROR, trouble, values)]
         if found is None:
             return [Status('discrepancy', OK, 'waiting for a steady window', values)]
         level = OK if found.verdict in CALM else WARN
@@ -93,21 +89,25 @@ class DiscrepancyNode(TrawlNode):
         """Decide the windows that are left, diagnose, and write the report."""
         self._take(self._finder.finish())
         self._watching.stop()
-        self.get_logger().info(self._write())
+        self._tell(self._write())
 
     def _feeder(self, topic: str) -> Callable[[Any], None]:
         def feed(message: Any) -> None:
             anew, samples = self._rewinding.take(to_sample(topic, message))
             if anew:
-                self._finder.reset()
-                self._windows, self._stamp = [], 0
-                self.get_logger().warning('stamps of the winch went back; all begins anew')
+                self._forget()
             for sample in samples:
                 self._stamp = max(self._stamp, sample.stamp)
                 self._take(self._finder.feed(sample))
                 self._progress.done(self._stamp)
 
         return feed
+
+    def _forget(self) -> None:
+        self._finder.reset()
+        self._watching.forget()
+        self._windows, self._stamp, self._tried = [], 0, Tried()
+        self.get_logger().warning('stamps of the winch went back; all begins anew')
 
     def _take(self, decided: Sequence[SteadyWindow | RejectedWindow]) -> None:
         steady = [window for window in decided if isinstance(window, SteadyWindow)]
@@ -120,28 +120,36 @@ class DiscrepancyNode(TrawlNode):
         baseline = frozenset(range(self.parameters['baseline_tows']))
         return diagnose(self._gear, windows, tows, baseline)
 
-    def _told(self, found: Diagnosis | None, trouble: str) -> None:
-        self._trouble = trouble
-        if found is None:
-            return
-        self._found = found
-        self.send(FINDINGS, diagnostic_array(self._stamp, finding_statuses(found)))
+    def _told(self, tried: Tried) -> None:
+        self._tried = replace(tried, found=tried.found or self._tried.found)
+        if tried.found is not None:
+            statuses = finding_statuses(tried.found)
+            self.send(FINDINGS, diagnostic_array(self._stamp, statuses))
 
-    def _write(self) -> str:
-        found = self._found
+    def _write(self) -> tuple[str, bool]:
+        """Write the report; the sentence with which all ends, and whether all windows count."""
+        found, trouble = self._tried.found, self._tried.trouble
         if found is None:
-            found = unread(self._gear, (), 'no steady window has been heard')
-        if self._folder is None:
-            return f'{found.verdict}: {headline(found)}'
-        write_diagnosis(found, (), self._folder)
-        return f'{self._folder}: {found.verdict}: {headline(found)}'
+            found = unread(self._gear, (), trouble or 'no steady window has been heard')
+        said = f'{found.verdict}: {headline(found)}'
+        if self._folder is not None:
+            write_diagnosis(found, (), self._folder)
+            said = f'{self._folder}: {said}'
+        if trouble:
+            said = f'the newest windows could not be diagnosed ({trouble}); before them: {said}'
+        return said, not trouble
 
-    def _finish(self, request: Any, response: Any) -> Any:
+    def _tell(self, written: tuple[str, bool]) -> None:
+        said, complete = written
+        log = self.get_logger()
+        (log.info if complete else log.warning)(said)
+
+    async def _finish(self, request: Any, response: Any) -> Any:
         self._take(self._finder.finish())
-        response.success = self._watching.idle
-        response.message = (
-            self._write() if self._watching.idle else 'the newest windows are being diagnosed'
-        )
+        await self._watching
+        written = self._write()
+        response.message, response.success = written
+        self._tell(written)
         return response
 
 

@@ -24,7 +24,6 @@ from trawl_ros.identification.pipeline import Identification
 from trawl_ros.identification.planning_next import Advice, Adviser
 from trawl_ros.identification.report import report
 from trawl_ros.identification.saving import load_state, save_state
-from trawl_ros.identification.window_records import WindowOptions
 from trawl_ros.identification.writing import write_report
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
@@ -45,11 +44,12 @@ from trawl_ros.nodes.estimate_status import (
 from trawl_ros.nodes.identification_worker import IdentificationWorker
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.outcome import Outcome
-from trawl_ros.nodes.parameters import Flag, Number, Text
+from trawl_ros.nodes.parameters import Flag, Text
 from trawl_ros.nodes.qos import CONSUMER
 from trawl_ros.nodes.rewinding import Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
+from trawl_ros.nodes.window_parameters import WINDOW_SPECS, window_options
 from trawl_ros.scenario.scenario import true_coefficients
 
 STATUS = 'identification/status'
@@ -82,11 +82,7 @@ class IdentificationNode(TrawlNode):
              'a tenth of a core.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
-        Number('settle_s', WindowOptions.settle_s, 's', 0.0, 3600.0, 'Least time the gear is '
-               'given after each change of warp length, speed or heading.'),
-        Number('settle_passages', WindowOptions.settle_passages, 'times', 0.0, 10.0, 'How often '
-               'the ship passes the length of her gear before it counts as settled.'),
-        Number('window_s', WindowOptions.window_s, 's', 20.0, 3600.0, 'Length of a steady window.'),
+        *WINDOW_SPECS,
     )  # fmt: skip
     DRAINS: ClassVar = True
     AWAITS: ClassVar = True
@@ -132,20 +128,13 @@ class IdentificationNode(TrawlNode):
     def _advising(self) -> AdvisingThread:
         # A model of its own: the estimator's remembers what it was asked last.
         predictor = predictor_for(self._gear)
-        adviser = Adviser(self._gear, predictor, windows=self._window_options())
+        adviser = Adviser(self._gear, predictor, windows=window_options(self.parameters))
         return AdvisingThread(adviser, lambda: self._worker.idle, self._advised)
-
-    def _window_options(self) -> WindowOptions:
-        return WindowOptions(
-            settle_s=self.parameters['settle_s'],
-            settle_passages=self.parameters['settle_passages'],
-            window_s=self.parameters['window_s'],
-        )
 
     def _identification(self) -> Identification:
         fresh = identification_for(
             self._gear,
-            window_options=self._window_options(),
+            window_options=window_options(self.parameters),
             estimator_options=estimator_options(
                 prior=self.parameters['prior'], net=self.parameters['net']
             ),

@@ -1,38 +1,51 @@
 """The diagnosis of a tow that goes on, in a thread of its own."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
 from queue import SimpleQueue
-from threading import Event, Thread
+from threading import Event, Lock, Thread
 from traceback import format_exc
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.nodes.identification_worker import POLL_S
 
 Windows = tuple[SteadyWindow, ...]
 
 
+@dataclass(frozen=True)
+class Tried:
+    """What a look at the newest windows led to: a diagnosis, or what went wrong."""
+
+    found: Diagnosis | None = None
+    trouble: str = ''
+
+
 class WatchingThread(Thread):
     """Diagnoses all windows so far whenever there are new ones; of several the newest count.
+
+    Coroutines may await the thread: that lasts until the newest windows are diagnosed.
 
     Parameters
     ----------
     diagnose
         From windows to a diagnosis.
     told
-        Called in this thread with each diagnosis, or None, and with what went wrong, '' for
-        nothing.
+        Called in this thread after each look, but not after one at windows that are forgotten.
     """
 
     def __init__(
-        self,
-        diagnose: Callable[[Windows], Diagnosis],
-        told: Callable[[Diagnosis | None, str], None],
+        self, diagnose: Callable[[Windows], Diagnosis], told: Callable[[Tried], None]
     ) -> None:
         super().__init__(name='diagnosis', daemon=True)
         self._diagnose = diagnose
         self._told = told
-        self._queue: SimpleQueue[Windows | None] = SimpleQueue()
+        self._queue: SimpleQueue[None] = SimpleQueue()
+        self._handing_over = Lock()
+        self._newest: Windows | None = None
+        self._forgotten = 0
+        self._stopped = False
         self._at_rest = Event()
         self._at_rest.set()
 
@@ -43,35 +56,49 @@ class WatchingThread(Thread):
 
     def look_at(self, windows: Windows) -> None:
         """Hand over all windows so far."""
-        self._at_rest.clear()
-        self._queue.put(windows)
+        with self._handing_over:
+            self._newest = windows
+            self._at_rest.clear()
+        self._queue.put(None)
+
+    def forget(self) -> None:
+        """Say nothing more of the windows that were handed over before."""
+        with self._handing_over:
+            self._newest = None
+            self._forgotten += 1
 
     def stop(self) -> None:
         """End the thread after what it has to do, and wait for it."""
+        self._stopped = True
         self._queue.put(None)
         self.join()
 
+    def __await__(self) -> Generator[None, None, None]:
+        # Some executors ask again at once, which would take the processor from this thread.
+        while not self._at_rest.wait(POLL_S):
+            yield
+
     def run(self) -> None:
         """Diagnose until stopped."""
-        last = False
-        while not last:
-            newest: Windows | None = None
-            waiting = [self._queue.get()]
-            while not self._queue.empty():
-                waiting.append(self._queue.get())
-            for windows in waiting:
-                last = last or windows is None
-                newest = windows if windows is not None else newest
-            if newest is not None:
-                self._attempt(newest)
-            if self._queue.empty():
-                self._at_rest.set()
+        while not (self._stopped and self.idle):
+            self._queue.get()
+            with self._handing_over:
+                windows, self._newest = self._newest, None
+                told_until = self._forgotten
+            if windows is not None:
+                tried = self._attempt(windows)
+                with self._handing_over:
+                    if told_until == self._forgotten:
+                        self._told(tried)
+            with self._handing_over:
+                if self._newest is None:
+                    self._at_rest.set()
 
-    def _attempt(self, windows: Windows) -> None:
+    def _attempt(self, windows: Windows) -> Tried:
         try:
-            self._told(self._diagnose(windows), '')
+            return Tried(self._diagnose(windows))
         except TrawlError as reason:
-            self._told(None, str(reason))
+            return Tried(trouble=str(reason))
         except Exception:
             # Unsaid, it would end the thread: the node would look alive and diagnose nothing.
-            self._told(None, f'an error of the program; {format_exc()}')
+            return Tried(trouble=f'an error of the program; {format_exc()}')
