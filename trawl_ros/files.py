@@ -1,6 +1,8 @@
-"""Files and folders that a user names: as given, or as they come with the package."""
+"""Files and folders: as a user names them, or as they come with the package; written whole."""
 
+import json
 from pathlib import Path
+from typing import Any
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.share import share_path
@@ -33,3 +35,16 @@ def empty_folder(path: Path, *, force: bool) -> Path:
             'folder, or --force'
         )
     return path
+
+
+def write_json(path: Path, record: Any) -> None:
+    """Write a file whole or not at all, whenever one is interrupted.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, which JSON does not know.
+    """
+    beside = path.with_suffix('.part')
+    beside.write_text(json.dumps(record, allow_nan=False) + '\n', encoding='utf-8')
+    beside.replace(path)

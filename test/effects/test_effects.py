@@ -147,7 +147,7 @@ def test_the_net_is_estimated_along_beside_effects(model, coefficients, plain):
         for sign in (1.0, -1.0)
     )
     slope = (up.values - down.values) / (2.0 * size)
-    claimed = predictor.by_net(coefficients, found.state)[:, 0]
+    claimed = predictor.by_net(coefficients, np.array(INPUTS), found.state)[:, 0]
     np.testing.assert_allclose(claimed, slope, rtol=1e-3, atol=1e-3 * np.abs(slope).max())
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -72,6 +73,12 @@ def candidates(
     return tuple(found)
 
 
+def blocks_of_candidates(wanted: Sequence[Candidate]) -> tuple[range, ...]:
+    """Where the values of each stand, one behind the other."""
+    ends = np.cumsum([len(candidate.start) for candidate in wanted]).tolist()
+    return tuple(range(a, b) for a, b in pairwise([0, *ends]))
+
+
 def signatures(
     predictor: Predictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
 ) -> list[np.ndarray]:
@@ -111,36 +118,50 @@ def extended(
     options
         Of the estimate.
     """
+    board = slice(len(COEFFICIENTS))
     starts = np.concatenate([candidate.start for candidate in wanted])
     parts = tuple(
+        replace(part, at=part.at[board], by_coefficients=part.by_coefficients[:, board])
+        for part in fit.windows
+    )
+    return Fit(
+        behind(parts, starts, columns),
+        np.concatenate((fit.coefficients[board], starts)),
+        AS_STATED,
+        extended_prior(fit.prior, wanted),
+        options,
+    )
+
+
+def behind(
+    parts: Sequence[Linearised], values: np.ndarray, columns: Sequence[np.ndarray]
+) -> tuple[Linearised, ...]:
+    """Windows in which more values (m,) stand behind all others.
+
+    With what each of these changes: for each window (channels of the window, m).
+    """
+    return tuple(
         replace(
             part,
-            at=np.concatenate((part.at[: len(COEFFICIENTS)], starts)),
-            by_coefficients=np.hstack((part.by_coefficients[:, : len(COEFFICIENTS)], more)),
+            at=np.concatenate((part.at, values)),
+            by_coefficients=np.hstack((part.by_coefficients, own)),
         )
-        for part, more in zip(fit.windows, columns, strict=True)
+        for part, own in zip(parts, columns, strict=True)
     )
-    prior = extended_prior(fit.prior, wanted)
-    coefficients = np.concatenate((fit.coefficients[: len(COEFFICIENTS)], starts))
-    return Fit(parts, coefficients, AS_STATED, prior, options)
 
 
 def extended_prior(prior: BoardPrior, wanted: Sequence[Candidate]) -> BoardPrior:
     """What is known before any tow of the boards, and of effects that may or may not be there."""
-    board = slice(len(COEFFICIENTS))
-    starts = [candidate.start for candidate in wanted]
     lows, highs = zip(*(candidate.bounds for candidate in wanted), strict=True)
-    return BoardPrior(
-        start=np.concatenate((prior.start[board], *starts)),
-        std=np.concatenate((prior.std[board], *(WIDE * one.scale for one in wanted))),
-        low=np.concatenate((prior.low[board], *lows)),
-        high=np.concatenate((prior.high[board], *highs)),
-        names=(
-            *prior.names[board],
-            *(
-                f'{candidate.name} {parameter.name}'
-                for candidate in wanted
-                for parameter in candidate.effect.parameters
-            ),
+    effects = BoardPrior(
+        start=np.concatenate([candidate.start for candidate in wanted]),
+        std=np.concatenate([WIDE * candidate.scale for candidate in wanted]),
+        low=np.concatenate(lows),
+        high=np.concatenate(highs),
+        names=tuple(
+            f'{candidate.name} {parameter.name}'
+            for candidate in wanted
+            for parameter in candidate.effect.parameters
         ),
     )
+    return prior.first(len(COEFFICIENTS)).followed_by(effects)

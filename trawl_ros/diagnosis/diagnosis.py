@@ -96,11 +96,19 @@ class Diagnosis:
         return self.named.weighed[0] if self.named and self.named.weighed else None
 
     @property
+    def added(self) -> Weighed | None:
+        """Beside what the boards alone are set: an empirical term, or else the best effect."""
+        return self.best if self.empirical is None else self.empirical.weighed
+
+    @property
+    def added_as(self) -> str:
+        """What that is called."""
+        return 'the effect' if self.empirical is None else 'the empirical term'
+
+    @property
     def repair(self) -> Weighed | None:
         """What goes into the gear: the effect that is named, or an empirical term."""
-        if self.empirical is not None:
-            return self.empirical.weighed
-        return self.best if self.verdict == 'NAMED' else None
+        return self.added if self.empirical or self.verdict == 'NAMED' else None
 
 
 def diagnose(
@@ -161,11 +169,12 @@ def diagnose(
         )
     named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
     best = named.weighed[0].refit if named.weighed else None
-    found = None
+    other, found = None, None
     if named.verdict == 'UNKNOWN':
         told('looking for an empirical term')
         found = empirical(predictor, base, seen)
-        best = best if found is None else found.weighed.refit
+        if found is not None:
+            other, best = best, found.weighed.refit
         noise, left = (float(np.median(one.fit.scales)) for one in (base, best or base))
         if noise > NOWHERE_NEAR and left > NEAR:
             return replace(
@@ -174,7 +183,8 @@ def diagnose(
                 'explain, and no effect brings them near: it is another gear',
             )
     told('predicting what was kept back')
-    other = None if best is None else _placebo(predictor, base, seen, named)
+    if best is not None and other is None:
+        other = _placebo(predictor, base, seen, named)
     shown = _shown(predictor, base, best, other, parts)
     told('looking for the next tow')
     return replace(

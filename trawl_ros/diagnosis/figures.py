@@ -55,17 +55,18 @@ def drawings(found: Diagnosis) -> list[Drawing]:
             Drawing(
                 'gap.png', GAP,
                 'Errors of each channel on what was kept back, over what errors of instruments '
-                'alone would make (1): boards refitted alone, with the effect, and with the best '
-                'other effect.',
-                gap_figure(shown),
+                'alone would make (1): boards refitted alone, with '
+                f'{found.added_as}, and with the best other effect.',
+                gap_figure(shown, found.added_as),
             )
         )  # fmt: skip
-    if found.base is not None and found.best is not None:
+    if found.base is not None and found.added is not None:
         made.append(
             Drawing(
                 'coefficients.png', GAP,
-                'The coefficients of the boards with and without the effect, in standard '
-                'deviations of the prior: what moves had been bent to hide it.',
+                'The coefficients of the boards with and without '
+                f'{found.added_as}, in standard deviations of the prior: what moves had been '
+                'bent to hide it.',
                 coefficients_figure(found),
             )
         )  # fmt: skip
@@ -152,13 +153,13 @@ def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
     return float(min(1.0, np.linalg.svd(between, compute_uv=False)[0]))
 
 
-def gap_figure(shown: Shown) -> Figure:
+def gap_figure(shown: Shown, added: str) -> Figure:
     """Errors before, after, and with the placebo."""
     channels = list(shown.before.rms)
     figure = Figure(figsize=(9.0, 4.5), layout='constrained')
     axes = figure.subplots()
     places = np.arange(len(channels))
-    bars = [('boards alone', shown.before, SECOND), ('with the effect', shown.after, MEASURED)]
+    bars = [('boards alone', shown.before, SECOND), (f'with {added}', shown.after, MEASURED)]
     if shown.placebo is not None:
         bars.append((f'with {_words(shown.instead or "")} instead', shown.placebo, FAINT))
     width = 0.8 / len(bars)
@@ -178,16 +179,16 @@ def gap_figure(shown: Shown) -> Figure:
 
 def coefficients_figure(found: Diagnosis) -> Figure:
     """Boards with and without."""
-    base, best = found.base, found.best
+    base, added = found.base, found.added
     assert base is not None
-    assert best is not None
+    assert added is not None
     prior = base.fit.prior
     figure = Figure(figsize=(9.0, 4.0), layout='constrained')
     axes = figure.subplots()
     number = len(COEFFICIENTS)
     for shift, (label, one, colour) in zip(
         (-0.12, 0.12),
-        (('boards alone', base, SECOND), ('with the effect', best.refit, MEASURED)),
+        (('boards alone', base, SECOND), (f'with {found.added_as}', added.refit, MEASURED)),
         strict=True,
     ):
         values = (one.estimate.values[:number] - prior.start) / prior.std

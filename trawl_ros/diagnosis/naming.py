@@ -10,6 +10,7 @@ from trawl_ros.diagnosis.refit import OPTIONS, Refit, refit
 from trawl_ros.diagnosis.rules import (
     BOUND_SHARE,
     LEAST_BIC,
+    LEFT_SHARE,
     NEARLY_ALIKE,
     RIVAL,
     SCREEN,
@@ -102,13 +103,14 @@ def name(
     weighed = _possible_first(weigh(base, seen, refits))
     best = weighed[0]
     left = left_over(base, seen, best.refit)
-    if left.too_much or _nearest(seen, weighed):
-        weighed, left = _with_second(predictor, base, seen, refits, weighed, tried)
+    second = _second(seen, weighed, left)
+    if second is not None:
+        weighed, left = _with_second(predictor, base, seen, refits, weighed, second, tried)
         best = weighed[0]
     alike = twins(seen, best.refit)
     rivals = _rivals(seen, weighed)
     grounds = Grounds(
-        delta_bic=best.delta_bic,
+        delta_bic=best.doubted_bic,
         gain_low=best.gain[1],
         share=best.share,
         at_bound=best.refit.at_bound(),
@@ -158,6 +160,25 @@ def _nearest(seen: Screen, weighed: Sequence[Weighed]) -> str | None:
     return next(iter((*rivals, *alike)), None)
 
 
+def _second(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> Candidate | None:
+    """What may be there beside the best: its rival, or what explains most of what is left over."""
+    best = weighed[0]
+    (first,) = best.refit.wanted
+    rest = seen.evidence.without(seen.block(first))
+    others = [one for one in seen.wanted if one.name != first.name]
+    near = _nearest(seen, weighed)
+    chosen = [one for one in others if one.name == near]
+    found = max(chosen or others, key=lambda one: seen.penalised(one, rest), default=None)
+    if found is None or chosen or left.too_much:
+        return found
+    return found if seen.penalised(found, rest) > _to_be_there(best) else None
+
+
+def _to_be_there(best: Weighed) -> float:
+    """By how much a second effect must lower the criterion: less is the best's own other form."""
+    return max(LEAST_BIC, LEFT_SHARE * best.delta_chi2)
+
+
 def refitted(
     predictor: Predictor,
     base: Refit,
@@ -195,19 +216,11 @@ def _with_second(
     seen: Screen,
     refits: Sequence[Refit],
     weighed: tuple[Weighed, ...],
+    second: Candidate,
     tried: Callable[[str], None],
 ) -> tuple[tuple[Weighed, ...], LeftOver]:
-    """Weigh the best effect together with its rival, or with the one that explains most of what it
-    leaves over, and that one alone; and what is left over then.
-    """
+    """Weigh the best effect together with a second, and that one alone; and what is left over."""
     (first,) = weighed[0].refit.wanted
-    rest = seen.evidence.without(seen.block(first))
-    others = [one for one in seen.wanted if one.name != first.name]
-    near = _nearest(seen, weighed)
-    second = max(
-        [one for one in others if one.name == near] or others,
-        key=lambda one: seen.penalised(one, rest),
-    )
     more = []
     if second.name not in [one.names[0] for one in refits]:
         tried(second.name)
@@ -220,6 +233,8 @@ def _with_second(
     left = left_over(base, seen, alone[0].refit)
     if pair is not None:
         with_both = left_over(base, seen, pair.refit)
-        if not with_both.too_much and pair.delta_bic > LEAST_BIC + alone[0].delta_bic:
+        alike = second.name in twins(seen, weighed[0].refit, NEARLY_ALIKE)
+        least = LEAST_BIC if alike else _to_be_there(alone[0])
+        if not with_both.too_much and pair.delta_bic > least + alone[0].delta_bic:
             return (pair, *alone), with_both
     return tuple(alone), left

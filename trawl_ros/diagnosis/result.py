@@ -34,6 +34,7 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
             }
             for where in found.where
         ],
+        'added': None if found.added is None else ' and '.join(found.added.refit.names),
         'evidence': {} if named is None else _evidence(named.weighed),
         'channels': _channels(found.shown),
         'shown_by': found.split.by if found.shown else None,
@@ -42,7 +43,7 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
             None if found.shown is None else _number(found.shown.removed_by_placebo)
         ),
         'placebo': None if found.shown is None else found.shown.instead,
-        'coefficients': _coefficients(found.base, None if best is None else best.refit),
+        'coefficients': _coefficients(found.base, found.added),
         'smallest_detectable': {} if found.seen is None else _detectable(found.seen),
         'detection': None
         if found.seen is None
@@ -133,15 +134,18 @@ def _channels(shown: Shown | None) -> dict[str, Any]:
     }
 
 
-def _coefficients(base: Refit | None, best: Refit | None) -> dict[str, Any]:
+def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, Any]:
     if base is None:
         return {}
     return {
         name: {
             'before': {'value': base.estimate.values[i], 'std': base.estimate.std[i]},
             'after': None
-            if best is None
-            else {'value': best.estimate.values[i], 'std': best.estimate.std[i]},
+            if added is None
+            else {
+                'value': added.refit.estimate.values[i],
+                'std': added.refit.estimate.std[i],
+            },
         }
         for i, name in enumerate(COEFFICIENTS)
     }

@@ -15,7 +15,7 @@ FALSE_ALARMS = 0.01
 
 DOUBT = 1.3
 """Errors of calibration and of the model may be so many times what they are taken to be, before
-something is seen: neither is found from the data, as noise is."""
+something is seen or named: neither is found from the data, as noise is."""
 
 NOISE_TO_EXPLAIN = 1.7
 """Noise found over noise stated from where it is asked whether it is noise."""
@@ -81,7 +81,7 @@ class Grounds:
     Attributes
     ----------
     delta_bic
-        By how much it lowers the criterion.
+        By how much it lowers the criterion, with errors as large as they may be.
     gain_low
         Lower end of the interval of what left-out tows gain, χ² per tow.
     share
@@ -125,7 +125,10 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
     if grounds.rivals:
         return 'AMBIGUOUS', f'{", ".join(grounds.rivals)} would explain it nearly as well'
     if grounds.delta_bic < LEAST_BIC:
-        return 'UNKNOWN', f'the best effect lowers BIC by {grounds.delta_bic:.1f} only'
+        return 'UNKNOWN', (
+            f'with errors {DOUBT:g} times as large the best effect lowers BIC by '
+            f'{grounds.delta_bic:.1f} only'
+        )
     if grounds.at_bound:
         return 'UNKNOWN', 'the best effect would have to be stronger than is possible'
     if grounds.gain_low <= 0.0:

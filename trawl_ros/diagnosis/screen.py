@@ -5,7 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
+from trawl_ros.diagnosis.candidates import (
+    Candidate,
+    behind,
+    blocks_of_candidates,
+    candidates,
+    extended,
+    signatures,
+)
 from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
 from trawl_ros.diagnosis.patterns import Pattern, patterns
 from trawl_ros.diagnosis.rules import DOUBT, FALSE_ALARMS, NOISE_TO_EXPLAIN
@@ -57,11 +64,9 @@ class Screen:
 
     def block(self, candidate: Candidate) -> range:
         """Where the values of a candidate stand."""
-        first = 0
-        for other in self.wanted:
+        for other, block in zip(self.wanted, blocks_of_candidates(self.wanted), strict=True):
             if other is candidate:
-                return range(first, first + len(other.start))
-            first += len(other.start)
+                return block
         raise ValueError(f'{candidate.name} is not among those that are wanted')
 
     @property
@@ -145,11 +150,7 @@ def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Sc
     units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])
     found = evidence(fit, both, units, weights=weights)
     number = len(units) - len(shapes)
-    blocks: list[range] = []
-    for candidate in wanted:
-        first = blocks[-1].stop if blocks else 0
-        blocks.append(range(first, first + len(candidate.start)))
-    blocks += blocks_of(shapes, number).values()
+    blocks = [*blocks_of_candidates(wanted), *blocks_of(shapes, number).values()]
     limit = threshold(found, blocks, FALSE_ALARMS)
     return Screen(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
 
@@ -158,23 +159,13 @@ def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:
     """A fit in which sizes of patterns stand behind all else."""
     number = shapes[0].shape[1]
     nothing, far = np.zeros(number), np.full(number, FAR)
-    parts = tuple(
-        replace(
-            part,
-            at=np.concatenate((part.at, nothing)),
-            by_coefficients=np.hstack((part.by_coefficients, own)),
-        )
-        for part, own in zip(fit.windows, shapes, strict=True)
+    sizes = BoardPrior(nothing, np.full(number, USUAL_PATTERN), -far, far, ('',) * number)
+    return replace(
+        fit,
+        windows=behind(fit.windows, nothing, shapes),
+        coefficients=np.concatenate((fit.coefficients, nothing)),
+        prior=fit.prior.followed_by(sizes),
     )
-    prior = BoardPrior(
-        start=np.concatenate((fit.prior.start, nothing)),
-        std=np.concatenate((fit.prior.std, np.full(number, USUAL_PATTERN))),
-        low=np.concatenate((fit.prior.low, -far)),
-        high=np.concatenate((fit.prior.high, far)),
-        names=(*fit.prior.names, *('' for _ in range(number))),
-    )
-    coefficients = np.concatenate((fit.coefficients, nothing))
-    return replace(fit, windows=parts, coefficients=coefficients, prior=prior)
 
 
 def blocks_of(shapes: Sequence[Pattern], first: int) -> dict[str, range]:

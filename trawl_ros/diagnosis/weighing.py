@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
-from trawl_ros.diagnosis.rules import ALIKE, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
+from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
 from trawl_ros.diagnosis.screen import Screen, blocks_of
 from trawl_ros.model.board import COEFFICIENTS
 
@@ -29,6 +29,8 @@ class Weighed:
         With all windows solved anew.
     delta_chi2, delta_bic
         By how much it lowers both against the boards alone, with one noise for all.
+    doubted_bic
+        The second with all errors `DOUBT` times as large.
     gains
         What each left-out unit gains by it, χ².
     share
@@ -40,6 +42,7 @@ class Weighed:
     refit: Refit
     delta_chi2: float
     delta_bic: float
+    doubted_bic: float
     gains: np.ndarray
     share: float
     cosine: float
@@ -78,7 +81,15 @@ def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, 
     criteria = [delta - one.number * penalty for delta, one in zip(deltas, refits, strict=True)]
     gains, shares = _resampled(seen, refits, criteria)
     found = [
-        Weighed(one, delta, criterion, gain, share, _nearest(seen, one))
+        Weighed(
+            refit=one,
+            delta_chi2=delta,
+            delta_bic=criterion,
+            doubted_bic=criterion - delta * (1.0 - 1.0 / DOUBT**2),
+            gains=gain,
+            share=share,
+            cosine=_nearest(seen, one),
+        )
         for one, delta, criterion, gain, share in zip(
             refits, deltas, criteria, gains, shares, strict=True
         )

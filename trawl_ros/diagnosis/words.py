@@ -2,6 +2,7 @@
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.rules import FALSE_ALARMS
+from trawl_ros.diagnosis.weighing import Weighed
 
 MENTIONED = 3
 """So many places where model and measurement disagree are named at once."""
@@ -32,13 +33,14 @@ def sentences(found: Diagnosis) -> tuple[str, ...]:
     best, named, shown = found.best, found.named, found.shown
     if found.verdict == 'NAMED' and named is not None and named.alike:
         said.append(
-            f'No data of this kind can part it from {", ".join(named.alike)}: read the name as '
-            'any of these.'
+            'No data of this kind can part it from '
+            f'{", ".join(named.alike).replace("_", " ")}: read the name as any of these.'
         )
     if best is not None:
+        it = 'It' if found.verdict == 'NAMED' else f'The best effect, {_names(best)},'
         said.append(
-            f'It lowers χ² by {best.delta_chi2:.0f} and BIC by {best.delta_bic:.0f}; each of what '
-            f'was left out gains {best.gain[0]:.1f} of χ² ({best.gain[1]:.1f} to '
+            f'{it} lowers χ² by {best.delta_chi2:.0f} and BIC by {best.delta_bic:.0f}; each of '
+            f'what was left out gains {best.gain[0]:.1f} of χ² ({best.gain[1]:.1f} to '
             f'{best.gain[2]:.1f}), and in {best.share:.0%} of resampled trials it is the best.'
         )
     if found.empirical is not None:
@@ -50,13 +52,14 @@ def sentences(found: Diagnosis) -> tuple[str, ...]:
             f'physical reading is {term.reading}. It lowers χ² by {weighed.delta_chi2:.0f}, the '
             f'best placebo by {found.empirical.placebo:.0f}.'
         )
-    if shown is not None and shown.removed is not None and best is not None:
-        it = 'it' if found.empirical is None else 'the empirical term'
+    if shown is not None and shown.removed is not None and found.added is not None:
+        it = 'it' if found.empirical is None and best is not None else found.added_as
         kept = 'tows' if found.split.by == 'tow' else 'steady states'
         placebo = (
             ''
             if shown.removed_by_placebo is None
-            else f'; the best other effect, {shown.instead}, removes {shown.removed_by_placebo:.0%}'
+            else f'; the best {"" if found.empirical else "other "}effect, '
+            f'{(shown.instead or "").replace("_", " ")}, removes {shown.removed_by_placebo:.0%}'
         )
         said.append(
             f'On {kept} that decided nothing {it} removes {shown.removed:.0%} of the error beyond '
@@ -74,6 +77,10 @@ def sentences(found: Diagnosis) -> tuple[str, ...]:
             '(-log₁₀ of a probability).'
         )
     return tuple(said)
+
+
+def _names(one: Weighed) -> str:
+    return ' and '.join(name.replace('_', ' ') for name in one.refit.names)
 
 
 def _effects(found: Diagnosis) -> str:

@@ -73,6 +73,7 @@ def _page(
             sentences=sentences(found),
             figures=list(figures.items()),
             repaired=repaired,
+            added_as=found.added_as,
         )
     )
     return text.rstrip() + '\n'

@@ -111,7 +111,7 @@ def linearise(
         jacobian = prediction.jacobian[rows]
         by_inputs = jacobian[:, -3:]
         if isinstance(predictor, NetPredictor) and net is not None:
-            by_net = predictor.by_net(coefficients, prediction.state)[rows] / net
+            by_net = predictor.by_net(coefficients, at, prediction.state)[rows] / net
         return Linearised(
             window=window,
             channels=channels,

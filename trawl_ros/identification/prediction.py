@@ -69,6 +69,6 @@ class NetPredictor(Predictor, Protocol):
         """The predictor of a gear whose net has this many times the drag and weight in water."""
         ...
 
-    def by_net(self, coefficients: np.ndarray, found: Any) -> np.ndarray:
+    def by_net(self, coefficients: np.ndarray, inputs: np.ndarray, found: Any) -> np.ndarray:
         """Derivatives (n, 2) by factors on drag and weight at a prediction's ``state``."""
         ...

@@ -54,3 +54,18 @@ class BoardPrior:
                     f'identification: the start of {name} is {self.start[i]:g}, expected it '
                     f'within its bounds {self.low[i]:g} to {self.high[i]:g}'
                 )
+
+    def first(self, number: int) -> 'BoardPrior':
+        """The first values only."""
+        start, std, low, high = (own[:number] for own in self._arrays)
+        return BoardPrior(start, std, low, high, self.names[:number])
+
+    def followed_by(self, other: 'BoardPrior') -> 'BoardPrior':
+        """With the values of another behind."""
+        pairs = zip(self._arrays, other._arrays, strict=True)
+        start, std, low, high = (np.concatenate(pair) for pair in pairs)
+        return BoardPrior(start, std, low, high, (*self.names, *other.names))
+
+    @property
+    def _arrays(self) -> tuple[np.ndarray, ...]:
+        return self.start, self.std, self.low, self.high

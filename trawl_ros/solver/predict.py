@@ -113,16 +113,17 @@ class Predictor:
         """The predictor of a gear whose net has this many times the drag and weight in water."""
         return replace(self, model=self.model.with_net(drag, weight))
 
-    def by_net(self, coefficients: np.ndarray, found: Equilibrium) -> np.ndarray:
+    def by_net(
+        self, coefficients: np.ndarray, inputs: np.ndarray, found: Equilibrium
+    ) -> np.ndarray:
         """Derivatives (n_observables, 2) by factors on drag and weight in water of the net.
 
         Parameters
         ----------
-        coefficients, found
-            Of a prediction, which has the steady state.
+        coefficients, inputs, found
+            Of a prediction: what it was asked with, and its steady state.
         """
-        point, acting = found.point, self.acting(coefficients)
-        inputs = np.array([point.port_length, point.starboard_length, point.speed])
+        acting = self.acting(coefficients)
         by_net = net_sensitivities(self.gear(coefficients, inputs), found)
         return sensor_slopes(acting, found, self._situation(inputs))[:, None] * by_net
 

@@ -118,7 +118,7 @@ def run_counters(table: Table, folder: Path, steps: Steps) -> list[Row]:
         done()
     rows = _rows(table, with_baseline, without)
     shown = with_baseline.shown
-    figure = Figure() if shown is None or shown.after is None else gap_figure(shown)
+    figure = Figure() if shown is None or shown.after is None else gap_figure(shown, 'the effect')
     page = Page(
         name='counters',
         title='Winch counters that err as measured ones did',

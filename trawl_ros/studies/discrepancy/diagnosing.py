@@ -1,11 +1,11 @@
 """Diagnoses a trial of which nothing is known but a file of windows, or bags."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros.diagnosis.diagnosis import diagnose
 from trawl_ros.diagnosis.result import result
+from trawl_ros.files import write_json
 from trawl_ros.studies.discrepancy.tows import BASELINE
 from trawl_ros.studies.discrepancy.windows_file import read_windows
 from trawl_ros.studies.identification.plant import Cut
@@ -26,8 +26,5 @@ def diagnose_case(case: Case) -> str:
     windows = read_windows(case.windows)
     tows = [f'tow {number + 1}' for number in range(1 + max(window.tow for window in windows))]
     found = diagnose(case.cut.model(case.gear), windows, tows, frozenset(range(BASELINE)))
-    text = json.dumps(result(found, ()), allow_nan=False)
-    beside = case.diagnosis.with_suffix('.part')
-    beside.write_text(text + '\n', encoding='utf-8')
-    beside.replace(case.diagnosis)
+    write_json(case.diagnosis, result(found, ()))
     return found.verdict

@@ -11,7 +11,12 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import norm
 
-from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures
+from trawl_ros.diagnosis.candidates import (
+    Candidate,
+    blocks_of_candidates,
+    candidates,
+    signatures,
+)
 from trawl_ros.diagnosis.evidence import POWER, evidence
 from trawl_ros.diagnosis.showing import split
 from trawl_ros.effects.catalogue import catalogue
@@ -89,7 +94,7 @@ class Likelihood:
         both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
         found = evidence(self.fit, both, np.ones(number + 1))
         left = [found.information[0, 0]]
-        for block in self._blocks:
+        for block in blocks_of_candidates(self._wanted):
             cosine = found.covered([0], np.ones(1), [place + 1 for place in block])
             left.append(found.information[0, 0] * (1.0 - cosine**2))
         return float(np.sqrt(max(0.0, min(left))))
@@ -99,14 +104,6 @@ class Likelihood:
         predictor = Predictor(self.plant.model, without=frozenset(range(BASELINE)))
         depths = np.array([part.window.means['net_depth'] for part in self.fit.windows])
         return candidates(catalogue(), predictor, depths)
-
-    @property
-    def _blocks(self) -> list[range]:
-        found: list[range] = []
-        for candidate in self._wanted:
-            first = found[-1].stop if found else 0
-            found.append(range(first, first + len(candidate.start)))
-        return found
 
     @cached_property
     def _mimics(self) -> list[np.ndarray]:

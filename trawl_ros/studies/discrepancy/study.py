@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.errors import TrawlError
-from trawl_ros.files import empty_folder
+from trawl_ros.files import empty_folder, write_json
 from trawl_ros.studies.discrepancy.diagnosing import Case, diagnose_case
 from trawl_ros.studies.discrepancy.inside import INSIDE
 from trawl_ros.studies.discrepancy.making import Spec, make
@@ -126,9 +126,7 @@ def make_case(making: Making) -> bool:
     key, windows = make(making.spec, making.gear, making.cut, making.seed)
     if windows is not None:
         write_windows(making.windows, windows)
-    beside = making.key.with_suffix('.part')
-    beside.write_text(json.dumps(key.record()) + '\n', encoding='utf-8')
-    beside.replace(making.key)
+    write_json(making.key, key.record())
     return key.testable
 
 

@@ -5,16 +5,14 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from trawl_ros.files import write_json
 from trawl_ros.identification.over_ground import GroundTrack
 from trawl_ros.identification.window_records import SteadyWindow
 
 
 def write_windows(path: Path, windows: Sequence[SteadyWindow]) -> None:
     """Write windows, whole or not at all."""
-    text = json.dumps([asdict(window) for window in windows])
-    beside = path.with_suffix('.part')
-    beside.write_text(text + '\n', encoding='utf-8')
-    beside.replace(path)
+    write_json(path, [asdict(window) for window in windows])
 
 
 def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
