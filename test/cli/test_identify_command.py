@@ -8,8 +8,9 @@ import pytest
 from rich.console import Console
 
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.cli.read_tows import BagTask, read_tow, read_tows
+from trawl_ros.cli.read_tows import read_tows
 from trawl_ros.gear.load import load_gear
+from trawl_ros.identification.bag_windows import BagTask, read_tow
 from trawl_ros.identification.laws import QUANTITIES
 from trawl_ros.identification.objective import PAPER_CHANNELS
 from trawl_ros.instruments.samples import RangeSample

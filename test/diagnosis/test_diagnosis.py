@@ -79,7 +79,7 @@ def test_all_is_written(caught, tmp_path):
     bag = tmp_path / 'bag'
     bag.mkdir()
     (bag / 'bag_0.mcap').write_bytes(b'not much')
-    write_diagnosis(replace(caught, advice=('Tow on.',)), [source(bag)], tmp_path / 'out')
+    write_diagnosis(replace(caught, checks=('Tow on.',)), [source(bag)], tmp_path / 'out')
     found = json.loads((tmp_path / 'out' / 'diagnosis.json').read_text())
     assert {
         'verdict', 'reason', 'effects', 'ambiguous_with', 'where', 'evidence', 'channels',

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from trawl_ros.cli.main import trawl
 from trawl_ros.errors import TrawlError
 from trawl_ros.studies.counters import FATHOM, read_table
-from trawl_ros.studies.discrepancy.tows import PLAN
+from trawl_ros.studies.discrepancy.tows import FULL
 
 MEASURED = Path(__file__).parents[3] / 'shared/data/noaa_trawlmetrics/nwx_wire_vs_counter.csv'
 
@@ -29,7 +29,7 @@ def table(tmp_path):
 
 
 def test_a_table_gives_the_wire_that_is_out(table):
-    at = PLAN[0].moment(0)
+    at = FULL.tows[0].moment(0)
     inputs = np.array([110.0 * FATHOM, 111.0 * FATHOM, 2.1])
     towed = table.hidden().towed(1.0, inputs, at)
     np.testing.assert_allclose(towed, [100.0 * FATHOM, 100.0 * FATHOM, 2.1])

@@ -13,9 +13,10 @@ from trawl_ros.diagnosis.writing import MODEL, write_diagnosis
 from trawl_ros.errors import TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.studies.discrepancy.making import Spec, make
+from trawl_ros.studies.discrepancy.making import make
 from trawl_ros.studies.discrepancy.study import FINER
-from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.discrepancy.tows import FULL
+from trawl_ros.studies.discrepancy.trial import Spec
 
 HIDDEN = Spec('inside', 0, ('current_shear',), 5.0, (1.0,), plant=0)
 """A curved shear, which is not the form that the catalogue gives it."""
@@ -31,18 +32,18 @@ def hidden_effect(folder: Path, console: Console) -> None:
     # The name of its gear is that of the plan, whatever the demo has towed.
     gear = 'kaifuha'
     with console.status('hiding an effect in a trial of a finer gear'):
-        key, windows = make(HIDDEN, gear, FINER, SEED)
-    if windows is None:
+        key, made = make(HIDDEN, gear, FINER, SEED)
+    if made is None:
         raise TrawlError(f'{folder}: no trial could be made: {key.why_not}')
-    tows = [f'tow {number + 1}' for number in range(len(PLAN))]
-    baseline = frozenset(range(BASELINE))
+    tows = [f'tow {number + 1}' for number in range(len(FULL.tows))]
+    baseline = frozenset(range(FULL.baseline))
     with console.status('diagnosing it') as status:
-        found = diagnose(FINER.model(gear), windows, tows, baseline, status.update)
+        found = diagnose(FINER.model(gear), made.windows, tows, baseline, status.update)
         write_diagnosis(found, (), folder)
         again = None
         if found.repair is not None:
             repaired = load_gear(folder / MODEL)
-            again = diagnose(repaired, windows, tows, baseline, status.update)
+            again = diagnose(repaired, made.windows, tows, baseline, status.update)
     (folder / 'key.json').write_text(json.dumps(key.record(), indent=2) + '\n', encoding='utf-8')
     _print(found, again)
     click.echo(f'{folder}: report.html, {MODEL}, and key.json, which the diagnosis has not seen')
@@ -52,7 +53,7 @@ def _print(found: Diagnosis, again: Diagnosis | None) -> None:
     console = Console(highlight=False, soft_wrap=True)
     hidden = HIDDEN.effects[0].replace('_', ' ')
     console.print(
-        f'A trial of {len(PLAN)} tows in which {hidden} is hidden. {found.verdict}. '
+        f'A trial of {len(FULL.tows)} tows in which {hidden} is hidden. {found.verdict}. '
         f'{headline(found)}',
         markup=False,
     )

@@ -18,8 +18,8 @@ from trawl_ros.studies.counters import REPORT as COUNTERS_REPORT
 from trawl_ros.studies.counters import read_table, run_counters
 from trawl_ros.studies.discrepancy.report import REPORT as DISCREPANCY_REPORT
 from trawl_ros.studies.discrepancy.report import write_discrepancy
+from trawl_ros.studies.discrepancy.stages import read_classes, run_blind
 from trawl_ros.studies.discrepancy.study import Plan as DiscrepancyPlan
-from trawl_ros.studies.discrepancy.study import run_blind
 from trawl_ros.studies.identification.report import REPORT as IDENTIFICATION_REPORT
 from trawl_ros.studies.identification.report import write_identification
 from trawl_ros.studies.identification.study import Plan as IdentificationPlan
@@ -205,6 +205,12 @@ def counters(table: Path, out: Path, force: bool) -> None:
               help='Trials of each other effect and strength.')  # fmt: skip
 @click.option('--pairs', default=DiscrepancyPlan.pairs, show_default=True,
               type=click.IntRange(0, 1000), help='Trials of each pair of effects.')  # fmt: skip
+@click.option('--poor', default=DiscrepancyPlan.poor, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of a few states, of each effect '
+              'that they cannot tell.')  # fmt: skip
+@click.option('--dynamic', default=DiscrepancyPlan.dynamic, show_default=True,
+              type=click.IntRange(0, 100), help='Trials towed in time, at most as many as '
+              'are made as bags.')  # fmt: skip
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
 @click.option('--scheduler', help='Address of a Dask cluster, which must see --out under the '
@@ -218,6 +224,8 @@ def discrepancy(
     inside: int,
     outside: int,
     pairs: int,
+    poor: int,
+    dynamic: int,
     around: int,
     scheduler: str | None,
 ) -> None:
@@ -228,7 +236,7 @@ def discrepancy(
     on where it was.
     """
     load_gear(gear)
-    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, around)
+    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, around)
     console = error_console()
     try:
         trials = run_blind(
@@ -241,7 +249,8 @@ def discrepancy(
     except KeyboardInterrupt:
         console.print(f'stopped; the trials made so far are kept in {out}')
         raise SystemExit(INTERRUPTED) from None
-    _say(write_discrepancy(out, plan, trials), out / DISCREPANCY_REPORT, console)
+    rows = write_discrepancy(out, plan, trials, read_classes(out))
+    _say(rows, out / DISCREPANCY_REPORT, console)
 
 
 @contextmanager

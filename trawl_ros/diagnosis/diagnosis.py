@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
-from trawl_ros.diagnosis.next_tow import propose
+from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards
 from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, Verdict
 from trawl_ros.diagnosis.screen import Screen, screen
@@ -70,8 +70,9 @@ class Diagnosis:
     base, seen, named, where, shown
         Boards alone; first look; naming; patterns of residuals; errors on what was kept back.
         None, or empty, where it did not come to that.
-    advice
-        Sentences on what to do next where something cannot be told apart.
+    checks, proposals
+        What to do next where something cannot be told apart: without towing, in sentences, and
+        tows.
     empirical
         The term that explains what no effect does, where there is one.
     """
@@ -87,7 +88,8 @@ class Diagnosis:
     named: Named | None = None
     where: tuple[Where, ...] = ()
     shown: Shown | None = None
-    advice: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
+    proposals: tuple[Proposal, ...] = ()
     empirical: Empirical | None = None
 
     @property
@@ -187,13 +189,15 @@ def diagnose(
         other = _placebo(predictor, base, seen, named)
     shown = _shown(predictor, base, best, other, parts)
     told('looking for the next tow')
+    checks, proposals = _advice(predictor, seen, named)
     return replace(
         known,
         verdict=named.verdict,
         reason=named.reason,
         named=named,
         shown=shown,
-        advice=_advice(predictor, seen, named),
+        checks=checks,
+        proposals=proposals,
         empirical=found,
     )
 
@@ -204,18 +208,20 @@ def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
     return Diagnosis('NOT_TESTABLE', reason, gear, tuple(tows), frozenset(), nothing)
 
 
-def _advice(predictor: Predictor, seen: Screen, named: Named) -> tuple[str, ...]:
+def _advice(
+    predictor: Predictor, seen: Screen, named: Named
+) -> tuple[tuple[str, ...], tuple[Proposal, ...]]:
     """How to tell the best effect from those that are not excluded."""
     others = {*named.rivals, *named.alike}
     if not named.weighed or not others:
-        return ()
+        return (), ()
     best = named.weighed[0].refit
     rivals = [one for one in seen.wanted if one.name in others]
     candidate = best.wanted[0]
     values = best.estimate.values[len(COEFFICIENTS) :][: len(candidate.start)]
     proposals = propose(predictor, seen, candidate, values, rivals)
     direct = [one.effect.direct for one in (*best.wanted, *rivals) if one.effect.direct]
-    return (*dict.fromkeys(direct), *map(str, proposals))
+    return tuple(dict.fromkeys(direct)), proposals
 
 
 def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> Refit | None:

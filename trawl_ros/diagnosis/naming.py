@@ -120,6 +120,9 @@ def name(
         noise=max(best.refit.fit.scales),
     )
     verdict, reason = judge(grounds)
+    if verdict == 'AMBIGUOUS':
+        # None is excluded that is the best in some of the resampled trials.
+        rivals = tuple(dict.fromkeys((*rivals, *best.others)))
     return Named(verdict, reason, weighed, alike, rivals, left)
 
 

@@ -55,7 +55,7 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
             'share': _number(named.left_over.share),
             'noise': None if best is None else max(best.refit.fit.scales),
         },
-        'next_tow': list(found.advice),
+        'next_tow': _next(found),
         'tows': [
             {'name': name, 'baseline': place in found.baseline}
             for place, name in enumerate(found.tows)
@@ -102,6 +102,21 @@ def _empirical(found: Diagnosis) -> dict[str, Any] | None:
         'placebo_chi2': _number(found.empirical.placebo),
         'left_over': _number(found.empirical.left_over.probability),
     }
+
+
+def _next(found: Diagnosis) -> list[dict[str, Any]]:
+    """Checks, which need no tow, and tows with what an hour of each adds to χ²."""
+    checks = [{'sentence': check, 'states': []} for check in found.checks]
+    return checks + [
+        {
+            'sentence': str(one),
+            'states': [{'warp_length': length, 'speed': speed} for length, speed in one.states],
+            'reciprocal': one.reciprocal,
+            'hours': one.hours,
+            'delta_chi2_per_hour': _number(one.per_hour),
+        }
+        for one in found.proposals
+    ]
 
 
 def _evidence(weighed: Sequence[Weighed]) -> dict[str, Any]:

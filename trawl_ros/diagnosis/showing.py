@@ -32,7 +32,9 @@ class Split:
 
 
 def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
-    """Keep every third of the examined tows back, from the second on.
+    """Keep every third of the examined tows back, from the second on, but not the last.
+
+    The last may have been towed to settle what those before it could not.
 
     Parameters
     ----------
@@ -43,7 +45,7 @@ def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
     """
     examined = list(dict.fromkeys(w.tow for w in windows if w.tow not in baseline))
     if len(examined) >= FEWEST_TOWS:
-        kept = set(examined[1::EVERY])
+        kept = set(examined[1:-1:EVERY])
         by = 'tow'
         showing = tuple(window for window in windows if window.tow in kept)
     else:

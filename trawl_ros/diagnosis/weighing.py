@@ -34,7 +34,9 @@ class Weighed:
     gains
         What each left-out unit gains by it, χ².
     share
-        Part of resampled trials in which it is the best.
+        Part of resampled trials in which it is the best, or one of its class.
+    others
+        What is the best in the rest of them.
     cosine
         The largest with any other effect that is not of its class.
     """
@@ -45,6 +47,7 @@ class Weighed:
     doubted_bic: float
     gains: np.ndarray
     share: float
+    others: tuple[str, ...]
     cosine: float
 
     @property
@@ -79,7 +82,8 @@ def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, 
     penalty = float(np.log(seen.readings))
     deltas = [2.0 * (before - one.cost(scales)) for one in refits]
     criteria = [delta - one.number * penalty for delta, one in zip(deltas, refits, strict=True)]
-    gains, shares = _resampled(seen, refits, criteria)
+    gains, bests = _resampled(seen, refits, criteria)
+    classes = [{*one.names, *twins(seen, one)} for one in refits]
     found = [
         Weighed(
             refit=one,
@@ -87,11 +91,12 @@ def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, 
             delta_bic=criterion,
             doubted_bic=criterion - delta * (1.0 - 1.0 / DOUBT**2),
             gains=gain,
-            share=share,
+            share=float(np.mean([name in alike for name in bests])),
+            others=tuple(dict.fromkeys(name for name in bests if name not in alike)),
             cosine=_nearest(seen, one),
         )
-        for one, delta, criterion, gain, share in zip(
-            refits, deltas, criteria, gains, shares, strict=True
+        for one, delta, criterion, gain, alike in zip(
+            refits, deltas, criteria, gains, classes, strict=True
         )
     ]
     return tuple(sorted(found, key=lambda one: one.delta_bic, reverse=True))
@@ -99,8 +104,8 @@ def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, 
 
 def _resampled(
     seen: Screen, refits: Sequence[Refit], criteria: Sequence[float]
-) -> tuple[list[np.ndarray], list[float]]:
-    """Gains of each unit left out, and shares of resampled trials in which each is the best.
+) -> tuple[list[np.ndarray], list[str]]:
+    """Gains of each unit left out, and the best effect of each resampled trial.
 
     Both to first order; ``criteria`` are what refits came to, by which the order is set right.
     """
@@ -142,12 +147,7 @@ def _resampled(
             key=lambda one: scale * seen.penalised(one, part) + corrections.get(one.name, 0.0),
         ).name
 
-    names = [best(part) for part in trials]
-    shares = []
-    for one in refits:
-        alike = {*one.names, *twins(seen, one)}
-        shares.append(float(np.mean([name in alike for name in names])))
-    return gains, shares
+    return gains, [best(part) for part in trials]
 
 
 def _penalised(seen: Screen, wanted: Sequence[Candidate]) -> float:

@@ -1,4 +1,4 @@
-"""Diagnoses a trial of which nothing is known but a file of windows, or bags."""
+"""Diagnoses a trial of which nothing is known but a file of windows, or a folder of bags."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,25 +6,41 @@ from pathlib import Path
 from trawl_ros.diagnosis.diagnosis import diagnose
 from trawl_ros.diagnosis.result import result
 from trawl_ros.files import write_json
-from trawl_ros.studies.discrepancy.tows import BASELINE
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.identification.bag_windows import BagTask, read_tow
+from trawl_ros.identification.tows import numbered
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.studies.discrepancy.windows_file import read_windows
 from trawl_ros.studies.identification.plant import Cut
 
 
 @dataclass(frozen=True)
 class Case:
-    """A file of windows, where the diagnosis goes, and the gear as it is believed."""
+    """What may be seen of a trial, where the diagnosis goes, the gear as it is believed, and how
+    many of the first tows are a baseline.
+    """
 
-    windows: Path
+    seen: Path
     diagnosis: Path
     gear: str
     cut: Cut
+    baseline: int
 
 
 def diagnose_case(case: Case) -> str:
     """Diagnose, write the diagnosis, and give its verdict."""
-    windows = read_windows(case.windows)
-    tows = [f'tow {number + 1}' for number in range(1 + max(window.tow for window in windows))]
-    found = diagnose(case.cut.model(case.gear), windows, tows, frozenset(range(BASELINE)))
+    gear = case.cut.model(case.gear)
+    windows, tows = _of_bags(case.seen, gear) if case.seen.is_dir() else _of_file(case.seen)
+    found = diagnose(gear, windows, tows, frozenset(range(case.baseline)))
     write_json(case.diagnosis, result(found, ()))
     return found.verdict
+
+
+def _of_file(path: Path) -> tuple[list[SteadyWindow], list[str]]:
+    windows = list(read_windows(path))
+    return windows, [f'tow {number + 1}' for number in range(1 + max(w.tow for w in windows))]
+
+
+def _of_bags(folder: Path, gear: GearRecord) -> tuple[list[SteadyWindow], list[str]]:
+    return numbered([read_tow(BagTask(bag, gear, NAMESPACE)) for bag in sorted(folder.iterdir())])

@@ -7,7 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trawl_ros.plots import style
-from trawl_ros.studies.discrepancy.rows import (
+from trawl_ros.studies.discrepancy.trial import Scored
+from trawl_ros.studies.discrepancy.verdicts import (
+    Classes,
     both_named,
     chosen,
     effects_of,
@@ -16,9 +18,9 @@ from trawl_ros.studies.discrepancy.rows import (
     one_named,
     reported,
     right,
+    said_of,
     verdict,
 )
-from trawl_ros.studies.discrepancy.study import Scored
 
 KINDS = {
     'right name': '#1b7f4b',
@@ -39,34 +41,36 @@ BARS = (
     ('outside', 6.0, 'outside, 6 ×'),
     ('outside', 10.0, 'outside, 10 ×'),
     ('pair', 3.0, 'two at once, 3 ×'),
+    ('poor', 2.0, 'a poor trial, 2 ×'),
+    ('followed', 2.0, 'and the proposed tow'),
 )
 
 
-def kind_of(trial: Scored) -> str:
+def kind_of(trial: Scored, classes: Classes) -> str:
     """One of `KINDS`."""
     said = verdict(trial)
     if said in ('UNKNOWN', 'NOT_TESTABLE'):
         return said
     if said == 'NAMED':
-        if both_named(trial) or (effects_of(trial) and named_right(trial)):
+        if both_named(trial, classes) or (effects_of(trial) and named_right(trial, classes)):
             return 'right name'
-        return 'one of two' if one_named(trial) else 'wrong name'
+        return 'one of two' if one_named(trial, classes) else 'wrong name'
     if said == 'AMBIGUOUS':
-        among = bool(effects_of(trial)) and right(trial, reported)
+        among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
         return 'several names, ' + ('the right one among them' if among else 'all wrong')
     return 'no discrepancy seen'
 
 
-def verdicts_figure(trials: Sequence[Scored]) -> Figure:
+def verdicts_figure(trials: Sequence[Scored], classes: Classes) -> Figure:
     """Draw all verdicts, and the effects of the catalogue beside what they were named."""
     figure = Figure(figsize=(10.0, 12.0), layout='constrained')
     above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.8))
-    _draw_verdicts(above, trials)
-    _draw_names(below, trials)
+    _draw_verdicts(above, trials, classes)
+    _draw_names(below, trials, classes)
     return figure
 
 
-def _draw_verdicts(axes: Axes, trials: Sequence[Scored]) -> None:
+def _draw_verdicts(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
     there = [bar for bar in BARS if chosen(trials, *bar[:2])]
     left = np.zeros(len(there))
     at = np.arange(len(there))
@@ -74,7 +78,7 @@ def _draw_verdicts(axes: Axes, trials: Sequence[Scored]) -> None:
     for place, (series, strength, _) in enumerate(there):
         own = chosen(trials, series, strength)
         for trial in own:
-            shares[kind_of(trial)][place] += 100.0 / len(own)
+            shares[kind_of(trial, classes)][place] += 100.0 / len(own)
     for kind, colour in KINDS.items():
         axes.barh(at, shares[kind], left=left, color=colour, label=kind, height=0.7)
         left += shares[kind]
@@ -90,7 +94,7 @@ def _draw_verdicts(axes: Axes, trials: Sequence[Scored]) -> None:
     style.quiet(axes)
 
 
-def _draw_names(axes: Axes, trials: Sequence[Scored]) -> None:
+def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
     """Hidden effect by what was said of it, in per cent of its trials at 3 and 6 times."""
     own = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
     hidden = sorted({effects_of(trial)[0] for trial in own})
@@ -103,10 +107,8 @@ def _draw_names(axes: Axes, trials: Sequence[Scored]) -> None:
         row = hidden.index(effects_of(trial)[0])
         found = verdict(trial)
         if found == 'NAMED':
-            assert trial.diagnosis is not None
-            # The right one counts where it is in the class.
-            first = trial.diagnosis['effects'][0]['name']
-            name = hidden[row] if hidden[row] in names_of(trial.diagnosis) else first
+            first = said_of(trial)['effects'][0]['name']
+            name = hidden[row] if right(trial, names_of(trial), classes) else first
             column = said.index(name) if name in said else said.index('several names')
         else:
             words = {'AMBIGUOUS': 'several names', 'UNKNOWN': 'UNKNOWN'}

@@ -16,6 +16,11 @@ from trawl_ros.model.gear_model import GearModel
 Readings = dict[str, float]
 
 
+def ahead(at: Situation) -> np.ndarray:
+    """Unit vector (2,), east and north, of the heading."""
+    return np.array([np.cos(at.heading), np.sin(at.heading)])
+
+
 def _towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
     return inputs
 

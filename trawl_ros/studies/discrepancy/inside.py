@@ -10,7 +10,7 @@ import numpy as np
 
 from trawl_ros.effects.effect import Situation
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.studies.discrepancy.hidden import Hidden, Readings
+from trawl_ros.studies.discrepancy.hidden import Hidden, Readings, ahead
 
 Draw = Callable[[np.random.Generator], Hidden]
 
@@ -19,8 +19,6 @@ DOORS = ('port_door_depth', 'starboard_door_depth')
 DEPTHS = (*DOORS, 'net_depth')
 USUAL_SPEED = 2.2
 USUAL_LENGTH = 500.0
-EAST = np.array([1.0, 0.0])
-NORTH = np.array([0.0, 1.0])
 
 
 def current_shear(chance: np.random.Generator) -> Hidden:
@@ -30,7 +28,7 @@ def current_shear(chance: np.random.Generator) -> Hidden:
     profile = 3.0 * (depths / 300.0) ** power
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        currents = size * at.sense * profile[:, None] * EAST
+        currents = size * profile[:, None] * at.along
         return replace(model, water=model.water.with_more_current(depths, currents))
 
     return Hidden('current_shear', 'm/s per 100 m', 0.02, (0.2, 0.2), gear=gear)
@@ -43,7 +41,7 @@ def cross_current(chance: np.random.Generator) -> Hidden:
     profile = np.array([0.0, 0.0, 1.0, 1.0 + growth])
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        currents = size * at.sense * profile[:, None] * NORTH
+        currents = size * profile[:, None] * at.across
         return replace(model, water=model.water.with_more_current(depths, currents))
 
     return Hidden('cross_current', 'm/s', 0.1, (0.5, 0.5), gear=gear)
@@ -263,12 +261,12 @@ class Drag:
     depth: float
     hold: float
     carry: float
+    ahead: np.ndarray
 
     def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
         """Hold what is below, and carry part of it."""
         under = 0.5 * (1.0 + np.tanh((-positions[..., 2] - self.depth) / 6.0))
-        # Towed to the east, and held back by the ground.
-        way = np.array([-1.0, 0.0, self.carry])
+        way = np.array([*-self.ahead, self.carry])
         return self.hold * under[..., None] * way + 0.0 * velocities
 
 
@@ -278,7 +276,7 @@ def bottom_contact(chance: np.random.Generator) -> Hidden:
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         ends = np.array([model.layout.footrope[0], model.layout.footrope[-1]])
-        ground = Drag(ends, depth, size, carry)
+        ground = Drag(ends, depth, size, carry, ahead(at))
         return replace(model, node_forces=(*model.node_forces, ground))
 
     return Hidden('bottom_contact', 'N', 1000.0, (0.0, 10e3), gear=gear)

@@ -1,9 +1,8 @@
 """Makes trials: what a diagnoser may see, and the key it may not."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -15,13 +14,15 @@ from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.identification.over_ground import GroundTrack
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.studies.discrepancy.hidden import Hidden
 from trawl_ros.studies.discrepancy.inside import INSIDE
 from trawl_ros.studies.discrepancy.outside import OUTSIDE
 from trawl_ros.studies.discrepancy.plant import Plant, draw_plant
 from trawl_ros.studies.discrepancy.strength import Likelihood, likelihood
-from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN, PlannedTow
+from trawl_ros.studies.discrepancy.tows import PLANS, TrialPlan
+from trawl_ros.studies.discrepancy.trial import Key, Spec
 from trawl_ros.studies.identification.plant import Cut, Look
-from trawl_ros.studies.identification.readings import AS_STATED, steady_windows, wrong_by
+from trawl_ros.studies.identification.readings import AS_STATED, Sensors, steady_windows, wrong_by
 
 WRONG_BY = 0.3
 """Noise and biases of each kind of sensor are larger or smaller than stated by this part."""
@@ -34,62 +35,36 @@ LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
 
 
 @dataclass(frozen=True)
-class Spec:
-    """A trial to be made.
+class Hiding:
+    """A plant with effects hidden in it, and the key that says so."""
 
-    Attributes
-    ----------
-    series
-        'clean', 'inside', 'outside' or 'pair'.
-    number
-        Within the study.
-    effects
-        Names of what is hidden.
-    strength
-        In smallest detectable sizes.
-    signs
-        To which sides.
-    plant
-        Number of the plant.
-    """
+    key: Key
+    plant: Plant
+    effects: tuple[tuple[Hidden, float], ...]
+    sensors: Sensors
 
-    series: str
-    number: int
-    effects: tuple[str, ...]
-    strength: float
-    signs: tuple[float, ...]
-    plant: int
+    def towed(self, plan: TrialPlan) -> tuple[tuple[Look, ...], ...] | None:
+        """What the plant shows, or None if it cannot be towed."""
+        try:
+            return self.plant.towed(self.effects, plan)
+        except NoSteadyState:
+            return None
 
 
 @dataclass(frozen=True)
-class Key:
-    """What is hidden in a trial, ``testable`` or not; read by the scorer alone.
+class Made:
+    """Windows of a trial, and the same of instruments without errors."""
 
-    ``floor`` are errors, by channel, that the plant itself would have on what is kept back.
-    """
-
-    spec: Spec
-    sizes: tuple[float, ...]
-    units: tuple[str, ...]
-    detectable: tuple[float, ...]
-    testable: bool
-    why_not: str
-    coefficients: tuple[float, ...]
-    floor: Mapping[str, float]
-
-    def record(self) -> dict[str, Any]:
-        """As JSON has it; sizes that are infinite are null."""
-        record = asdict(self)
-        for name in ('sizes', 'detectable'):
-            record[name] = [value if np.isfinite(value) else None for value in record[name]]
-        return record
+    windows: tuple[SteadyWindow, ...]
+    quiet: tuple[SteadyWindow, ...]
 
 
-def make(spec: Spec, gear: str, cut: Cut, seed: int) -> tuple[Key, tuple[SteadyWindow, ...] | None]:
-    """Make a trial, or say in its key why it cannot be made."""
-    chance = np.random.default_rng([seed, spec.number, *spec.series.encode()])
-    plant, likely = _plant(gear, cut, seed, spec.plant)
-    drawn = tuple({**INSIDE, **OUTSIDE}[name](chance) for name in spec.effects)
+def hide(spec: Spec, gear: str, cut: Cut, seed: int) -> Hiding:
+    """Hide what is asked for, if that is possible."""
+    shape = chance_of(spec, seed)
+    plant = _plant(gear, cut, seed, spec.plant)
+    likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
+    drawn = tuple({**INSIDE, **OUTSIDE}[name](shape) for name in spec.effects)
     # Two at once are each as strong as if it were alone.
     outside = spec.series == 'outside'
     detectable = tuple(
@@ -100,26 +75,47 @@ def make(spec: Spec, gear: str, cut: Cut, seed: int) -> tuple[Key, tuple[SteadyW
         sign * spec.strength * size for sign, size in zip(spec.signs, detectable, strict=True)
     )
     units = tuple(hidden.unit for hidden in drawn)
-
-    def key(why_not: str = '') -> Key:
-        coefficients = tuple(map(float, plant.coefficients))
-        return Key(spec, sizes, units, detectable, not why_not, why_not, coefficients, {})
-
+    why_not = ''
     for hidden, size in zip(drawn, sizes, strict=True):
-        most = hidden.most[0] if size < 0.0 else hidden.most[1]
-        if not abs(size) <= most:
-            return key(f'{hidden.name} of {size:.3g} {hidden.unit} is not possible'), None
-    try:
-        tows = plant.towed(list(zip(drawn, sizes, strict=True)))
-    except NoSteadyState as reason:
-        return key(f'cannot be towed: {reason}'), None
-    windows, looks = windows_of(tows, chance)
-    return replace(key(), floor=_floor(windows, looks)), windows
+        if not abs(size) <= hidden.most[0 if size < 0.0 else 1]:
+            why_not = f'{hidden.name} of {size:.3g} {hidden.unit} is not possible'
+    coefficients = tuple(map(float, plant.coefficients))
+    key = Key(spec, sizes, units, detectable, not why_not, why_not, coefficients, {})
+    # The instruments of a trial stay the same when she is out again.
+    sensors = wrong_by(WRONG_BY, chance_of(spec, seed, 'sensors'))
+    return Hiding(key, plant, tuple(zip(drawn, sizes, strict=True)), sensors)
 
 
-def _floor(windows: Sequence[SteadyWindow], looks: Sequence[Look]) -> dict[str, float]:
+def chance_of(spec: Spec, seed: int, what: str = '') -> np.random.Generator:
+    """Where the randomness of a trial comes from."""
+    return np.random.default_rng([seed, spec.origin, *spec.series.encode(), *what.encode()])
+
+
+def make(spec: Spec, gear: str, cut: Cut, seed: int) -> tuple[Key, Made | None]:
+    """Make a trial of windows, or say in its key why it cannot be made."""
+    hiding, plan = hide(spec, gear, cut, seed), PLANS[spec.plan]
+    if not hiding.key.testable:
+        return hiding.key, None
+    tows = hiding.towed(plan)
+    if tows is None:
+        return replace(hiding.key, testable=False, why_not='cannot be towed'), None
+    windows, looks = windows_of(tows, chance_of(spec, seed, 'noise'), plan, hiding.sensors)
+    quiet = tuple(_quiet(window, look) for window, look in zip(windows, looks, strict=True))
+    floor = _floor(windows, looks, plan.baseline)
+    return replace(hiding.key, floor=floor), Made(windows, quiet)
+
+
+def _quiet(window: SteadyWindow, look: Look) -> SteadyWindow:
+    inputs = dict(zip(INPUTS, look.inputs, strict=True))
+    means = {name: inputs.get(name) or look[name] for name in window.means}
+    return replace(window, means=means)
+
+
+def _floor(
+    windows: Sequence[SteadyWindow], looks: Sequence[Look], baseline: int
+) -> dict[str, float]:
     """Errors that the plant itself would have on the windows that are kept back, by channel."""
-    showing = {window.index for window in split(windows, frozenset(range(BASELINE))).showing}
+    showing = {window.index for window in split(windows, frozenset(range(baseline))).showing}
     errors: dict[str, list[float]] = {}
     for window, look in zip(windows, looks, strict=True):
         if window.index not in showing:
@@ -136,15 +132,33 @@ def _floor(windows: Sequence[SteadyWindow], looks: Sequence[Look]) -> dict[str, 
 def windows_of(
     tows: Sequence[Sequence[Look]],
     chance: np.random.Generator,
-    plan: Sequence[PlannedTow] = PLAN,
+    plan: TrialPlan,
+    sensors: Sensors,
+    *,
+    first: int = 0,
+    first_tow: int = 0,
 ) -> tuple[tuple[SteadyWindow, ...], tuple[Look, ...]]:
-    """Windows as instruments give them, of states that are not quite as planned, and the states."""
+    """Windows as instruments give them, of states that are not quite as planned, and the states.
+
+    Parameters
+    ----------
+    tows
+        What the plant shows.
+    chance
+        Where randomness comes from.
+    plan
+        What is towed.
+    sensors
+        How good instruments are.
+    first, first_tow
+        Numbers of the first window and the first tow.
+    """
     jittered = [[_jittered(look, chance) for look in tow] for tow in tows]
-    windows = steady_windows(jittered, wrong_by(WRONG_BY, chance), chance)
-    states = [(tow, place) for tow in plan for place in range(len(tow.states))]
+    windows = steady_windows(jittered, sensors, chance, first_tow)
+    states = [(tow, place) for tow in plan.tows for place in range(len(tow.states))]
     seen = tuple(
         _as_seen(window, number, tow.moment(place), chance)
-        for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True))
+        for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True), first)
     )
     return seen, tuple(look for tow in jittered for look in tow)
 
@@ -182,8 +196,14 @@ def _as_seen(
 
 
 @cache
-def _plant(gear: str, cut: Cut, seed: int, number: int) -> tuple[Plant, Likelihood]:
-    plant = draw_plant(gear, cut, seed, number)
-    quiet = steady_windows(plant.looks, AS_STATED, np.random.default_rng(0))
+def _plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
+    return draw_plant(gear, cut, seed, number)
+
+
+@cache
+def likelihood_of(gear: str, cut: Cut, seed: int, number: int, plan: str) -> Likelihood:
+    """What a plant would show in the windows of a plan."""
+    plant, tows = _plant(gear, cut, seed, number), PLANS[plan]
+    quiet = steady_windows(plant.towed((), tows), AS_STATED, np.random.default_rng(0))
     quiet = tuple(replace(window, index=place, state=place) for place, window in enumerate(quiet))
-    return plant, likelihood(plant, board_prior(cut.model(gear)), quiet)
+    return likelihood(plant, board_prior(cut.model(gear)), quiet, tows)

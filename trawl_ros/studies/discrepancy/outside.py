@@ -7,8 +7,8 @@ import numpy as np
 
 from trawl_ros.effects.effect import Situation
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.studies.discrepancy.hidden import Hidden, Readings
-from trawl_ros.studies.discrepancy.inside import CABLES, EAST, Draw
+from trawl_ros.studies.discrepancy.hidden import Hidden, Readings, ahead
+from trawl_ros.studies.discrepancy.inside import CABLES, Draw
 
 AHEAD, LIFT, UP = 0, 1, 2
 USUAL_ATTACK = 0.3
@@ -79,7 +79,7 @@ def jet(chance: np.random.Generator) -> Hidden:
     profile = np.exp(-0.5 * ((depths - middle) / width) ** 2)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        currents = size * at.sense * profile[:, None] * EAST
+        currents = size * profile[:, None] * at.along
         return replace(model, water=model.water.with_more_current(depths, currents))
 
     return Hidden('jet', 'm/s', 0.1, (0.8, 0.8), gear=gear)
@@ -105,7 +105,7 @@ def tide(chance: np.random.Generator) -> Hidden:
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         profile = np.array([0.0, 0.0, 1.0, 1.0]) * (at.hours - 1.4)
-        currents = size * profile[:, None] * EAST
+        currents = size * profile[:, None] * ahead(at)
         return replace(model, water=model.water.with_more_current(depths, currents))
 
     return Hidden('tide', 'm/s per h', 0.05, (0.6, 0.6), gear=gear)

@@ -1,8 +1,7 @@
 """The plant of a trial: a gear that is not the model, towed with something hidden in it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -15,7 +14,14 @@ from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
 from trawl_ros.studies.discrepancy.hidden import Hidden
-from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN, STATES, State, nearest
+from trawl_ros.studies.discrepancy.tows import (
+    FULL,
+    STATES,
+    PlannedTow,
+    State,
+    TrialPlan,
+    nearest,
+)
 from trawl_ros.studies.identification.plant import Cut, Look
 
 MOST_DRAWS = 100
@@ -45,12 +51,23 @@ class Plant:
     coefficients: np.ndarray
     clean: dict[State, Clean]
 
-    @cached_property
-    def looks(self) -> tuple[tuple[Look, ...], ...]:
-        """All tows with nothing hidden."""
-        return tuple(tuple(self.clean[state].look for state in tow.states) for tow in PLAN)
+    def at(self, state: State) -> Clean:
+        """What it shows in a state with nothing hidden.
 
-    def towed(self, effects: Sequence[tuple[Hidden, float]]) -> tuple[tuple[Look, ...], ...]:
+        Raises
+        ------
+        NoSteadyState
+            If it cannot be towed so.
+        """
+        if state not in self.clean:
+            self.clean[state] = _solved(self.model, state, self.clean)
+        return self.clean[state]
+
+    def towed(
+        self,
+        effects: Sequence[tuple[Hidden, float]],
+        plan: TrialPlan = FULL,
+    ) -> tuple[tuple[Look, ...], ...]:
         """All tows with effects of some sizes hidden in those that are no baseline.
 
         Raises
@@ -58,28 +75,40 @@ class Plant:
         NoSteadyState
             If the gear cannot be towed so.
         """
-        found = list(self.looks[:BASELINE])
-        for tow in PLAN[BASELINE:]:
-            row = []
-            for place, state in enumerate(tow.states):
-                at, clean = tow.moment(place), self.clean[state]
-                inputs = np.array(at.inputs)
-                gear, shown = self.model, inputs
-                for hidden, size in effects:
-                    shown = hidden.towed(size, shown, at)
-                    gear = hidden.gear(size, gear, at)
-                values = clean.look.values
-                if gear is not self.model or not np.array_equal(shown, inputs):
-                    port, starboard, speed = map(float, shown)
-                    point = OperatingPoint(port, starboard, speed)
-                    values = find_equilibrium(gear, point, clean.state).observables.array()
-                readings = dict(zip(OBSERVABLES, map(float, values), strict=True))
-                for hidden, size in effects:
-                    readings = hidden.shown(size, readings, at)
-                values = np.array([readings[name] for name in OBSERVABLES])
-                row.append(replace(clean.look, values=values))
-            found.append(tuple(row))
-        return tuple(found)
+        return tuple(
+            tuple(
+                self._look(tow, place, effects if number >= plan.baseline else ())
+                for place in range(len(tow.states))
+            )
+            for number, tow in enumerate(plan.tows)
+        )
+
+    def _look(self, tow: PlannedTow, place: int, effects: Sequence[tuple[Hidden, float]]) -> Look:
+        at, clean = tow.moment(place), self.at(tow.states[place])
+        inputs = np.array(at.inputs)
+        gear, shown = self.model, inputs
+        for hidden, size in effects:
+            shown = hidden.towed(size, shown, at)
+            gear = hidden.gear(size, gear, at)
+        values = clean.look.values
+        if gear is not self.model or not np.array_equal(shown, inputs):
+            port, starboard, speed = map(float, shown)
+            point = OperatingPoint(port, starboard, speed)
+            values = find_equilibrium(gear, point, clean.state).observables.array()
+        readings = dict(zip(OBSERVABLES, map(float, values), strict=True))
+        for hidden, size in effects:
+            readings = hidden.shown(size, readings, at)
+        return replace(clean.look, values=np.array([readings[name] for name in OBSERVABLES]))
+
+
+def _solved(model: GearModel, state: State, known: Mapping[State, Clean]) -> Clean:
+    near = known[nearest(state, tuple(known))].state if known else None
+    found = find_equilibrium(model, OperatingPoint(state[0], *state), near)
+    if found.surfaced or found.outside_law:
+        raise NoSteadyState('the gear surfaces, or a board is outside its law', 'outside law')
+    by = sensitivities(model, found)
+    look = Look(state, found.observables.array(), by[:, 12:], by[:, :12])
+    return Clean(look, slow_mode(model, found).shape, found)
 
 
 def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
@@ -109,15 +138,7 @@ def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
         clean: dict[State, Clean] = {}
         try:
             for state in order:
-                near = clean[nearest(state, tuple(clean))].state if clean else None
-                found = find_equilibrium(board, OperatingPoint(state[0], *state), near)
-                if found.surfaced or found.outside_law:
-                    raise NoSteadyState(
-                        'the gear surfaces, or a board is outside its law', 'outside law'
-                    )
-                by = sensitivities(board, found)
-                look = Look(state, found.observables.array(), by[:, 12:], by[:, :12])
-                clean[state] = Clean(look, slow_mode(board, found).shape, found)
+                clean[state] = _solved(board, state, clean)
             require_usable(board, clean[order[0]].state)
         except NoSteadyState:
             continue

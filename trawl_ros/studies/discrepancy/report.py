@@ -11,8 +11,10 @@ from trawl_ros.studies.discrepancy.figure import verdicts_figure
 from trawl_ros.studies.discrepancy.making import DROPOUTS, WRONG_BY
 from trawl_ros.studies.discrepancy.plant import FRICTION, NORMAL_DRAG
 from trawl_ros.studies.discrepancy.rows import all_rows
-from trawl_ros.studies.discrepancy.study import PLANTS, Plan, Scored
-from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.discrepancy.study import PLANTS, Plan
+from trawl_ros.studies.discrepancy.tows import FULL
+from trawl_ros.studies.discrepancy.trial import Scored
+from trawl_ros.studies.discrepancy.verdicts import Classes
 from trawl_ros.studies.page import Page, write_page
 from trawl_ros.studies.row import Row
 
@@ -25,9 +27,11 @@ CAPTION = (
 )
 
 
-def write_discrepancy(folder: Path, plan: Plan, trials: Sequence[Scored]) -> list[Row]:
+def write_discrepancy(
+    folder: Path, plan: Plan, trials: Sequence[Scored], classes: Classes
+) -> list[Row]:
     """Write ``discrepancy.json``, ``.md``, ``.html`` and ``.png``, and give the rows."""
-    sections = all_rows(trials)
+    sections = all_rows(trials, classes)
     page = Page(
         name='discrepancy',
         title='How often the missing effect is found',
@@ -36,7 +40,7 @@ def write_discrepancy(folder: Path, plan: Plan, trials: Sequence[Scored]) -> lis
         alternative=ALTERNATIVE,
         caption=CAPTION,
     )
-    write_page(folder, page, sections, verdicts_figure(trials))
+    write_page(folder, page, sections, verdicts_figure(trials, classes))
     return [row for _, rows in sections for row in rows]
 
 
@@ -52,10 +56,10 @@ def _method(plan: Plan, trials: Sequence[Scored]) -> str:
     why = Counter(trial.key['why_not'].split(' of ')[0] for trial in not_testable)
     listed = ', '.join(f'{name} {count}' for name, count in why.most_common()) or 'none'
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
-    states = len(PLAN[0].states)
+    tows, states, before = len(FULL.tows), len(FULL.tows[0].states), FULL.baseline
     return (
-        f'A trial has {len(PLAN)} tows of {states} steady states, 300 to 900 m of warp at 2.0 to '
-        f'2.4 m/s, eastward and back in turn; nothing is hidden in the first {BASELINE}, which the '
+        f'A trial has {tows} tows of {states} steady states, 300 to 900 m of warp at 2.0 to '
+        f'2.4 m/s, eastward and back in turn; nothing is hidden in the first {before}, which the '
         'diagnosis is told are a baseline. Every third of the others is kept back from naming, '
         'and shows what the repair is worth. The plant is not the model: '
         f'{plan.cut}, netting and its ropes with {NORMAL_DRAG:g} times the drag across and '

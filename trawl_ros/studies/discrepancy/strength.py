@@ -17,7 +17,7 @@ from trawl_ros.diagnosis.candidates import (
     candidates,
     signatures,
 )
-from trawl_ros.diagnosis.evidence import POWER, evidence
+from trawl_ros.diagnosis.evidence import POWER, Evidence, evidence
 from trawl_ros.diagnosis.showing import split
 from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.errors import NoSteadyState
@@ -31,7 +31,7 @@ from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 from trawl_ros.studies.discrepancy.hidden import Hidden
 from trawl_ros.studies.discrepancy.plant import Plant
-from trawl_ros.studies.discrepancy.tows import BASELINE, PLAN
+from trawl_ros.studies.discrepancy.tows import FULL, TrialPlan
 from trawl_ros.studies.identification.plant import Look
 
 ALARM = 0.01 / 30.0
@@ -50,6 +50,7 @@ class Likelihood:
 
     plant: Plant
     fit: Fit
+    plan: TrialPlan
 
     def detectable(self, hidden: Hidden, sign: float, *, beside_catalogue: bool) -> float:
         """Smallest size that is seen in 80 % of trials, infinite if none that is possible is.
@@ -79,11 +80,11 @@ class Likelihood:
 
     def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
         """How many standard deviations strong an effect is."""
-        changed = self.plant.towed([(hidden, size)])
+        changed = self.plant.towed([(hidden, size)], self.plan)
         rows = [OBSERVABLES.index(name) for name in MEASURED]
         columns = [
             (there.values - clean.values)[rows][:, None]
-            for there, clean in zip(_flat(changed), _flat(self.plant.looks), strict=True)
+            for there, clean in zip(_flat(changed), self._clean, strict=True)
         ]
         chosen = {part.window.index for part in self.fit.windows}
         columns = [own for number, own in enumerate(columns) if number in chosen]
@@ -94,24 +95,37 @@ class Likelihood:
         both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
         found = evidence(self.fit, both, np.ones(number + 1))
         left = [found.information[0, 0]]
-        for block in blocks_of_candidates(self._wanted):
+        for block in blocks_of_candidates(self.wanted):
             cosine = found.covered([0], np.ones(1), [place + 1 for place in block])
             left.append(found.information[0, 0] * (1.0 - cosine**2))
         return float(np.sqrt(max(0.0, min(left))))
 
     @cached_property
-    def _wanted(self) -> tuple[Candidate, ...]:
-        predictor = Predictor(self.plant.model, without=frozenset(range(BASELINE)))
+    def _clean(self) -> list[Look]:
+        return _flat(self.plant.towed((), self.plan))
+
+    @cached_property
+    def wanted(self) -> tuple[Candidate, ...]:
+        """All effects of the catalogue."""
+        predictor = Predictor(self.plant.model, without=frozenset(range(self.plan.baseline)))
         depths = np.array([part.window.means['net_depth'] for part in self.fit.windows])
         return candidates(catalogue(), predictor, depths)
 
+    @property
+    def mimicry(self) -> Evidence:
+        """What the plan would say of all effects of the catalogue."""
+        units = np.concatenate([candidate.scale for candidate in self.wanted])
+        return evidence(self.fit, self._mimics, units)
+
     @cached_property
     def _mimics(self) -> list[np.ndarray]:
-        predictor = Predictor(self.plant.model, without=frozenset(range(BASELINE)))
-        return signatures(predictor, self.fit.windows, self._wanted)
+        predictor = Predictor(self.plant.model, without=frozenset(range(self.plan.baseline)))
+        return signatures(predictor, self.fit.windows, self.wanted)
 
 
-def likelihood(plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow]) -> Likelihood:
+def likelihood(
+    plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow], plan: TrialPlan = FULL
+) -> Likelihood:
     """Linearise a plant.
 
     Parameters
@@ -123,11 +137,13 @@ def likelihood(plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow])
     windows
         All windows of the plan, with nothing hidden and without noise, their indices in the order
         of the plan; those that decide are used.
+    plan
+        What is towed.
     """
-    deciding = {window.index for window in split(windows, frozenset(range(BASELINE))).deciding}
+    deciding = {window.index for window in split(windows, frozenset(range(plan.baseline))).deciding}
     rows = [OBSERVABLES.index(name) for name in MEASURED]
     parts = []
-    states = [state for tow in PLAN for state in tow.states]
+    states = [state for tow in plan.tows for state in tow.states]
     for window, state in zip(windows, states, strict=True):
         if window.index not in deciding:
             continue
@@ -149,7 +165,8 @@ def likelihood(plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow])
             )
         )
     options = EstimatorOptions()
-    return Likelihood(plant, Fit(tuple(parts), plant.coefficients, AS_STATED, prior, options))
+    fit = Fit(tuple(parts), plant.coefficients, AS_STATED, prior, options)
+    return Likelihood(plant, fit, plan)
 
 
 def _flat(tows: Sequence[Sequence[Look]]) -> list[Look]:

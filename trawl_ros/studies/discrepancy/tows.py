@@ -1,5 +1,6 @@
-"""The planned trial: which steady states are towed, on which course, and when."""
+"""The planned trials: which steady states are towed, on which course, and when."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,9 +9,6 @@ from trawl_ros.effects.effect import Situation
 
 State = tuple[float, float]
 """Warp length (m) and speed (m/s) as counters and log show them."""
-
-BASELINE = 2
-"""So many tows are of when the gear was in order."""
 
 HOURS_APART = 0.5
 FIRST_HOURS = 0.4
@@ -28,24 +26,50 @@ class PlannedTow:
     states: tuple[State, ...]
     eastward: bool
 
+    @property
+    def sense(self) -> float:
+        """1 eastward, -1 on the reciprocal track."""
+        return 1.0 if self.eastward else -1.0
+
     def moment(self, place: int) -> Situation:
         """When and how the state at a place is towed."""
         length, speed = self.states[place]
         return Situation(
             (length, length, speed),
-            sense=1.0 if self.eastward else -1.0,
+            sense=self.sense,
             hours=FIRST_HOURS + HOURS_APART * place,
         )
 
 
-PLAN = tuple(
-    PlannedTow(states, eastward=number % 2 == 0)
-    for number, states in enumerate((_ONE, _TWO, _THREE, _ONE, _TWO, _THREE, _ONE, _TWO))
-)
-"""The first of them are the `BASELINE`; the states of a tow come early in one and late in another,
-on both courses."""
+@dataclass(frozen=True)
+class TrialPlan:
+    """Tows, of which the first ones are the ``baseline``: of when the gear was in order."""
 
-STATES = tuple(sorted({state for tow in PLAN for state in tow.states}))
+    tows: tuple[PlannedTow, ...]
+    baseline: int
+
+
+FULL = TrialPlan(
+    tuple(
+        PlannedTow(states, eastward=number % 2 == 0)
+        for number, states in enumerate((_ONE, _TWO, _THREE, _ONE, _TWO, _THREE, _ONE, _TWO))
+    ),
+    baseline=2,
+)
+"""The states of a tow come early in one and late in another, on both courses."""
+
+_ALIKE: tuple[State, ...] = ((550.0, 2.0), (550.0, 2.2), (550.0, 2.4))
+POOR = TrialPlan(
+    (*FULL.tows[:2], *(PlannedTow(_ALIKE, eastward=True) for _ in range(3))), baseline=2
+)
+"""With the suspect gear nobody turned round or changed the length of the warps, so that there is
+much that such tows cannot tell apart."""
+
+PLANS: Mapping[str, TrialPlan] = {'full': FULL, 'poor': POOR}
+
+STATES = tuple(
+    sorted({state for plan in PLANS.values() for tow in plan.tows for state in tow.states})
+)
 
 
 def nearest(state: State, known: tuple[State, ...]) -> State:

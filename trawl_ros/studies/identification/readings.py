@@ -50,12 +50,12 @@ class Kind:
         correlated = self.correlated**2 * float(np.mean(self.lag**apart))
         return float(np.sqrt(self.white**2 / self.number + correlated))
 
-    def noise(self, chance: np.random.Generator) -> np.ndarray:
-        """Errors (n,) of the readings of a window."""
-        drawn = chance.standard_normal(self.number)
+    def noise(self, chance: np.random.Generator, number: int | None = None) -> np.ndarray:
+        """Errors (n,) of so many readings, those of a window if None."""
+        drawn = chance.standard_normal(self.number if number is None else number)
         drawn[1:] *= np.sqrt(1.0 - self.lag**2)
         slow = lfilter([1.0], [1.0, -self.lag], drawn)
-        return self.white * chance.standard_normal(self.number) + self.correlated * slow
+        return self.white * chance.standard_normal(len(drawn)) + self.correlated * slow
 
 
 _DEGREE = np.pi / 180.0
@@ -99,6 +99,20 @@ def wrong_by(part: float, chance: np.random.Generator) -> Sensors:
     return Sensors({name: 1.0 + part * chance.choice((-1.0, 1.0)) for name in KINDS})
 
 
+def tow_errors(
+    sensors: Sensors, chance: np.random.Generator
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Draw offsets and errors of scale of all channels for a tow."""
+    offset, scale = (
+        {name: sensors.factor(name) * std * chance.standard_normal() for name, std in stds}
+        for stds in (
+            [(name, CHANNELS[name].bias) for name in NAMES],
+            [(name, CHANNELS[name].bias_fraction) for name in NAMES],
+        )
+    )
+    return offset, scale
+
+
 def steady_windows(
     tows: Sequence[Sequence[Look]],
     sensors: Sensors,
@@ -126,13 +140,7 @@ def steady_windows(
     windows = []
     length_ns = round(WindowOptions.window_s * SECOND)
     for tow, looks in enumerate(tows, first_tow):
-        offset, scale = (
-            {name: sensors.factor(name) * std * chance.standard_normal() for name, std in stds}
-            for stds in (
-                [(name, CHANNELS[name].bias) for name in NAMES],
-                [(name, CHANNELS[name].bias_fraction) for name in NAMES],
-            )
-        )
+        offset, scale = tow_errors(sensors, chance)
         for look in looks:
             means, noise, counts = {}, {}, {}
             for name in NAMES:

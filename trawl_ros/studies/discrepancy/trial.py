@@ -1,0 +1,96 @@
+"""A trial of the blind tests: what is to be made, what is hidden in it, and what was said of it."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+Form = Literal['windows', 'bags', 'dynamic']
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A trial to be made.
+
+    Attributes
+    ----------
+    series
+        'clean', 'inside', 'outside', 'pair' or 'poor', and 'followed' of one that was towed on.
+    number
+        Within the study.
+    effects
+        Names of what is hidden.
+    strength
+        In smallest detectable sizes.
+    signs
+        To which sides.
+    plant
+        Number of the plant.
+    plan
+        Which of `PLANS` is towed.
+    form
+        What the diagnosis reads: windows worked out from steady states, or bags of one steady state
+        after the other, or of tows in time.
+    like
+        Number of the trial in which the same is hidden, where there is one.
+    """
+
+    series: str
+    number: int
+    effects: tuple[str, ...]
+    strength: float
+    signs: tuple[float, ...]
+    plant: int
+    plan: str = 'full'
+    form: Form = 'windows'
+    like: int | None = None
+
+    @property
+    def origin(self) -> int:
+        """Number of the trial in which the same was drawn."""
+        return self.number if self.like is None else self.like
+
+
+@dataclass(frozen=True)
+class Key:
+    """What is hidden in a trial, ``testable`` or not; read by the scorer alone.
+
+    ``floor`` are errors, by channel, that the plant itself would have on what is kept back.
+    """
+
+    spec: Spec
+    sizes: tuple[float, ...]
+    units: tuple[str, ...]
+    detectable: tuple[float, ...]
+    testable: bool
+    why_not: str
+    coefficients: tuple[float, ...]
+    floor: Mapping[str, float]
+
+    def record(self) -> dict[str, Any]:
+        """As JSON has it; sizes that are infinite are null."""
+        record = asdict(self)
+        for name in ('sizes', 'detectable'):
+            record[name] = [value if np.isfinite(value) else None for value in record[name]]
+        return record
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A trial's key, and what was said of it, None where there is nothing.
+
+    Attributes
+    ----------
+    key
+        As `Key.record` has it.
+    diagnosis
+        ``diagnosis.json``; None where the trial is not testable.
+    quiet
+        What readings without errors are best fitted with, the right effect among it; only of some
+        of the trials in which it was named.
+    """
+
+    key: dict[str, Any]
+    diagnosis: dict[str, Any] | None
+    quiet: dict[str, Any] | None = None

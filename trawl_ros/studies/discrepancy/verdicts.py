@@ -1,0 +1,85 @@
+"""What was said of a trial beside what is hidden in it.
+
+Of a trial only its key and ``diagnosis.json`` are known here.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from trawl_ros.studies.discrepancy.trial import Scored
+
+Classes = Mapping[str, tuple[str, ...]]
+"""What is as good as each effect's own name, fixed before any trial is made."""
+
+
+def names_of(trial: Scored) -> set[str]:
+    """Effects that are named."""
+    return {effect['name'] for effect in said_of(trial)['effects']}
+
+
+def reported(trial: Scored) -> set[str]:
+    """All effects that are not excluded."""
+    alike = {name for effect in said_of(trial)['effects'] for name in effect['class']}
+    return names_of(trial) | alike | set(said_of(trial)['ambiguous_with'])
+
+
+def effects_of(trial: Scored) -> tuple[str, ...]:
+    """What is hidden."""
+    return tuple(trial.key['spec']['effects'])
+
+
+def chosen(trials: Iterable[Scored], series: str, strength: float | None = None) -> list[Scored]:
+    """Testable trials of a series and a strength."""
+    return [
+        trial
+        for trial in trials
+        if trial.key['spec']['series'] == series
+        and trial.key['spec']['form'] == 'windows'
+        and trial.diagnosis is not None
+        and (strength is None or trial.key['spec']['strength'] == strength)
+    ]
+
+
+def verdict(trial: Scored) -> str:
+    """The first word of a diagnosis."""
+    return str(said_of(trial)['verdict'])
+
+
+def right(trial: Scored, names: set[str], classes: Classes) -> bool:
+    """Whether all that is hidden is among names, by its own or that of its class."""
+    return all(names & {name, *classes.get(name, ())} for name in effects_of(trial))
+
+
+def named_right(trial: Scored, classes: Classes) -> bool:
+    """Whether there is one name, and the right one."""
+    alone = len(said_of(trial)['effects']) == 1
+    return verdict(trial) == 'NAMED' and alone and right(trial, names_of(trial), classes)
+
+
+def both_named(trial: Scored, classes: Classes) -> bool:
+    """Whether two effects are hidden and both are named."""
+    pair = trial.key['spec']['series'] == 'pair'
+    return pair and verdict(trial) == 'NAMED' and right(trial, names_of(trial), classes)
+
+
+def one_named(trial: Scored, classes: Classes) -> bool:
+    """Whether two effects are hidden and one of them is named, without any that is not there."""
+    names = names_of(trial)
+    pair = trial.key['spec']['series'] == 'pair' and not both_named(trial, classes)
+    return pair and verdict(trial) == 'NAMED' and bool(names) and names <= set(effects_of(trial))
+
+
+def said_of(trial: Scored) -> dict[str, Any]:
+    """Its diagnosis."""
+    assert trial.diagnosis is not None
+    return trial.diagnosis
+
+
+def same_said(trial: Scored, other: Scored) -> bool:
+    """Whether verdict and names are the same."""
+    return verdict(trial) == verdict(other) and names_of(trial) == names_of(other)
+
+
+def parted(trial: Scored) -> bool:
+    """Whether one effect alone is left, and the right one."""
+    return verdict(trial) == 'NAMED' and reported(trial) == set(effects_of(trial))

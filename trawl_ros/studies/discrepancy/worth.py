@@ -1,0 +1,105 @@
+"""What a repair is worth, where the effect was named rightly."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.studies.discrepancy.rates import median, rate
+from trawl_ros.studies.discrepancy.trial import Scored
+from trawl_ros.studies.discrepancy.verdicts import Classes, chosen, effects_of, named_right, said_of
+from trawl_ros.studies.row import Row
+
+
+def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """What the named effect is worth on tows that decided nothing."""
+    named = [
+        trial
+        for trial in chosen(trials, 'inside')
+        if trial.key['spec']['strength'] >= 3.0 and named_right(trial, classes)
+    ]
+    removed, placebo = (
+        [100.0 * part for trial in named if (part := _removed(trial, by)) is not None]
+        for by in ('after', 'placebo')
+    )
+    truth = [_coefficient_ratio(trial, _truth(trial)) for trial in named]
+    quiet = [trial for trial in named if trial.quiet is not None]
+    nearest = [_coefficient_ratio(trial, _quiet(trial)['coefficients']) for trial in quiet]
+    hidden = [_hidden_covered(trial) for trial in named]
+    best = [covered for trial in quiet for covered in _best_covered(trial)]
+    return [
+        median('held-out excess error removed by the effect that is named', removed, '%',
+               least=80.0),
+        median('held-out excess error removed by the best wrong effect', placebo, '%',
+               most=20.0),
+        median('error of the coefficients with the effect named over that without',
+               _known(truth), '', most=1.0 / 3.0),
+        median('the same from what readings without errors are best fitted with',
+               _known(nearest), ''),
+        rate('amplitude intervals that cover the best fit to readings without errors', best,
+             least=90.0, most=98.0, note='all parameters of effects named rightly at 3 times'),
+        rate('amplitude intervals that cover the hidden size',
+             [value for value in hidden if value is not None],
+             note='effects of one parameter whose unit is that of the size'),
+    ]  # fmt: skip
+
+
+def _known(values: Sequence[float | None]) -> list[float]:
+    return [value for value in values if value is not None]
+
+
+def _quiet(trial: Scored) -> dict[str, Any]:
+    assert trial.quiet is not None
+    return trial.quiet
+
+
+def _truth(trial: Scored) -> Mapping[str, float]:
+    return dict(zip(COEFFICIENTS, trial.key['coefficients'], strict=True))
+
+
+def _removed(trial: Scored, by: str) -> float | None:
+    """Part of the mean square error beyond that of the plant itself which a repair removes."""
+    before, after = 0.0, 0.0
+    for name, channel in said_of(trial)['channels'].items():
+        if channel[by] is None or name not in trial.key['floor']:
+            return None
+        floor = trial.key['floor'][name]
+        before += (channel['before'] ** 2 - floor**2) / channel['expected'] ** 2
+        after += (channel[by] ** 2 - floor**2) / channel['expected'] ** 2
+    return 1.0 - after / before if before > 0.0 else None
+
+
+def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | None:
+    """Error of the twelve with the effect over that without, each in its std after."""
+    found = said_of(trial)['coefficients']
+    sums = {'before': 0.0, 'after': 0.0}
+    for name, value in truth.items():
+        own = found[name]
+        if own['after'] is None:
+            return None
+        for when in sums:
+            sums[when] += ((own[when]['value'] - value) / own['after']['std']) ** 2
+    return float(np.sqrt(sums['after'] / sums['before']))
+
+
+def _best_covered(trial: Scored) -> list[bool]:
+    """Whether each interval covers what readings without errors are best fitted with."""
+    name = effects_of(trial)[0]
+    own = [effect for effect in said_of(trial)['effects'] if effect['name'] == name]
+    return [
+        bool(interval['low'] <= _quiet(trial)['parameters'][parameter] <= interval['high'])
+        for effect in own
+        for parameter, interval in effect['parameters'].items()
+    ]
+
+
+def _hidden_covered(trial: Scored) -> bool | None:
+    """Whether the interval of an effect of one parameter covers the hidden size."""
+    effects, name = said_of(trial)['effects'], effects_of(trial)[0]
+    if len(effects) != 1 or effects[0]['name'] != name or len(effects[0]['parameters']) != 1:
+        return None
+    ((_, parameter),) = effects[0]['parameters'].items()
+    neutral = 1.0 if name == 'warp_strumming' else 0.0
+    size = trial.key['sizes'][0] + neutral
+    return bool(parameter['low'] <= size <= parameter['high'])
