@@ -252,6 +252,10 @@ def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
         assert all(record['what'] in text for record in records)
     seen = {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()}
     assert len(seen) == 1
+    assert len((out / 'scorings.jsonl').read_text().splitlines()) == 1
     again = CliRunner().invoke(trawl, few)
     assert again.exit_code == 0, again.output
     assert {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()} == seen
+    first, second = (out / 'scorings.jsonl').read_text().splitlines()
+    assert json.loads(first)['plan'] == json.loads(second)['plan']
+    assert 'kinds of effects outside the catalogue' in json.loads(first)['missed']

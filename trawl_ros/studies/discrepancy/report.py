@@ -1,6 +1,7 @@
 """The page of the blind tests."""
 
 import os
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -11,7 +12,9 @@ from trawl_ros.studies.discrepancy.figure import verdicts_figure
 from trawl_ros.studies.discrepancy.making import DROPOUTS, WRONG_BY
 from trawl_ros.studies.discrepancy.plant import FRICTION, NORMAL_DRAG
 from trawl_ros.studies.discrepancy.rows import all_rows
-from trawl_ros.studies.discrepancy.study import PLANTS, Plan
+from trawl_ros.studies.discrepancy.scorings import log_scoring
+from trawl_ros.studies.discrepancy.study import IN_BAGS, PLANTS, POOR_STRENGTH, Plan
+from trawl_ros.studies.discrepancy.towing import HAULING_SPEED
 from trawl_ros.studies.discrepancy.tows import FULL
 from trawl_ros.studies.discrepancy.trial import Scored
 from trawl_ros.studies.discrepancy.verdicts import Classes
@@ -30,18 +33,20 @@ CAPTION = (
 def write_discrepancy(
     folder: Path, plan: Plan, trials: Sequence[Scored], classes: Classes
 ) -> list[Row]:
-    """Write ``discrepancy.json``, ``.md``, ``.html`` and ``.png``, and give the rows."""
+    """Write ``discrepancy.json``, ``.md``, ``.html`` and ``.png``, log it, and give the rows."""
     sections = all_rows(trials, classes)
     page = Page(
         name='discrepancy',
         title='How often the missing effect is found',
         command=f'trawl study discrepancy{_options(plan)}',
-        method=_method(plan, trials),
+        method=_method(plan, trials, classes),
         alternative=ALTERNATIVE,
         caption=CAPTION,
     )
     write_page(folder, page, sections, verdicts_figure(trials, classes))
-    return [row for _, rows in sections for row in rows]
+    rows = [row for _, own in sections for row in own]
+    log_scoring(folder, plan, len(trials), rows)
+    return rows
 
 
 def _options(plan: Plan) -> str:
@@ -50,10 +55,10 @@ def _options(plan: Plan) -> str:
     return ''.join(f' {word}' for word in words)
 
 
-def _method(plan: Plan, trials: Sequence[Scored]) -> str:
+def _method(plan: Plan, trials: Sequence[Scored], classes: Classes) -> str:
     """How trials were made, in sentences."""
     not_testable = [trial for trial in trials if trial.diagnosis is None]
-    why = Counter(trial.key['why_not'].split(' of ')[0] for trial in not_testable)
+    why = Counter(re.split(' of |:', trial.key['why_not'])[0] for trial in not_testable)
     listed = ', '.join(f'{name} {count}' for name, count in why.most_common()) or 'none'
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
     tows, states, before = len(FULL.tows), len(FULL.tows[0].states), FULL.baseline
@@ -73,8 +78,25 @@ def _method(plan: Plan, trials: Sequence[Scored]) -> str:
         "smallest detectable size by the plant's own likelihood, found before any diagnosis; of an "
         'effect outside the catalogue only what neither coefficients nor the best effect of the '
         'catalogue could mimic counts. The diagnosis runs in a process of its own and reads a '
-        'file of windows with a random name; the score sees diagnosis.json and the key alone. '
+        'file of windows with a random name; the score sees diagnosis.json and the key alone. What '
+        "is as good as an effect's own name was found before any trial was made, from the cosines "
+        f'of the plan ({_listed(classes)}). One in {IN_BAGS} of the trials is made as bags too, of '
+        'every reading, and some of these are towed in time, warps hauled and paid out at '
+        f'{HAULING_SPEED:g} m/s; the sizes hidden, plants and instruments are those of the '
+        'windows, noise and windows are not. Poor trials have, after the same baseline, three '
+        f'tows of one course and one length of warps, and effects of {POOR_STRENGTH:g} times the smallest '
+        'detectable size that look alike in such; what they leave open is towed on as the first '
+        'proposal has it, and diagnosed again. '
         f'{len(trials)} trials, of which {len(not_testable)} are not testable, for the size would '
         f'not be possible or the gear could not be towed ({listed}). '
         f'On {os.cpu_count()} cores of {cpu_model()}, with {versions}.'
     )
+
+
+def _listed(classes: Classes) -> str:
+    wide = [
+        f'{name} or {", ".join(other for other in names if other != name)}'
+        for name, names in classes.items()
+        if len(names) > 1
+    ]
+    return ('for ' + '; '.join(wide)) if wide else 'nothing'
