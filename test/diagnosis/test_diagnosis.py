@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.diagnosis import naming
+from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
 from trawl_ros.diagnosis.refit import refit
@@ -52,6 +53,26 @@ def test_a_catch_that_comes_in_steps_is_named(caught):
     assert low < value < high
     assert unit == 'm² per h'
     assert {where.variable for where in caught.where} & {'time in tow', 'warp length'}
+
+
+def test_a_sensor_that_jumps_is_seen_to_do_so(coarse, clean):
+    late = [
+        part.window
+        for part in clean.seen.fit.windows
+        if (part.window.tow, part.window.hours) >= (2, 1.0)
+    ]
+    assert late
+    assert changes(clean.seen) == ()
+    parts = tuple(
+        replace(part, measured=part.measured + 4.0 * (np.array(part.channels) == 'net_depth'))
+        if part.window in late
+        else part
+        for part in clean.seen.fit.windows
+    )
+    found, *_ = changes(replace(clean.seen, fit=replace(clean.seen.fit, windows=parts)))
+    assert (found.channel, found.variable) == ('net_depth', 'time')
+    assert found.region == 'jumps up in tow 3 after 1.0 h'
+    assert found.z > 5.0
 
 
 def test_the_gap_shrinks_on_a_tow_that_decided_nothing(caught):

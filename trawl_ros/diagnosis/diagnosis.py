@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
@@ -68,8 +69,8 @@ class Diagnosis:
     split
         Windows that decided, and those kept back.
     base, seen, named, where, shown
-        Boards alone; first look; naming; patterns of residuals; errors on what was kept back.
-        None, or empty, where it did not come to that.
+        Boards alone; first look; naming; patterns and jumps of residuals; errors on what was kept
+        back. None, or empty, where it did not come to that.
     checks, proposals
         What to do next where something cannot be told apart: without towing, in sentences, and
         tows.
@@ -161,7 +162,8 @@ def diagnose(
         )
     told('looking for effects')
     seen = screen(predictor, base.fit, catalogue())
-    known = replace(known, base=base, seen=seen, where=telling(seen))
+    where = sorted((*telling(seen), *changes(seen)), key=lambda one: -abs(one.z))
+    known = replace(known, base=base, seen=seen, where=tuple(where))
     if not seen.detected:
         return replace(
             known,

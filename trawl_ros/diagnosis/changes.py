@@ -1,0 +1,59 @@
+"""When something changed: a channel that jumps between two steady states, and stays there."""
+
+from itertools import pairwise
+
+import numpy as np
+from scipy.stats import norm
+
+from trawl_ros.diagnosis.evidence import BLIND, evidence
+from trawl_ros.diagnosis.locating import Where, located
+from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.identification.linearised import Linearised
+
+TIME = 'time'
+CHANCE = 0.01
+"""Part of trials in which a jump is seen somewhere though there is none."""
+
+
+def changes(seen: Screen) -> tuple[Where, ...]:
+    """The most telling jump of each channel, where no other pattern of it tells more; the clearest
+    first.
+
+    A jump after each steady state is looked for in each channel, in the order in which they were
+    towed, with boards and errors of calibration taken out.
+    """
+    parts = seen.fit.windows
+    times = sorted({_time(part) for part in parts})
+    channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))
+    jumps = [(name, before, after) for name in channels for before, after in pairwise(times)]
+    if not jumps:
+        return ()
+    columns = []
+    for part in parts:
+        own = np.zeros((len(part.channels), len(jumps)))
+        std = part.std(1)
+        for place, (name, _, after) in enumerate(jumps):
+            if name in part.channels and _time(part) >= after:
+                row = part.channels.index(name)
+                own[row, place] = std[row]
+        columns.append(own)
+    found = evidence(seen.fit, columns, np.ones(len(jumps)), weights=seen.weights)
+    information = np.diag(found.information)
+    z = found.score / np.sqrt(np.where(information > BLIND, information, np.inf))
+    least = float(norm.isf(0.5 * CHANCE / len(jumps)))
+    others = {where.channel: abs(where.z) for where in reversed(located(seen))}
+    told = []
+    for name in channels:
+        places = [place for place, jump in enumerate(jumps) if jump[0] == name]
+        best = max(places, key=lambda place: abs(z[place]))
+        if abs(z[best]) >= max(least, others.get(name, 0.0)):
+            tow, hours = jumps[best][2]
+            way = 'up' if z[best] > 0.0 else 'down'
+            region = f'jumps {way} in tow {tow + 1} after {hours:.1f} h'
+            told.append(Where(name, TIME, region, float(z[best])))
+    return tuple(sorted(told, key=lambda where: -abs(where.z)))
+
+
+def _time(part: Linearised) -> tuple[int, float]:
+    """Number of the tow, and hours into it."""
+    return part.window.tow, round(part.window.hours, 2)
