@@ -7,6 +7,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.empirical import Empirical, empirical
+from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
@@ -71,6 +72,8 @@ class Diagnosis:
     base, seen, named, where, shown
         Boards alone; first look; naming; patterns and jumps of residuals; errors on what was kept
         back. None, or empty, where it did not come to that.
+    remarks
+        On instruments that need no model to be seen at fault.
     checks, proposals
         What to do next where something cannot be told apart: without towing, in sentences, and
         tows.
@@ -89,6 +92,7 @@ class Diagnosis:
     named: Named | None = None
     where: tuple[Where, ...] = ()
     shown: Shown | None = None
+    remarks: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
     proposals: tuple[Proposal, ...] = ()
     empirical: Empirical | None = None
@@ -144,7 +148,9 @@ def diagnose(
     parts = split(windows, baseline)
     model = build_model(gear)
     predictor = Predictor(model, acting(gear), without=baseline)
-    known = Diagnosis('NOT_TESTABLE', '', gear, tuple(tows), baseline, parts)
+    known = Diagnosis(
+        'NOT_TESTABLE', '', gear, tuple(tows), baseline, parts, remarks=over_ground(windows, tows)
+    )
     examined = {window.state for window in windows if window.tow not in baseline}
     if len(examined) < FEWEST_STATES:
         return replace(
@@ -153,12 +159,14 @@ def diagnose(
             f'{FEWEST_STATES}: what does not vary cannot be told from the boards',
         )
     told('fitting the boards')
-    base = fit_boards(predictor, board_prior(gear), parts.deciding)
+    prior = board_prior(gear)
+    base = fit_boards(predictor, prior, parts.deciding)
     if base is None or len(base.fit.windows) < 0.5 * len(parts.deciding):
         return replace(
             known,
-            reason='most of the windows have no steady state in this model: it is another gear, or '
-            'far from how it was towed',
+            reason=wrong_unit(predictor, prior, parts.deciding)
+            or 'most of the windows have no steady state in this model: it is another gear, or far '
+            'from how it was towed',
         )
     told('looking for effects')
     seen = screen(predictor, base.fit, catalogue())
@@ -183,7 +191,8 @@ def diagnose(
         if noise > NOWHERE_NEAR and left > NEAR:
             return replace(
                 known,
-                reason=f'readings are {noise:.0f} times further from the model than their errors '
+                reason=wrong_unit(predictor, prior, parts.deciding)
+                or f'readings are {noise:.0f} times further from the model than their errors '
                 'explain, and no effect brings them near: it is another gear',
             )
     told('predicting what was kept back')

@@ -55,6 +55,7 @@ def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
             'share': _number(named.left_over.share),
             'noise': None if best is None else max(best.refit.fit.scales),
         },
+        'remarks': list(found.remarks),
         'next_tow': _next(found),
         'tows': [
             {'name': name, 'baseline': place in found.baseline}

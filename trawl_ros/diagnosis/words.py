@@ -29,7 +29,7 @@ def headline(found: Diagnosis) -> str:
 
 def sentences(found: Diagnosis) -> tuple[str, ...]:
     """What else there is to say."""
-    said = []
+    said = list(found.remarks)
     best, named, shown = found.best, found.named, found.shown
     if found.verdict == 'NAMED' and named is not None and named.alike:
         said.append(

@@ -40,8 +40,11 @@ ALARM = 0.01 / 30.0
 SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
 """An effect this many standard deviations strong is seen in 80 % of trials."""
 
-ROUNDS = 3
-"""Of probing with a size near the one that is wanted."""
+ROUNDS = 10
+"""Of probing with a size near the one that is wanted, at most."""
+
+CLOSE = 0.05
+"""Part of a size by which it may be off."""
 
 
 @dataclass(frozen=True)
@@ -63,20 +66,22 @@ class Likelihood:
             Whether what the best effect of the catalogue could mimic does not count.
         """
         most = hidden.most[0] if sign < 0.0 else hidden.most[1]
-        size = min(hidden.probe, most)
+        size, low, high = min(hidden.probe, most), 0.0, np.inf
         for _ in range(ROUNDS):
             try:
                 seen = self._sigmas(hidden, sign * size, beside_catalogue)
             except NoSteadyState:
-                size *= 0.5
+                high, size = size, 0.5 * (low + size)
                 continue
             if seen <= 0.0:
                 return np.inf
             wanted = size * SIGMAS / seen
-            if abs(wanted / size - 1.0) < 0.05 or wanted > most:
+            if abs(wanted / size - 1.0) < CLOSE or (wanted > most and np.isinf(high)):
                 return float(wanted)
-            size = wanted
-        return float(size)
+            low, high = (size, high) if wanted > size else (low, size)
+            # A gear that falls over to one side does so at some size, and hardly leans before.
+            size = wanted if low < wanted < high else 0.5 * (low + high)
+        return float(high)
 
     def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
         """How many standard deviations strong an effect is."""

@@ -75,8 +75,8 @@ class Plan:
     inside: int = 2
     outside: int = 1
     pairs: int = 2
-    poor: int = 2
-    dynamic: int = 4
+    poor: int = 1
+    dynamic: int = 2
     around: int = FINER.around
 
     @property

@@ -1,0 +1,47 @@
+"""Faults of instruments that need no effect to be seen."""
+
+from dataclasses import replace
+
+import pytest
+
+from trawl_ros.diagnosis.diagnosis import diagnose
+from trawl_ros.diagnosis.instruments import over_ground
+from trawl_ros.diagnosis.words import sentences
+from trawl_ros.identification.over_ground import GroundTrack
+
+
+@pytest.fixture(scope='module')
+def in_kilonewtons(coarse, hide):
+    def divided(values):
+        return {
+            name: value / 1000.0 if name.endswith('_tension') else value
+            for name, value in values.items()
+        }
+
+    return [
+        replace(window, means=divided(window.means), noise=divided(window.noise))
+        for window in hide.trial(coarse, hide.nothing, 6, tows=2)
+    ]
+
+
+@pytest.mark.slow
+def test_a_wrong_unit_is_called_so(coarse, hide, in_kilonewtons):
+    found = diagnose(coarse, in_kilonewtons, hide.names[:2])
+    assert found.verdict == 'NOT_TESTABLE'
+    assert 'look like kilonewtons' in found.reason
+    assert 'tension' in found.reason
+
+
+def test_a_log_over_ground_is_told_tow_by_tow(coarse, hide):
+    windows = hide.trial(coarse, hide.nothing, 7, tows=2)
+    copied = [
+        replace(window, track=GroundTrack(0.0, 0.0, 0.1, True)) if window.tow == 1 else window
+        for window in windows
+    ]
+    (said,) = over_ground(copied, ['first', 'second'])
+    assert said.startswith('second: speed (vessel/velocity_water) is speed over ground')
+    assert over_ground(windows, ['first', 'second']) == ()
+    found = diagnose(coarse, copied[:2], ['first', 'second'])
+    assert found.verdict == 'NOT_TESTABLE'
+    assert said not in sentences(found)
+    assert sentences(replace(found, remarks=(said,)))[0] == said

@@ -1,0 +1,36 @@
+"""What readings say of their instruments without any effect: wrong units, a log over ground."""
+
+from collections.abc import Sequence
+
+from trawl_ros.identification.over_ground import OverGround
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.screening import Screening
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.predict import Predictor
+
+UNIT = 'wrong unit'
+JUDGED = 5
+"""So many steady states are asked for their units: all of a tow have the same."""
+
+
+def wrong_unit(
+    predictor: Predictor, prior: BoardPrior, windows: Sequence[SteadyWindow]
+) -> str | None:
+    """A sentence on a channel that speaks in another unit; None where none is found."""
+    screening = Screening(predictor, prior, OBSERVABLES)
+    for window in windows[:: max(1, len(windows) // JUDGED)]:
+        found = screening.judge(window, prior.start).found
+        if found is not None and found.reason == UNIT:
+            return found.detail
+    return None
+
+
+def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, ...]:
+    """A sentence for each tow whose log gives speed over ground."""
+    judge, told = OverGround(), {}
+    for window in sorted(windows, key=lambda one: (one.tow, one.start_ns)):
+        found = judge.judge(window.tow, window.track)
+        if found is not None:
+            told[window.tow] = f'{tows[window.tow]}: {found}.'
+    return tuple(told.values())
