@@ -40,7 +40,7 @@ demo: $(VENV)/ready
 
 test: $(VENV)/ready
 	@$(BIN)/ruff check --quiet .
-	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 lint: $(VENV)/ready
 	@$(BIN)/ruff check .
