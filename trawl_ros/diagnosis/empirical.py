@@ -81,10 +81,8 @@ def empirical(predictor: Predictor, base: Refit, seen: Screen) -> Empirical | No
     best = terms.evidence.chi2(terms.block(ranked[0]))
     if best < EMPIRICAL_OVER_PLACEBO * placebo:
         return None
-    for candidate in ranked[:REFITTED]:
-        found = refitted(predictor, base, terms, (candidate,))
-        if found is not None:
-            break
+    tried = (refitted(predictor, base, terms, (candidate,)) for candidate in ranked[:REFITTED])
+    found = next((one for one in tried if one is not None), None)
     if found is None:
         return None
     (first,) = weigh(base, terms, [found])

@@ -19,5 +19,8 @@ class Term(Effect):
 
 
 def size(unit: str, std: float, bound: float) -> tuple[Parameter, ...]:
-    """The one parameter of a term: 0 where it is not there, possible to both sides."""
+    """The one parameter of a term: 0 where it is not there, possible to both sides.
+
+    ``std`` and ``bound`` are assumed: they scale the search and end it.
+    """
     return (Parameter('size', unit, 0.0, -bound, bound, std),)
