@@ -24,6 +24,7 @@ truth_rate_hz: 1.0
 """
 
 
+@pytest.mark.timeout(600)
 def test_the_chain_loses_nothing_and_ends_with_an_estimate(run, trial, tmp_path):
     trial.write_text(SHORT)
     out = tmp_path / 'demo'

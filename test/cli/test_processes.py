@@ -69,6 +69,14 @@ def test_a_node_ends_cleanly_when_stopped(tmp_path, environment):
     assert running_with(str(tmp_path)) == []
 
 
+def test_a_node_that_has_not_begun_yet_may_be_stopped(tmp_path, environment):
+    with Processes(tmp_path / 'log', environment) as processes:
+        processes.start('winch_node')
+        wait_until(lambda: len(running_with(str(tmp_path))) == 1)
+        processes.stop('winch_node')
+    assert running_with(str(tmp_path)) == []
+
+
 def test_leaving_for_whatever_reason_ends_all(tmp_path, environment):
     def tow_and_fail():
         with Processes(tmp_path / 'log', environment) as processes:

@@ -14,6 +14,10 @@ from types import TracebackType
 from trawl_ros.cli.interruption import Uninterrupted
 from trawl_ros.errors import TrawlError
 
+ENDED = (0, -signal.SIGINT)
+"""How a node ends that is interrupted; the second one had not been imported yet, and had begun
+nothing."""
+
 LAST_LINES = 15
 """What is shown of the output of a process that failed."""
 
@@ -122,7 +126,7 @@ class Processes:
                 code = self._running[node].wait(END_S)
             except subprocess.TimeoutExpired:
                 raise NodeFailed(self._failure(node, None)) from None
-            if code:
+            if code not in ENDED:
                 raise NodeFailed(self._failure(node, code))
             del self._running[node]
 
