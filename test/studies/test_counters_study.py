@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from trawl_ros.cli.main import trawl
 from trawl_ros.errors import TrawlError
 from trawl_ros.studies.counters import FATHOM, read_table
-from trawl_ros.studies.discrepancy.tows import FULL
+from trawl_ros.studies.discrepancy.trials.tows import FULL
 
 MEASURED = Path(__file__).parents[3] / 'shared/data/noaa_trawlmetrics/nwx_wire_vs_counter.csv'
 

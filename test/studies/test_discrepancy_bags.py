@@ -8,19 +8,19 @@ import pytest
 from trawl_ros.effects.effect import Situation
 from trawl_ros.identification.channels import MEASURED
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.studies.discrepancy.classes import classes
-from trawl_ros.studies.discrepancy.course import quasi_steady, settling
 from trawl_ros.studies.discrepancy.diagnosing import _of_bags
-from trawl_ros.studies.discrepancy.following import proposed, tow_on
-from trawl_ros.studies.discrepancy.inside import INSIDE
-from trawl_ros.studies.discrepancy.making import likelihood_of, make
-from trawl_ros.studies.discrepancy.plant import draw_plant
-from trawl_ros.studies.discrepancy.quiet import fit_quietly
-from trawl_ros.studies.discrepancy.recording import record_tows
+from trawl_ros.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.studies.discrepancy.scoring.classes import classes
+from trawl_ros.studies.discrepancy.scoring.quiet import fit_quietly
 from trawl_ros.studies.discrepancy.study import FINER, Plan
-from trawl_ros.studies.discrepancy.towing import acting, towed_in_time
-from trawl_ros.studies.discrepancy.tows import FULL, POOR, PlannedTow
-from trawl_ros.studies.discrepancy.trial import Spec
+from trawl_ros.studies.discrepancy.trials.course import quasi_steady, settling
+from trawl_ros.studies.discrepancy.trials.following import proposed, tow_on
+from trawl_ros.studies.discrepancy.trials.making import likelihood_of, make
+from trawl_ros.studies.discrepancy.trials.plant import draw_plant
+from trawl_ros.studies.discrepancy.trials.recording import record_tows
+from trawl_ros.studies.discrepancy.trials.towing import acting, towed_in_time
+from trawl_ros.studies.discrepancy.trials.tows import FULL, POOR, PlannedTow
+from trawl_ros.studies.discrepancy.trials.trial import Spec
 from trawl_ros.studies.identification.readings import AS_STATED
 
 GEAR, SEED = 'kaifuha', 5

@@ -12,12 +12,10 @@ from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.errors import TrawlError
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.studies.discrepancy.figure import kind_of
-from trawl_ros.studies.discrepancy.inside import INSIDE
-from trawl_ros.studies.discrepancy.making import make
-from trawl_ros.studies.discrepancy.outside import OUTSIDE
-from trawl_ros.studies.discrepancy.plant import draw_plant
-from trawl_ros.studies.discrepancy.rows import (
+from trawl_ros.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.studies.discrepancy.scoring.figure import kind_of
+from trawl_ros.studies.discrepancy.scoring.rows import (
     all_rows,
     bag_rows,
     clean_rows,
@@ -27,12 +25,14 @@ from trawl_ros.studies.discrepancy.rows import (
     poor_rows,
     shuffled_rows,
 )
+from trawl_ros.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.studies.discrepancy.stages import run_blind
 from trawl_ros.studies.discrepancy.study import FINER, Plan
-from trawl_ros.studies.discrepancy.tows import FULL
-from trawl_ros.studies.discrepancy.trial import Scored, Spec
-from trawl_ros.studies.discrepancy.windows_file import read_windows, write_windows
-from trawl_ros.studies.discrepancy.worth import repair_rows
+from trawl_ros.studies.discrepancy.trials.making import make
+from trawl_ros.studies.discrepancy.trials.plant import draw_plant
+from trawl_ros.studies.discrepancy.trials.tows import FULL
+from trawl_ros.studies.discrepancy.trials.trial import Scored, Spec
+from trawl_ros.studies.discrepancy.trials.windows_file import read_windows, write_windows
 
 SEED = 5
 ALONE = {name: (name,) for name in INSIDE} | {'heave': ('heave', 'speed_log')}

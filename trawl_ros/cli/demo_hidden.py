@@ -13,10 +13,10 @@ from trawl_ros.diagnosis.writing import MODEL, write_diagnosis
 from trawl_ros.errors import TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.studies.discrepancy.making import make
 from trawl_ros.studies.discrepancy.study import FINER
-from trawl_ros.studies.discrepancy.tows import FULL
-from trawl_ros.studies.discrepancy.trial import Spec
+from trawl_ros.studies.discrepancy.trials.making import make
+from trawl_ros.studies.discrepancy.trials.tows import FULL
+from trawl_ros.studies.discrepancy.trials.trial import Spec
 
 HIDDEN = Spec('inside', 0, ('current_shear',), 5.0, (1.0,), plant=0)
 """A curved shear, which is not the form that the catalogue gives it."""

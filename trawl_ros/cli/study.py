@@ -16,8 +16,8 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
 from trawl_ros.studies.counters import REPORT as COUNTERS_REPORT
 from trawl_ros.studies.counters import read_table, run_counters
-from trawl_ros.studies.discrepancy.report import REPORT as DISCREPANCY_REPORT
-from trawl_ros.studies.discrepancy.report import write_discrepancy
+from trawl_ros.studies.discrepancy.scoring.report import REPORT as DISCREPANCY_REPORT
+from trawl_ros.studies.discrepancy.scoring.report import write_discrepancy
 from trawl_ros.studies.discrepancy.stages import read_classes, run_blind
 from trawl_ros.studies.discrepancy.study import Plan as DiscrepancyPlan
 from trawl_ros.studies.identification.report import REPORT as IDENTIFICATION_REPORT

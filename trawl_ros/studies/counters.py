@@ -16,11 +16,11 @@ from trawl_ros.diagnosis.words import headline
 from trawl_ros.effects.effect import Situation
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.window_records import SteadyWindow
-from trawl_ros.studies.discrepancy.hidden import Hidden
-from trawl_ros.studies.discrepancy.making import WRONG_BY, windows_of
-from trawl_ros.studies.discrepancy.plant import draw_plant
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.studies.discrepancy.study import FINER
-from trawl_ros.studies.discrepancy.tows import FULL, TrialPlan
+from trawl_ros.studies.discrepancy.trials.making import WRONG_BY, windows_of
+from trawl_ros.studies.discrepancy.trials.plant import draw_plant
+from trawl_ros.studies.discrepancy.trials.tows import FULL, TrialPlan
 from trawl_ros.studies.identification.readings import wrong_by
 from trawl_ros.studies.page import Page, write_page
 from trawl_ros.studies.row import Row

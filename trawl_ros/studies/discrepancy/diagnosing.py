@@ -11,7 +11,7 @@ from trawl_ros.identification.bag_windows import BagTask, read_tow
 from trawl_ros.identification.tows import numbered
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.messages.topics import NAMESPACE
-from trawl_ros.studies.discrepancy.windows_file import read_windows
+from trawl_ros.studies.discrepancy.trials.windows_file import read_windows
 from trawl_ros.studies.identification.plant import Cut
 
 

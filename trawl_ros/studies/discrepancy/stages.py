@@ -12,17 +12,17 @@ import numpy as np
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.files import empty_folder, write_json
-from trawl_ros.studies.discrepancy.classes import classes
 from trawl_ros.studies.discrepancy.diagnosing import Case, diagnose_case
-from trawl_ros.studies.discrepancy.following import proposed, tow_on
-from trawl_ros.studies.discrepancy.in_bags import make_bags
-from trawl_ros.studies.discrepancy.making import likelihood_of, make
-from trawl_ros.studies.discrepancy.quiet import fit_quietly
+from trawl_ros.studies.discrepancy.scoring.classes import classes
+from trawl_ros.studies.discrepancy.scoring.quiet import fit_quietly
+from trawl_ros.studies.discrepancy.scoring.verdicts import Classes, named_right
 from trawl_ros.studies.discrepancy.study import Plan
-from trawl_ros.studies.discrepancy.tows import PLANS
-from trawl_ros.studies.discrepancy.trial import Scored, Spec
-from trawl_ros.studies.discrepancy.verdicts import Classes, named_right
-from trawl_ros.studies.discrepancy.windows_file import read_windows, write_windows
+from trawl_ros.studies.discrepancy.trials.following import proposed, tow_on
+from trawl_ros.studies.discrepancy.trials.in_bags import make_bags
+from trawl_ros.studies.discrepancy.trials.making import likelihood_of, make
+from trawl_ros.studies.discrepancy.trials.tows import PLANS
+from trawl_ros.studies.discrepancy.trials.trial import Scored, Spec
+from trawl_ros.studies.discrepancy.trials.windows_file import read_windows, write_windows
 
 Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 Task = TypeVar('Task')

@@ -6,9 +6,9 @@ from itertools import count, product
 
 import numpy as np
 
-from trawl_ros.studies.discrepancy.inside import INSIDE
-from trawl_ros.studies.discrepancy.outside import OUTSIDE
-from trawl_ros.studies.discrepancy.trial import Form, Spec
+from trawl_ros.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.studies.discrepancy.trials.trial import Form, Spec
 from trawl_ros.studies.identification.plant import Cut
 
 SEED = 33

@@ -6,9 +6,15 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.studies.discrepancy.rates import median, rate
-from trawl_ros.studies.discrepancy.trial import Scored
-from trawl_ros.studies.discrepancy.verdicts import Classes, chosen, effects_of, named_right, said_of
+from trawl_ros.studies.discrepancy.scoring.rates import median, rate
+from trawl_ros.studies.discrepancy.scoring.verdicts import (
+    Classes,
+    chosen,
+    effects_of,
+    named_right,
+    said_of,
+)
+from trawl_ros.studies.discrepancy.trials.trial import Scored
 from trawl_ros.studies.row import Row
 
 

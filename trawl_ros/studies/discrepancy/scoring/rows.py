@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from trawl_ros.studies.discrepancy.rates import rate
-from trawl_ros.studies.discrepancy.trial import Scored
-from trawl_ros.studies.discrepancy.verdicts import (
+from trawl_ros.studies.discrepancy.scoring.rates import rate
+from trawl_ros.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
     chosen,
@@ -23,7 +22,8 @@ from trawl_ros.studies.discrepancy.verdicts import (
     same_said,
     verdict,
 )
-from trawl_ros.studies.discrepancy.worth import repair_rows
+from trawl_ros.studies.discrepancy.scoring.worth import repair_rows
+from trawl_ros.studies.discrepancy.trials.trial import Scored
 from trawl_ros.studies.row import Row
 
 

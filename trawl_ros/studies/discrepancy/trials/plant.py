@@ -13,8 +13,8 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
-from trawl_ros.studies.discrepancy.hidden import Hidden
-from trawl_ros.studies.discrepancy.tows import (
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.studies.discrepancy.trials.tows import (
     FULL,
     STATES,
     PlannedTow,

@@ -6,7 +6,7 @@ Of a trial only its key and ``diagnosis.json`` are known here.
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from trawl_ros.studies.discrepancy.trial import Scored
+from trawl_ros.studies.discrepancy.trials.trial import Scored
 
 Classes = Mapping[str, tuple[str, ...]]
 """What is as good as each effect's own name, fixed before any trial is made."""

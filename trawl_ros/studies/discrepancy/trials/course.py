@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.identification.window_records import WindowOptions
-from trawl_ros.studies.discrepancy.tows import PlannedTow
+from trawl_ros.studies.discrepancy.trials.tows import PlannedTow
 from trawl_ros.studies.identification.plant import Look
 
 HOLD_S = 90.0

@@ -10,9 +10,9 @@ from trawl_ros.effects.effect import Effect, Parameter, Readings, Situation
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import OBSERVABLES, observe
 from trawl_ros.simulation.simulation import Command, Instant, Simulation, tow_of
-from trawl_ros.studies.discrepancy.course import EARLY_S, HOLD_S, Course, settling
-from trawl_ros.studies.discrepancy.hidden import Hidden
-from trawl_ros.studies.discrepancy.tows import PlannedTow
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.studies.discrepancy.trials.course import EARLY_S, HOLD_S, Course, settling
+from trawl_ros.studies.discrepancy.trials.tows import PlannedTow
 
 HAULING_SPEED = 2.4
 """Warps are hauled and paid out at this speed (m/s): at less, boards lose their lift meanwhile."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from trawl_ros.effects.effect import Situation
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.studies.discrepancy.hidden import Hidden, Readings, ahead
-from trawl_ros.studies.discrepancy.inside import CABLES, Draw
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
+from trawl_ros.studies.discrepancy.hidden_effects.inside import CABLES, Draw
 
 AHEAD, LIFT, UP = 0, 1, 2
 USUAL_ATTACK = 0.3

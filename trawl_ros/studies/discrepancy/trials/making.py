@@ -14,13 +14,13 @@ from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.identification.over_ground import GroundTrack
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.observables import OBSERVABLES
-from trawl_ros.studies.discrepancy.hidden import Hidden
-from trawl_ros.studies.discrepancy.inside import INSIDE
-from trawl_ros.studies.discrepancy.outside import OUTSIDE
-from trawl_ros.studies.discrepancy.plant import Plant, draw_plant
-from trawl_ros.studies.discrepancy.strength import Likelihood, likelihood
-from trawl_ros.studies.discrepancy.tows import PLANS, TrialPlan
-from trawl_ros.studies.discrepancy.trial import Key, Spec
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.studies.discrepancy.trials.plant import Plant, draw_plant
+from trawl_ros.studies.discrepancy.trials.strength import Likelihood, likelihood
+from trawl_ros.studies.discrepancy.trials.tows import PLANS, TrialPlan
+from trawl_ros.studies.discrepancy.trials.trial import Key, Spec
 from trawl_ros.studies.identification.plant import Cut, Look
 from trawl_ros.studies.identification.readings import AS_STATED, Sensors, steady_windows, wrong_by
 

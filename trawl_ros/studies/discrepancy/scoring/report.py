@@ -8,16 +8,16 @@ from dataclasses import asdict
 from pathlib import Path
 
 from trawl_ros.benchmark.machine import cpu_model, software
-from trawl_ros.studies.discrepancy.figure import verdicts_figure
-from trawl_ros.studies.discrepancy.making import DROPOUTS, WRONG_BY
-from trawl_ros.studies.discrepancy.plant import FRICTION, NORMAL_DRAG
-from trawl_ros.studies.discrepancy.rows import all_rows
-from trawl_ros.studies.discrepancy.scorings import log_scoring
+from trawl_ros.studies.discrepancy.scoring.figure import verdicts_figure
+from trawl_ros.studies.discrepancy.scoring.rows import all_rows
+from trawl_ros.studies.discrepancy.scoring.scorings import log_scoring
+from trawl_ros.studies.discrepancy.scoring.verdicts import Classes
 from trawl_ros.studies.discrepancy.study import IN_BAGS, PLANTS, POOR_STRENGTH, Plan
-from trawl_ros.studies.discrepancy.towing import HAULING_SPEED
-from trawl_ros.studies.discrepancy.tows import FULL
-from trawl_ros.studies.discrepancy.trial import Scored
-from trawl_ros.studies.discrepancy.verdicts import Classes
+from trawl_ros.studies.discrepancy.trials.making import DROPOUTS, WRONG_BY
+from trawl_ros.studies.discrepancy.trials.plant import FRICTION, NORMAL_DRAG
+from trawl_ros.studies.discrepancy.trials.towing import HAULING_SPEED
+from trawl_ros.studies.discrepancy.trials.tows import FULL
+from trawl_ros.studies.discrepancy.trials.trial import Scored
 from trawl_ros.studies.page import Page, write_page
 from trawl_ros.studies.row import Row
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 from trawl_ros.identification.window_records import SteadyWindow
-from trawl_ros.studies.discrepancy.making import chance_of, hide, windows_of
-from trawl_ros.studies.discrepancy.tows import PlannedTow, TrialPlan
-from trawl_ros.studies.discrepancy.trial import Key, Spec
+from trawl_ros.studies.discrepancy.trials.making import chance_of, hide, windows_of
+from trawl_ros.studies.discrepancy.trials.tows import PlannedTow, TrialPlan
+from trawl_ros.studies.discrepancy.trials.trial import Key, Spec
 from trawl_ros.studies.identification.plant import Cut
 
 SERIES = 'followed'

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import blocks_of_candidates
 from trawl_ros.diagnosis.rules import ALIKE
-from trawl_ros.studies.discrepancy.strength import Likelihood
+from trawl_ros.studies.discrepancy.trials.strength import Likelihood
 
 
 def classes(likely: Likelihood) -> Mapping[str, tuple[str, ...]]:

@@ -29,9 +29,9 @@ from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
-from trawl_ros.studies.discrepancy.hidden import Hidden
-from trawl_ros.studies.discrepancy.plant import Plant
-from trawl_ros.studies.discrepancy.tows import FULL, TrialPlan
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.studies.discrepancy.trials.plant import Plant
+from trawl_ros.studies.discrepancy.trials.tows import FULL, TrialPlan
 from trawl_ros.studies.identification.plant import Look
 
 ALARM = 0.01 / 30.0

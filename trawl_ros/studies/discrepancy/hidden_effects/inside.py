@@ -10,7 +10,7 @@ import numpy as np
 
 from trawl_ros.effects.effect import Situation
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.studies.discrepancy.hidden import Hidden, Readings, ahead
+from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
 
 Draw = Callable[[np.random.Generator], Hidden]
 

@@ -5,12 +5,12 @@ from pathlib import Path
 
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.solver.stepper import StepFailed
-from trawl_ros.studies.discrepancy.course import Course, quasi_steady
-from trawl_ros.studies.discrepancy.making import DROPOUTS, Hiding, chance_of, hide
-from trawl_ros.studies.discrepancy.recording import record_tows
-from trawl_ros.studies.discrepancy.towing import towed_in_time
-from trawl_ros.studies.discrepancy.tows import PLANS
-from trawl_ros.studies.discrepancy.trial import Key, Spec
+from trawl_ros.studies.discrepancy.trials.course import Course, quasi_steady
+from trawl_ros.studies.discrepancy.trials.making import DROPOUTS, Hiding, chance_of, hide
+from trawl_ros.studies.discrepancy.trials.recording import record_tows
+from trawl_ros.studies.discrepancy.trials.towing import towed_in_time
+from trawl_ros.studies.discrepancy.trials.tows import PLANS
+from trawl_ros.studies.discrepancy.trials.trial import Key, Spec
 from trawl_ros.studies.identification.plant import Cut
 
 

@@ -7,8 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trawl_ros.plots import style
-from trawl_ros.studies.discrepancy.trial import Scored
-from trawl_ros.studies.discrepancy.verdicts import (
+from trawl_ros.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
     chosen,
@@ -21,6 +20,7 @@ from trawl_ros.studies.discrepancy.verdicts import (
     said_of,
     verdict,
 )
+from trawl_ros.studies.discrepancy.trials.trial import Scored
 
 KINDS = {
     'right name': '#1b7f4b',

@@ -23,7 +23,7 @@ from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.topics import absolute
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.model.water import Water
-from trawl_ros.studies.discrepancy.course import Course
+from trawl_ros.studies.discrepancy.trials.course import Course
 from trawl_ros.studies.identification.readings import KINDS, NAMES, Sensors, tow_errors
 
 SILENT_S = 90.0
