@@ -15,6 +15,7 @@ from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
 from trawl_ros.studies.counters import REPORT as COUNTERS_REPORT
+from trawl_ros.studies.counters import SEED as COUNTERS_SEED
 from trawl_ros.studies.counters import read_table, run_counters
 from trawl_ros.studies.discrepancy.scoring.report import REPORT as DISCREPANCY_REPORT
 from trawl_ros.studies.discrepancy.scoring.report import write_discrepancy
@@ -172,8 +173,10 @@ def identification(
 @click.option('--table', required=True, type=FILE, help='CSV of true wire and what both counters '
               'showed, in fathoms: wire_out_fm, winch_stbd_fm, winch_port_fm.')  # fmt: skip
 @click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--seed', default=COUNTERS_SEED, show_default=True, type=click.IntRange(0, 2**31),
+              help='Of plant, noise and biases.')  # fmt: skip
 @click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
-def counters(table: Path, out: Path, force: bool) -> None:
+def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     """Diagnose a simulated trial whose winch counters err as measured ones did.
 
     With tows of a baseline and without. Writes counters.json, .md, .html and .png.
@@ -182,7 +185,9 @@ def counters(table: Path, out: Path, force: bool) -> None:
     empty_folder(out, force=force).mkdir(parents=True, exist_ok=True)
     console = error_console()
     try:
-        rows = run_counters(known, out, lambda title, number: _counted(title, number, console))
+        rows = run_counters(
+            known, out, lambda title, number: _counted(title, number, console), seed
+        )
     except KeyboardInterrupt:
         console.print('stopped; no report is written')
         raise SystemExit(INTERRUPTED) from None

@@ -33,6 +33,8 @@ ROUNDS = 3
 """So many times the tows of the plan are towed."""
 
 SEED = 43
+"""Of the trial as it is reported; rules were chosen by looking at those of 1, 41 and 42."""
+
 GEAR = 'kaifuha'
 ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
 """What about 3 % and about 13 m are."""
@@ -89,7 +91,7 @@ def read_table(path: Path) -> Table:
     return Table(wire, port, starboard)
 
 
-def run_counters(table: Table, folder: Path, steps: Steps) -> list[Row]:
+def run_counters(table: Table, folder: Path, steps: Steps, seed: int = SEED) -> list[Row]:
     """Make the trial, diagnose it with and without a baseline, and write the page.
 
     Parameters
@@ -100,9 +102,11 @@ def run_counters(table: Table, folder: Path, steps: Steps) -> list[Row]:
         Takes ``counters.json``, ``.md``, ``.html`` and ``.png``.
     steps
         Shows progress.
+    seed
+        Of plant, noise and biases.
     """
     with steps('counters', 3) as done:
-        plant = draw_plant(GEAR, FINER, SEED, 0)
+        plant = draw_plant(GEAR, FINER, seed, 0)
         looks = plant.towed([(table.hidden(), 1.0)])
         before = FULL.baseline
         examined = [*looks[before:]] * ROUNDS
@@ -110,7 +114,7 @@ def run_counters(table: Table, folder: Path, steps: Steps) -> list[Row]:
         plan = TrialPlan(
             (*FULL.tows[:before] * ROUNDS, *FULL.tows[before:] * ROUNDS), ROUNDS * before
         )
-        chance = np.random.default_rng(SEED)
+        chance = np.random.default_rng(seed)
         sensors = wrong_by(WRONG_BY, chance)
         windows, _ = windows_of(tows, chance, plan, sensors)
         done()
@@ -126,13 +130,13 @@ def run_counters(table: Table, folder: Path, steps: Steps) -> list[Row]:
     page = Page(
         name='counters',
         title='Winch counters that err as measured ones did',
-        command='trawl study counters --table FILE',
+        command=f'trawl study counters --table FILE{"" if seed == SEED else f" --seed {seed}"}',
         method=(
             'True wire beside what the counters of both winches showed drives a simulated trial: '
             f'where the table has a counter, the gear is towed with the wire beside it. {before} '
             f'tows of a baseline with sound counters and {len(examined)} with these, '
             f'{len(FULL.tows[0].states)} steady states each; plant, noise and biases as in the '
-            f'blind tests, seed {SEED}. With the baseline: {with_baseline.verdict}. '
+            f'blind tests, seed {seed}. With the baseline: {with_baseline.verdict}. '
             f'{headline(with_baseline)} Without it: {without.verdict}. {headline(without)}'
         ),
         alternative='Errors on tows that decided nothing, before and after',
