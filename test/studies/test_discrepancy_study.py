@@ -220,6 +220,8 @@ def test_bags_are_set_beside_their_windows():
     rows = bag_rows([first, other])
     assert rows[0].value == 0.0
     assert 'catch_build_up NAMED UNKNOWN' in rows[0].note
+    rows = bag_rows([replace(first, diagnosis=None), other])
+    assert rows[0].note == 'no trials'
 
 
 def test_shuffled_keys_score_as_chance_would():

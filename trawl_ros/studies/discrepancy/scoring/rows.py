@@ -166,12 +166,18 @@ def bag_rows(trials: Sequence[Scored]) -> list[Row]:
     by_number: Mapping[int, Scored] = {
         trial.key['spec']['number']: trial
         for trial in trials
-        if trial.key['spec']['form'] == 'windows' and trial.key['spec']['series'] != 'followed'
+        if trial.key['spec']['form'] == 'windows'
+        and trial.key['spec']['series'] != 'followed'
+        and trial.diagnosis is not None
     }
     rows = []
     for form, words in (('bags', 'one state after the other'), ('dynamic', 'towed in time')):
         own = [t for t in trials if t.key['spec']['form'] == form and t.diagnosis is not None]
-        pairs = [(trial, by_number[trial.key['spec']['like']]) for trial in own]
+        pairs = [
+            (trial, by_number[like])
+            for trial in own
+            if (like := trial.key['spec']['like']) in by_number
+        ]
         listed = ', '.join(
             f'{"+".join(effects_of(trial)) or "clean"} {verdict(other)} {verdict(trial)}'
             for trial, other in pairs
