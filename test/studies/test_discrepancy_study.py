@@ -180,6 +180,8 @@ def test_of_two_effects_both_count_and_one_is_told_apart():
     assert [kind_of(trial, ALONE) for trial in pairs] == [
         'right name', 'one of two', 'wrong name', 'several names, the right one among them',
     ]  # fmt: skip
+    beside = scored('NAMED', ['catch_build_up', 'heave'])
+    assert kind_of(beside, ALONE) == 'right name and another beside it'
 
 
 def test_a_repair_is_measured_against_the_truth():

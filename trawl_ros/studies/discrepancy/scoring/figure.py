@@ -24,6 +24,7 @@ from trawl_ros.studies.discrepancy.trials.trial import Scored
 
 KINDS = {
     'right name': '#1b7f4b',
+    'right name and another beside it': '#57a877',
     'several names, the right one among them': '#8fcfaa',
     'no discrepancy seen': '#dfe3e6',
     'UNKNOWN': '#8a9399',
@@ -54,7 +55,12 @@ def kind_of(trial: Scored, classes: Classes) -> str:
     if said == 'NAMED':
         if both_named(trial, classes) or (effects_of(trial) and named_right(trial, classes)):
             return 'right name'
-        return 'one of two' if one_named(trial, classes) else 'wrong name'
+        if one_named(trial, classes):
+            return 'one of two'
+        if effects_of(trial) and right(trial, names_of(trial), classes):
+            return 'right name and another beside it'
+        among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
+        return 'several names, the right one among them' if among else 'wrong name'
     if said == 'AMBIGUOUS':
         among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
         return 'several names, ' + ('the right one among them' if among else 'all wrong')
