@@ -6,8 +6,8 @@ import numpy as np
 from scipy.stats import norm
 
 from trawl_ros.diagnosis.evidence import BLIND, evidence
-from trawl_ros.diagnosis.locating import Where, located
-from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.diagnosis.locating import Where
+from trawl_ros.diagnosis.screen import Screen, blocks_of
 from trawl_ros.identification.linearised import Linearised
 
 TIME = 'time'
@@ -16,8 +16,8 @@ CHANCE = 0.01
 
 
 def changes(seen: Screen) -> tuple[Where, ...]:
-    """The most telling jump of each channel, where no other pattern of it tells more; the clearest
-    first.
+    """The most telling jump of each channel, where it alone explains more than all patterns of the
+    channel together; the clearest first.
 
     A jump after each steady state is looked for in each channel, in the order in which they were
     towed, with boards and errors of calibration taken out.
@@ -41,12 +41,13 @@ def changes(seen: Screen) -> tuple[Where, ...]:
     information = np.diag(found.information)
     z = found.score / np.sqrt(np.where(information > BLIND, information, np.inf))
     least = float(norm.isf(0.5 * CHANCE / len(jumps)))
-    others = {where.channel: abs(where.z) for where in reversed(located(seen))}
+    usual = evidence(seen.fit, seen.shapes, np.ones(len(seen.patterns)), weights=seen.weights)
+    together = {name: usual.chi2(block) for name, block in blocks_of(seen.patterns, 0).items()}
     told = []
     for name in channels:
         places = [place for place, jump in enumerate(jumps) if jump[0] == name]
         best = max(places, key=lambda place: abs(z[place]))
-        if abs(z[best]) >= max(least, others.get(name, 0.0)):
+        if abs(z[best]) >= max(least, float(np.sqrt(together[name]))):
             tow, hours = jumps[best][2]
             way = 'up' if z[best] > 0.0 else 'down'
             region = f'jumps {way} in tow {tow + 1} after {hours:.1f} h'
