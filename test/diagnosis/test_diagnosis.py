@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import naming
+from trawl_ros.diagnosis import fit_beside, naming
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
@@ -17,6 +17,7 @@ from trawl_ros.diagnosis.result import result
 from trawl_ros.diagnosis.words import headline, sentences
 from trawl_ros.diagnosis.writing import write_diagnosis
 from trawl_ros.gear.load import load_gear
+from trawl_ros.identification.estimator import POOR
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 
@@ -120,17 +121,43 @@ def test_all_is_written(caught, tmp_path):
     assert (tmp_path / 'out' / 'report.md').read_text().startswith('# Diagnosis of the gear')
 
 
-def test_a_baseline_keeps_the_boards_out_of_it(coarse, hide):
+@pytest.fixture(scope='module')
+def with_cells(coarse, hide):
+    """Tows before and after the cells began to show too much."""
     before = hide.trial(coarse, hide.nothing, 3, tows=3)
     after = hide.trial(coarse, hide.cells, 4, tows=3, first=3)
     after = [
         replace(window, index=window.index + 100, state=window.state + 100) for window in after
     ]
-    found = diagnose(coarse, [*before, *after], hide.names[:6], frozenset({0, 1, 2}))
+    return [*before, *after]
+
+
+BEFORE = frozenset({0, 1, 2})
+
+
+@pytest.fixture(scope='module')
+def beside_baseline(coarse, with_cells, hide):
+    return diagnose(coarse, with_cells, hide.names[:6], BEFORE)
+
+
+def test_a_baseline_keeps_the_boards_out_of_it(beside_baseline):
+    found = beside_baseline
     assert found.verdict == 'NAMED', found.reason
     values = values_of(found.best.refit)['tension_cell']
     _, low, high, _ = values['scale']
     assert low < 0.15 < high or np.isclose(values['scale'][0], 0.15, atol=0.03)
+
+
+@pytest.mark.parametrize('poor', [POOR, 0.0])
+def test_what_was_found_is_not_in_the_baseline(
+    beside_baseline, with_cells, hide, poor, monkeypatch
+):
+    # However good the first fit is, with 0 the boards are fitted without the effect, which then
+    # comes in.
+    monkeypatch.setattr(fit_beside, 'POOR', poor)
+    gear = repaired(beside_baseline, [])
+    again = diagnose(gear, with_cells, hide.names[:6], BEFORE)
+    assert again.verdict == 'NO_DISCREPANCY', again.reason
 
 
 def test_what_does_not_vary_tells_nothing(coarse, hide):

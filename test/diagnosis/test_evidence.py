@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.diagnosis.evidence import Evidence, detectable, tail, threshold
+from trawl_ros.diagnosis.screen import looks_at
 
 
 @pytest.fixture(scope='module')
@@ -54,6 +55,11 @@ def test_a_threshold_is_exceeded_as_often_as_it_says(case):
         found = gathered(seen, chance.normal(size=60))
         exceeded += max(found.strength(block) for block in BLOCKS) > limit
     assert 0.035 < exceeded / 2000 < 0.068
+
+
+def test_a_block_is_looked_at_as_a_whole_and_value_by_value():
+    assert looks_at(range(3, 4)) == [range(3, 4)]
+    assert looks_at(range(3, 5)) == [range(3, 5), range(3, 4), range(4, 5)]
 
 
 def test_what_is_detectable_is_detected_four_times_of_five(case):

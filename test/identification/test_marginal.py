@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.identification.calibration import tow_biases
-from trawl_ros.identification.error_terms import GROUP_OF, TERMS
+from trawl_ros.identification.error_terms import GROUP_OF, LONGER, TERMS, USUAL_LENGTH
 from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.fit import Fit
@@ -122,3 +122,17 @@ def test_what_an_instrument_reads_too_high_is_found_per_tow(sea, model, prior):
     others = [abs(bias.value / bias.known) for (_, name), bias in biases.items()
               if name != 'net_depth']  # fmt: skip
     assert max(others) < 0.5
+
+
+def test_errors_of_the_model_may_change_with_the_warps(fit):
+    trend = replace(fit, options=replace(fit.options, model_trend=0.5), known=None)
+    groups = len(fit.scales)
+    for tow in trend.errors:
+        constant, changing = tow.model[:, :, :groups], tow.model[:, :, groups:]
+        lengths = [fit.windows[row].window.means['port_length'] for row in tow.rows]
+        longer = 0.5 * np.log(np.array(lengths) / USUAL_LENGTH) / np.log(LONGER)
+        np.testing.assert_allclose(changing, constant * longer[:, None, None], rtol=0.02, atol=1e-4)
+        assert np.ptp(longer) > 0.2
+    # What may change is known less well.
+    before, after = (np.linalg.norm(one.knowledge.root, axis=1) for one in (fit, trend))
+    assert np.all(after >= before * (1.0 - 1e-9))

@@ -18,7 +18,7 @@ from trawl_ros.studies.discrepancy.trials.making import make
 from trawl_ros.studies.discrepancy.trials.tows import FULL
 from trawl_ros.studies.discrepancy.trials.trial import Spec
 
-HIDDEN = Spec('inside', 0, ('current_shear',), 5.0, (1.0,), plant=0)
+HIDDEN = Spec('inside', 0, ('current_shear',), 5.0, (1.0,), plant=1)
 """A curved shear, which is not the form that the catalogue gives it."""
 
 SEED = 6

@@ -7,6 +7,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.empirical import Empirical, empirical
+from trawl_ros.diagnosis.fit_beside import fit_beside
 from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
@@ -147,7 +148,9 @@ def diagnose(
     """
     parts = split(windows, baseline)
     model = build_model(gear)
-    predictor = Predictor(model, acting(gear), without=baseline)
+    # What an earlier diagnosis has found is what the gear in order did not have.
+    new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
+    predictor = Predictor(model, acting(gear), without=baseline, new=new)
     known = Diagnosis(
         'NOT_TESTABLE', '', gear, tuple(tows), baseline, parts, remarks=over_ground(windows, tows)
     )
@@ -160,7 +163,8 @@ def diagnose(
         )
     told('fitting the boards')
     prior = board_prior(gear)
-    base = fit_boards(predictor, prior, parts.deciding)
+    fit = fit_beside if new else fit_boards
+    base = fit(predictor, prior, parts.deciding)
     if base is None or len(base.fit.windows) < 0.5 * len(parts.deciding):
         return replace(
             known,

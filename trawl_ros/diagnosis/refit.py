@@ -18,9 +18,15 @@ from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 OPTIONS = EstimatorOptions(
-    second_start=False, iterations_final=14, halvings=3, relinearise_final=0.1, tolerance=0.05
+    second_start=False,
+    iterations_final=14,
+    halvings=3,
+    relinearise_final=0.1,
+    tolerance=0.05,
+    model_trend=1.0,
 )
-"""A fit that lacks an effect explains its readings badly, from wherever it is started."""
+"""A fit that lacks an effect explains its readings badly, from wherever it is started. What the
+model is wrong by changes with the length of the warps, which would pass for an effect."""
 
 POOR = 3.0
 """A misfit from where the boards are fitted anew, another way."""
@@ -78,10 +84,16 @@ def fit_boards(
     prior: BoardPrior,
     windows: Sequence[SteadyWindow],
     options: EstimatorOptions = OPTIONS,
+    start: np.ndarray | None = None,
 ) -> Refit | None:
-    """Fit the boards alone; None where no window has a steady state."""
+    """Fit the boards alone; None where no window has a steady state.
+
+    The search begins at the coefficients ``start`` (12,), or where the prior does.
+    """
     # All at once: what the first windows alone would say is not asked, and may lead astray.
     together = Estimator(predictor, prior, OBSERVABLES, options)
+    if start is not None:
+        together.begin((), np.clip(start, prior.low, prior.high))
     together.take(windows)
     estimate = together.finish()
     found = None if estimate is None else Refit((), together, estimate)
@@ -92,12 +104,16 @@ def fit_boards(
     for window in windows:
         by_turns.add(window)
     estimate = by_turns.finish()
-    again = None if estimate is None else Refit((), by_turns, estimate)
-    if found is None or again is None:
-        return found or again
-    if len(again.fit.windows) != len(found.fit.windows):
-        return max(found, again, key=lambda one: len(one.fit.windows))
-    return min(found, again, key=lambda one: one.fit.surprise)
+    return likelier(found, None if estimate is None else Refit((), by_turns, estimate))
+
+
+def likelier(one: Refit | None, other: Refit | None) -> Refit | None:
+    """Of two fits of the same windows that with more of them, or else the likelier."""
+    if one is None or other is None:
+        return one or other
+    if len(one.fit.windows) != len(other.fit.windows):
+        return max(one, other, key=lambda fit: len(fit.fit.windows))
+    return min(one, other, key=lambda fit: fit.fit.surprise)
 
 
 def refit(

@@ -13,7 +13,7 @@ Verdict = Literal['NO_DISCREPANCY', 'NAMED', 'AMBIGUOUS', 'UNKNOWN', 'NOT_TESTAB
 FALSE_ALARMS = 0.01
 """Part of trials without any effect in which a discrepancy is seen nevertheless."""
 
-DOUBT = 1.3
+DOUBT = 1.2
 """Errors of calibration and of the model may be so many times what they are taken to be, before
 something is seen or named: neither is found from the data, as noise is."""
 

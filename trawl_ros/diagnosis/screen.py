@@ -85,8 +85,9 @@ class Screen:
         return sum(len(part.channels) for part in self.fit.windows)
 
     def strength(self, candidate: Candidate) -> float:
-        """Of the evidence for one."""
-        return self.evidence.strength(self.block(candidate), DOUBT)
+        """Of the evidence for one: for all its values, or for that alone which shows most."""
+        looks = looks_at(self.block(candidate))
+        return max(self.evidence.strength(look, DOUBT) for look in looks)
 
     @property
     def strongest(self) -> float:
@@ -150,9 +151,17 @@ def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Sc
     units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])
     found = evidence(fit, both, units, weights=weights)
     number = len(units) - len(shapes)
-    blocks = [*blocks_of_candidates(wanted), *blocks_of(shapes, number).values()]
-    limit = threshold(found, blocks, FALSE_ALARMS)
+    looks = [look for block in blocks_of_candidates(wanted) for look in looks_at(block)]
+    limit = threshold(found, [*looks, *blocks_of(shapes, number).values()], FALSE_ALARMS)
     return Screen(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
+
+
+def looks_at(block: range) -> list[range]:
+    """A block, and each of its values alone: an effect of four parameters commonly has but one of
+    them, and would have to be larger to be seen among four.
+    """
+    alone = [range(place, place + 1) for place in block]
+    return [block, *alone] if len(block) > 1 else [block]
 
 
 def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:

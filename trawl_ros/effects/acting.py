@@ -1,6 +1,6 @@
 """The effects that a gear file switches on, acting together."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +65,10 @@ class Acting:
             return Acting((*self.effects, active))
         place = names.index(active.name)
         return Acting((*self.effects[:place], active, *self.effects[place + 1 :]))
+
+    def without(self, names: Collection[str]) -> 'Acting':
+        """These but for some."""
+        return Acting(tuple(active for active in self.effects if active.name not in names))
 
 
 NONE = Acting()

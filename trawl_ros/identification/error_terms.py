@@ -33,6 +33,10 @@ MODEL_ANGLE = np.radians(0.2)
 (rad). Assumed; ``trawl study identification`` measures what a gear of twice as fine warps and
 bridles and a net without joined meshes shows more than the default."""
 
+USUAL_LENGTH, LONGER = 500.0, 1.5
+"""The errors of the model at other lengths of warp differ from those at this one (m), and the more
+so with every factor."""
+
 
 @dataclass(frozen=True)
 class Scheme:
@@ -45,6 +49,8 @@ class Scheme:
         rest stays through the tow.
     model_error
         Factor on the model's own errors; 0 is a model taken to be exact.
+    model_trend
+        By so many of their std these errors change where the warps are `LONGER` times as long.
     net_drag, net_weight
         Std of the factors on the net's drag and weight in water; where both are 0 the net is held.
     unsettled
@@ -54,6 +60,7 @@ class Scheme:
 
     state_share: float = 0.3
     model_error: float = 1.0
+    model_trend: float = 0.0
     unsettled: float = 0.05
     net_drag: float = 0.0
     net_weight: float = 0.0
@@ -114,8 +121,8 @@ class TowErrors:
     input_calibration : (n, 3, p) array
         By how much one std of each of `TERMS` makes warp lengths and speed read too large.
     model : (n, k, m) array
-        What one std of the model's errors does, one per group, and then of the net's drag and
-        weight where they are not held.
+        What one std of the model's errors does, one per group, then of their trends, and of the
+        net's drag and weight where they are not held.
     """
 
     rows: np.ndarray
@@ -260,6 +267,10 @@ def _model(part: Linearised, scheme: Scheme) -> np.ndarray:
         row = MEASURED.index(name)
         size = MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
         columns[row, GROUP_OF[row]] = scheme.model_error * size
+    if scheme.model_trend:
+        length = 0.5 * (part.window.means['port_length'] + part.window.means['starboard_length'])
+        longer = np.log(length / USUAL_LENGTH) / np.log(LONGER)
+        columns = np.hstack((columns, scheme.model_trend * longer * columns))
     if not scheme.net_std.any():
         return columns
     return np.hstack((columns, spread(part, part.by_net) * scheme.net_std))

@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields
 from trawl_ros.errors import TrawlError
 
 MAY_BE_ZERO = (
-    'prior_weight', 'state_share', 'model_error', 'unsettled', 'net_drag', 'net_weight',
-    'second_start',
+    'prior_weight', 'state_share', 'model_error', 'model_trend', 'unsettled', 'net_drag',
+    'net_weight', 'second_start',
 )  # fmt: skip
 
 
@@ -28,7 +28,7 @@ class EstimatorOptions:
     alike_readings
         How many imagined readings of each channel group speak for the noise being wrong by the
         same factor in all of them.
-    state_share, model_error, unsettled
+    state_share, model_error, model_trend, unsettled
         How errors are divided, as in `trawl_ros.identification.error_terms.Scheme`.
     net_drag, net_weight
         Std of factors on drag and weight in water of the net, which are then estimated along; where
@@ -56,6 +56,7 @@ class EstimatorOptions:
     alike_readings: float = 12.0
     state_share: float = 0.3
     model_error: float = 1.0
+    model_trend: float = 0.0
     unsettled: float = 0.05
     net_drag: float = 0.0
     net_weight: float = 0.0

@@ -74,6 +74,7 @@ class Fit:
         return Scheme(
             options.state_share,
             options.model_error,
+            options.model_trend,
             options.unsettled,
             options.net_drag,
             options.net_weight,

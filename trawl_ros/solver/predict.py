@@ -71,6 +71,8 @@ class Predictor:
         The situation it predicts for, but for warp lengths and speed.
     without
         Tows in which the free effects are not there.
+    new
+        Names of fixed effects that are not there in these tows either.
     absent
         Whether it predicts for one of these.
     """
@@ -80,6 +82,7 @@ class Predictor:
     free: tuple[Effect, ...] = ()
     at: Situation = ANYWHERE
     without: frozenset[int] = frozenset()
+    new: frozenset[str] = frozenset()
     absent: bool = False
     _last: dict[bytes, Prediction] = field(
         default_factory=dict, init=False, repr=False, compare=False
@@ -87,7 +90,8 @@ class Predictor:
 
     def acting(self, coefficients: np.ndarray) -> Acting:
         """The effects with the values behind the coefficients."""
-        there, place = self.fixed, len(COEFFICIENTS)
+        there = self.fixed.without(self.new) if self.absent else self.fixed
+        place = len(COEFFICIENTS)
         for effect in self.free:
             number = len(effect.parameters)
             if not self.absent:

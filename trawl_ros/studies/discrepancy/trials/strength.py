@@ -18,11 +18,11 @@ from trawl_ros.diagnosis.candidates import (
     signatures,
 )
 from trawl_ros.diagnosis.evidence import POWER, Evidence, evidence
+from trawl_ros.diagnosis.refit import OPTIONS
 from trawl_ros.diagnosis.showing import split
 from trawl_ros.effects.catalogue import catalogue
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.identification.channels import MEASURED
-from trawl_ros.identification.estimator_options import EstimatorOptions
 from trawl_ros.identification.fit import AS_STATED, Fit
 from trawl_ros.identification.linearised import Linearised
 from trawl_ros.identification.prior import BoardPrior
@@ -169,8 +169,7 @@ def likelihood(
                 state=clean.state,
             )
         )
-    options = EstimatorOptions()
-    fit = Fit(tuple(parts), plant.coefficients, AS_STATED, prior, options)
+    fit = Fit(tuple(parts), plant.coefficients, AS_STATED, prior, OPTIONS)
     return Likelihood(plant, fit, plan)
 
 

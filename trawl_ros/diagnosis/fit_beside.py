@@ -1,0 +1,80 @@
+"""Boards of a gear to which an earlier diagnosis has added effects."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
+from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refit
+from trawl_ros.effects.acting import Active
+from trawl_ros.identification.estimator import POOR, Estimator
+from trawl_ros.identification.linearised import Linearised
+from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.predict import Predictor
+
+
+def fit_beside(
+    predictor: Predictor, prior: BoardPrior, windows: tuple[SteadyWindow, ...]
+) -> Refit | None:
+    """Fit the boards beside effects that were added; None where no window has a steady state.
+
+    From where the gear file has them. With warp lengths and speed as they are shown a strong effect
+    may leave hardly a steady state, and a fit that begins there stops at once. Then boards are
+    fitted without the effects first, and these come in as they did when they were found: together
+    with what they change, and with errors of counters and log.
+
+    Parameters
+    ----------
+    predictor
+        The gear; its effects ``new`` are those that were added.
+    prior
+        Of its boards.
+    windows
+        To be explained.
+    """
+    found = fit_boards(predictor, prior, windows, start=predictor.model.coefficients)
+    steady = [one for one in predictor.fixed.effects if not one.effect.dynamic]
+    added = [one for one in steady if one.name in predictor.new]
+    if not added or (found is not None and found.fit.misfit < POOR):
+        return found
+    without = replace(predictor, fixed=predictor.fixed.without(predictor.new))
+    base = fit_boards(without, prior, windows)
+    if base is None:
+        return found
+    wanted = tuple(_nearest(one, without, base) for one in added)
+    values = np.concatenate([one.values for one in added])
+    columns = signatures(without, base.fit.windows, wanted)
+    parts = extended(base.fit, wanted, columns, OPTIONS).windows
+    free = refit(without, base.fit, wanted, values, parts, OPTIONS)
+    if free is None:
+        return found
+    estimator = Estimator(predictor, prior, OBSERVABLES, OPTIONS)
+    board = free.estimate.values[: len(COEFFICIENTS)]
+    estimator.begin([_held(part, values) for part in free.fit.windows], board)
+    estimate = estimator.finish()
+    return likelier(found, None if estimate is None else Refit((), estimator, estimate))
+
+
+def _nearest(active: Active, predictor: Predictor, base: Refit) -> Candidate:
+    """Where an effect is looked for, nearest to where it was found."""
+    depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
+    places = candidates({active.name: active.effect}, predictor, depths)
+
+    def away(one: Candidate) -> float:
+        return float(np.linalg.norm((one.start - active.values) / one.scale))
+
+    return min(places, key=away)
+
+
+def _held(part: Linearised, values: np.ndarray) -> Linearised:
+    """A window whose effects have these values, and only coefficients are free."""
+    board = slice(len(COEFFICIENTS))
+    return replace(
+        part,
+        values=part.predicted(np.concatenate((part.at[board], values))),
+        at=part.at[board],
+        by_coefficients=part.by_coefficients[:, board],
+    )
