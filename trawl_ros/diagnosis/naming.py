@@ -31,6 +31,9 @@ REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)
 PAIR = 2
 """Effects at once, at most."""
 
+SECONDS = 2
+"""So many are tried beside the best where there are effects like it."""
+
 
 @dataclass(frozen=True)
 class Named:
@@ -103,9 +106,8 @@ def name(
     weighed = _possible_first(weigh(base, seen, refits))
     best = weighed[0]
     left = left_over(base, seen, best.refit)
-    second = _second(seen, weighed, left)
-    if second is not None:
-        weighed, left = _with_second(predictor, base, seen, refits, weighed, second, tried)
+    if seconds := _seconds(seen, weighed, left):
+        weighed, left = _with_second(predictor, base, seen, refits, weighed, seconds, tried)
         best = weighed[0]
     alike = twins(seen, best.refit)
     rivals = _rivals(seen, weighed)
@@ -151,30 +153,34 @@ def _rivals(seen: Screen, weighed: Sequence[Weighed]) -> tuple[str, ...]:
     )
 
 
-def _nearest(seen: Screen, weighed: Sequence[Weighed]) -> str | None:
+def _near(seen: Screen, weighed: Sequence[Weighed]) -> frozenset[str]:
     """What does nearly as well as the best, or nearly the same: then both may be there."""
-    rivals = _rivals(seen, weighed)
-    alike = [
-        name
-        for other in weighed[1:]
-        for name in other.refit.names
-        if name in twins(seen, weighed[0].refit, NEARLY_ALIKE)
-    ]
-    return next(iter((*rivals, *alike)), None)
+    refitted_too = {name for other in weighed[1:] for name in other.refit.names}
+    alike = refitted_too.intersection(twins(seen, weighed[0].refit, NEARLY_ALIKE))
+    return frozenset({*_rivals(seen, weighed), *alike})
 
 
-def _second(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> Candidate | None:
-    """What may be there beside the best: its rival, or what explains most of what is left over."""
+def _seconds(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
+    """What may be there beside the best: some of its rivals, or else of all effects, that explain
+    most of what is left over.
+    """
     best = weighed[0]
     (first,) = best.refit.wanted
     rest = seen.evidence.without(seen.block(first))
     others = [one for one in seen.wanted if one.name != first.name]
-    near = _nearest(seen, weighed)
-    chosen = [one for one in others if one.name == near]
-    found = max(chosen or others, key=lambda one: seen.penalised(one, rest), default=None)
-    if found is None or chosen or left.too_much:
-        return found
-    return found if seen.penalised(found, rest) > _to_be_there(best) else None
+    others.sort(key=lambda one: seen.penalised(one, rest), reverse=True)
+    near = _near(seen, weighed)
+    chosen: list[Candidate] = []
+    for one in others:
+        if one.name in near and all(one.name != other.name for other in chosen):
+            chosen.append(one)
+    if chosen:
+        # What the best leaves to its like is seen badly to first order.
+        return tuple(chosen[:SECONDS])
+    most = others[:1]
+    if left.too_much or not most:
+        return tuple(most)
+    return tuple(one for one in most if seen.penalised(one, rest) > _to_be_there(best))
 
 
 def _to_be_there(best: Weighed) -> float:
@@ -219,25 +225,25 @@ def _with_second(
     seen: Screen,
     refits: Sequence[Refit],
     weighed: tuple[Weighed, ...],
-    second: Candidate,
+    seconds: Sequence[Candidate],
     tried: Callable[[str], None],
 ) -> tuple[tuple[Weighed, ...], LeftOver]:
     """Weigh the best effect together with a second, and that one alone; and what is left over."""
     (first,) = weighed[0].refit.wanted
     more = []
-    if second.name not in [one.names[0] for one in refits]:
-        tried(second.name)
-        more.append(refitted(predictor, base, seen, (second,)))
-    tried(f'{first.name} and {second.name}')
-    more.append(refitted(predictor, base, seen, (first, second)))
+    for second in seconds:
+        if second.name not in [one.names[0] for one in refits]:
+            tried(second.name)
+            more.append(refitted(predictor, base, seen, (second,)))
+        tried(f'{first.name} and {second.name}')
+        more.append(refitted(predictor, base, seen, (first, second)))
     found = _possible_first(weigh(base, seen, [*refits, *(one for one in more if one is not None)]))
     pair = next((one for one in found if len(one.refit.wanted) == PAIR), None)
-    alone = [one for one in found if one is not pair]
-    left = left_over(base, seen, alone[0].refit)
+    alone = tuple(one for one in found if len(one.refit.wanted) < PAIR)
     if pair is not None:
         with_both = left_over(base, seen, pair.refit)
-        alike = second.name in twins(seen, weighed[0].refit, NEARLY_ALIKE)
+        alike = pair.refit.names[1] in twins(seen, weighed[0].refit, NEARLY_ALIKE)
         least = LEAST_BIC if alike else _to_be_there(alone[0])
         if not with_both.too_much and pair.delta_bic > least + alone[0].delta_bic:
             return (pair, *alone), with_both
-    return tuple(alone), left
+    return alone, left_over(base, seen, alone[0].refit)
