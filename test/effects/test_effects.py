@@ -134,7 +134,7 @@ def test_one_of_the_same_name_takes_its_place(gear):
     changed = both.having(Active(effects['heave'], np.array([0.3])))
     assert [active.name for active in changed.effects] == ['heave', 'counter_offset']
     assert changed.of(effects['heave']).values == pytest.approx([0.3])
-    assert changed.of(effects['counter_scale']).values == pytest.approx([0.0])
+    assert changed.of(effects['counter_scale']).values == pytest.approx([0.0, 0.0])
 
 
 def test_the_net_is_estimated_along_beside_effects(model, coefficients, plain):

@@ -25,8 +25,8 @@ EFFECT = GearWeight(
     name='gear_weight',
     sentence='Boards or clumps are heavier or lighter in water than the gear file has them.',
     parameters=(
-        Parameter('board', 'N', 0.0, -5000.0, 5000.0, 1000.0),
-        Parameter('clump', 'N', 0.0, -5000.0, 5000.0, 1000.0),
+        Parameter('board', 'N', 0.0, -7500.0, 7500.0, 1000.0),
+        Parameter('clump', 'N', 0.0, -7500.0, 7500.0, 1000.0),
     ),
     excited_by='low speed',
     confused_with=('depth_sensor',),
