@@ -1,7 +1,7 @@
 """Counters that err as measured ones did: a trial with them, and what the diagnosis makes of it."""
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from itertools import islice
@@ -10,15 +10,17 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, values_of
+from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown, diagnose, values_of
 from trawl_ros.diagnosis.figures import gap_figure
+from trawl_ros.diagnosis.showing import Errors
 from trawl_ros.diagnosis.words import headline
 from trawl_ros.effects.effect import Situation
 from trawl_ros.errors import TrawlError
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.studies.discrepancy.scoring.worth import part_removed
 from trawl_ros.studies.discrepancy.study import FINER
-from trawl_ros.studies.discrepancy.trials.making import WRONG_BY, windows_of
+from trawl_ros.studies.discrepancy.trials.making import WRONG_BY, floor_of, windows_of
 from trawl_ros.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.studies.discrepancy.trials.tows import PlannedTow, TrialPlan
 from trawl_ros.studies.identification.readings import wrong_by
@@ -123,14 +125,15 @@ def run_counters(table: Table, folder: Path, steps: Steps, seed: int = SEED) -> 
         looks = plant.towed([(table.hidden(), 1.0)], plan)
         chance = np.random.default_rng(seed)
         sensors = wrong_by(WRONG_BY, chance)
-        windows, _ = windows_of(looks, chance, plan, sensors)
+        windows, seen = windows_of(looks, chance, plan, sensors)
+        floor = floor_of(windows, seen, BASELINE)
         done()
         with_baseline = _diagnosed(windows, len(planned), BASELINE)
         done()
         alone = tuple(window for window in windows if window.tow >= BASELINE)
         without = _diagnosed(alone, len(planned), 0)
         done()
-    rows = _rows(table, with_baseline, without)
+    rows = _rows(table, with_baseline, without, floor)
     shown = with_baseline.shown
     figure = Figure() if shown is None or shown.after is None else gap_figure(shown, 'the effect')
     page = Page(
@@ -158,15 +161,16 @@ def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> D
     return diagnose(FINER.model(GEAR), windows, names, frozenset(range(baseline)))
 
 
-def _rows(table: Table, found: Diagnosis, without: Diagnosis) -> list[Row]:
+def _rows(
+    table: Table, found: Diagnosis, without: Diagnosis, floor: Mapping[str, float]
+) -> list[Row]:
     scale, offset = table.lines()
     values = {} if found.repair is None else values_of(found.repair.refit)
     nothing = (np.nan, np.nan, np.nan, '')
     part = values.get('counter_scale', {}).get('scale', nothing)
     metres = values.get('counter_offset', {}).get('offset', nothing)
     shown = found.shown
-    removed = np.nan if shown is None or shown.removed is None else 100.0 * shown.removed
-    other = None if shown is None else shown.removed_by_placebo
+    removed, other = _removed(shown, floor)
     named = [] if without.best is None else list(without.best.refit.names)
     others = [] if without.named is None else [*without.named.rivals, *without.named.alike]
     return [
@@ -176,8 +180,26 @@ def _rows(table: Table, found: Diagnosis, without: Diagnosis) -> list[Row]:
         Row('counter_offset with a baseline', metres[0], metres[1], metres[2], 'm',
             ABOUT_OFFSET[1], f'a line through the table has {offset:.1f} m', ABOUT_OFFSET[0]),
         Row('held-out excess error removed', removed, unit='%', least=50.0,
-            note='' if other is None or shown is None else
-            f'the best other effect, {shown.instead}, removes {100.0 * other:.0f} %'),
+            note='beyond the errors that the plant itself would have' + other),
         Row('effects not told apart without a baseline', float(len({*named, *others})),
             note=f'{without.verdict}: {", ".join(dict.fromkeys((*named, *others))) or "none"}'),
     ]  # fmt: skip
+
+
+def _removed(shown: Shown | None, floor: Mapping[str, float]) -> tuple[float, str]:
+    """Part of the excess error that the repair removes, in per cent, and what the best other effect
+    does.
+    """
+    if shown is None:
+        return np.nan, ''
+
+    def part(after: Errors | None) -> float:
+        if after is None:
+            return np.nan
+        before = shown.before
+        found = part_removed(before.rms, after.rms, before.expected, floor)
+        return np.nan if found is None else 100.0 * found
+
+    other = part(shown.placebo)
+    named = '' if np.isnan(other) else f'; the best other effect, {shown.instead}, {other:.0f} %'
+    return part(shown.after), named

@@ -65,15 +65,42 @@ def _truth(trial: Scored) -> Mapping[str, float]:
 
 
 def _removed(trial: Scored, by: str) -> float | None:
-    """Part of the mean square error beyond that of the plant itself which a repair removes."""
-    before, after = 0.0, 0.0
-    for name, channel in said_of(trial)['channels'].items():
-        if channel[by] is None or name not in trial.key['floor']:
-            return None
-        floor = trial.key['floor'][name]
-        before += (channel['before'] ** 2 - floor**2) / channel['expected'] ** 2
-        after += (channel[by] ** 2 - floor**2) / channel['expected'] ** 2
-    return 1.0 - after / before if before > 0.0 else None
+    channels = said_of(trial)['channels']
+    if any(channel[by] is None for channel in channels.values()):
+        return None
+    before, after, expected = (
+        {name: channel[key] for name, channel in channels.items()}
+        for key in ('before', by, 'expected')
+    )
+    return part_removed(before, after, expected, trial.key['floor'])
+
+
+def part_removed(
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    expected: Mapping[str, float],
+    floor: Mapping[str, float],
+) -> float | None:
+    """Part of the mean square error beyond that of the plant itself which a repair removes.
+
+    Parameters
+    ----------
+    before, after, expected, floor
+        Errors by channel: without and with it, those of instruments, in which all are counted, and
+        those of the plant.
+
+    Returns
+    -------
+    float or None
+        None where nothing is beyond, or a channel's floor is not known.
+    """
+    if not set(before) <= set(floor):
+        return None
+    was, left = (
+        sum((errors[name] ** 2 - floor[name] ** 2) / expected[name] ** 2 for name in before)
+        for errors in (before, after)
+    )
+    return 1.0 - left / was if was > 0.0 else None
 
 
 def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | None:

@@ -101,7 +101,7 @@ def make(spec: Spec, gear: str, cut: Cut, seed: int) -> tuple[Key, Made | None]:
         return replace(hiding.key, testable=False, why_not='cannot be towed'), None
     windows, looks = windows_of(tows, chance_of(spec, seed, 'noise'), plan, hiding.sensors)
     quiet = tuple(_quiet(window, look) for window, look in zip(windows, looks, strict=True))
-    floor = _floor(windows, looks, plan.baseline)
+    floor = floor_of(windows, looks, plan.baseline)
     return replace(hiding.key, floor=floor), Made(windows, quiet)
 
 
@@ -111,7 +111,7 @@ def _quiet(window: SteadyWindow, look: Look) -> SteadyWindow:
     return replace(window, means=means)
 
 
-def _floor(
+def floor_of(
     windows: Sequence[SteadyWindow], looks: Sequence[Look], baseline: int
 ) -> dict[str, float]:
     """Errors that the plant itself would have on the windows that are kept back, by channel."""
