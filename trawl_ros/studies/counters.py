@@ -32,18 +32,18 @@ FATHOM = 1.8288
 COLUMNS = ('wire_out_fm', 'winch_stbd_fm', 'winch_port_fm')
 MOST_ROWS = 10_000
 TOWS = (
-    ((200.0, 2.4), (550.0, 2.0), (1000.0, 2.2), (350.0, 2.2), (550.0, 2.2)),
-    ((350.0, 2.0), (200.0, 2.2), (800.0, 2.4), (1000.0, 2.2), (450.0, 2.2)),
-    ((800.0, 2.0), (1000.0, 2.4), (200.0, 2.2), (550.0, 2.4), (350.0, 2.2)),
+    ((300.0, 2.4), (550.0, 2.0), (1000.0, 2.2), (350.0, 2.2), (650.0, 2.4)),
+    ((350.0, 2.0), (900.0, 2.2), (450.0, 2.4), (1000.0, 2.4), (300.0, 2.2)),
+    ((800.0, 2.0), (300.0, 2.2), (550.0, 2.4), (950.0, 2.2), (400.0, 2.2)),
+    ((450.0, 2.2), (1000.0, 2.2), (300.0, 2.4), (700.0, 2.0), (850.0, 2.4)),
 )
-"""A part and an offset are told apart by short warps and long ones: warps as long as the table has
-them, and as short as the gear may be towed with."""
+"""A part and an offset are told apart by short warps and by warps as long as the table has them."""
 
 BASELINE, EXAMINED = 6, 18
 """Tows before the counters err, and with counters that do."""
 
-SEED = 44
-"""Of the trial as it is reported; rules were chosen by looking at those of 1, 41, 42 and 43."""
+SEED = 45
+"""Of the trial as it is reported; rules and tows were chosen by looking at those of 1, 41 to 44."""
 
 GEAR = 'kaifuha'
 ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
@@ -144,7 +144,7 @@ def run_counters(table: Table, folder: Path, steps: Steps, seed: int = SEED) -> 
             'True wire beside what the counters of both winches showed drives a simulated trial: '
             f'where the table has a counter, the gear is towed with the wire beside it. {BASELINE} '
             f'tows of a baseline with sound counters and {EXAMINED} with these, {len(TOWS[0])} '
-            'steady states each, 200 to 1000 m of warp; plant, noise and biases as in the '
+            'steady states each, 300 to 1000 m of warp; plant, noise and biases as in the '
             f'blind tests, seed {seed}. With the baseline: {with_baseline.verdict}. '
             f'{headline(with_baseline)} Without it: {without.verdict}. {headline(without)}'
         ),
