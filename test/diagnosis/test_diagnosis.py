@@ -11,13 +11,14 @@ from trawl_ros.diagnosis import fit_beside, naming
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
-from trawl_ros.diagnosis.refit import refit
+from trawl_ros.diagnosis.refit import refit, was_in_order
 from trawl_ros.diagnosis.repair import repaired, source
 from trawl_ros.diagnosis.result import result
 from trawl_ros.diagnosis.words import headline, sentences
 from trawl_ros.diagnosis.writing import write_diagnosis
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.estimator import POOR
+from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 
@@ -213,3 +214,33 @@ def test_what_leaves_a_towed_state_without_steady_state_explains_nothing(
     wanted = caught.best.refit.wanted
     predictor = Predictor(build_model(coarse))
     assert naming.refitted(predictor, caught.base, caught.seen, wanted) is None
+
+
+def test_a_window_that_the_likeliest_effect_loses_is_told(coarse, caught, monkeypatch):
+    """What was the best to first order is not passed over for one state out of many."""
+    base, last = caught.base, caught.base.fit.windows[-1].window.index
+
+    def lossy(*args):
+        found = refit(*args)
+        fewer = replace(found.fit, windows=found.fit.windows[:-1])
+        return replace(found, estimator=SimpleNamespace(fit=fewer))
+
+    monkeypatch.setattr(naming, 'refit', lossy)
+    monkeypatch.setattr(naming, 'OPTIONS', replace(naming.OPTIONS, set_aside=0.2))
+    named = naming.name(Predictor(build_model(coarse)), base, caught.seen)
+    assert named.lost == {last}
+    assert named.weighed == ()
+    monkeypatch.setattr(naming, 'OPTIONS', replace(naming.OPTIONS, set_aside=0.0))
+    monkeypatch.setattr(naming, 'SCREENED', 1)
+    assert naming.name(Predictor(build_model(coarse)), base, caught.seen).lost == frozenset()
+
+
+def test_a_baseline_that_looks_like_the_gear_shows_that_it_is_the_same(coarse, hide, with_catch):
+    def other(values):
+        return {name: value * (1.6 if 'depth' in name else 0.5) for name, value in values.items()}
+
+    predictor, prior = Predictor(build_model(coarse)), board_prior(coarse)
+    assert was_in_order(predictor, prior, with_catch, frozenset({0}))
+    assert not was_in_order(predictor, prior, with_catch, frozenset())
+    windows = hide.trial(coarse, hide.Hidden(shown=other), 6, tows=1)
+    assert not was_in_order(predictor, prior, windows, frozenset({0}))

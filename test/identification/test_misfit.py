@@ -17,12 +17,12 @@ LOW, HIGH = 0.8, 2.0
 class Divided:
     """A closed form without steady states of long warps between two ranges of one coefficient."""
 
-    def __init__(self, sea) -> None:
-        self.sea, self.model = sea, sea.ClosedForm()
+    def __init__(self, sea, long: float = LONG) -> None:
+        self.sea, self.long, self.model = sea, long, sea.ClosedForm()
 
     def predict(self, coefficients, port_length, starboard_length, speed, start=None):
         away = (coefficients[0] - self.sea.TRUTH[0]) / self.sea.STD[0]
-        if port_length > LONG and LOW < away < HIGH:
+        if port_length > self.long and LOW < away < HIGH:
             raise NoSteadyState('there is none between the two ranges')
         return self.model.predict(coefficients, port_length, starboard_length, speed, start)
 
@@ -44,6 +44,24 @@ def test_a_fit_that_was_led_astray_begins_again(sea, prior, exact, away):
     assert estimate.converged, estimate.reason
     assert estimate.windows == len(exact)
     assert estimate.values[0] == pytest.approx(sea.TRUTH[0], abs=3.0 * estimate.std[0])
+
+
+@pytest.mark.parametrize(('set_aside', 'gets_there'), [(0.0, False), (0.3, True)])
+def test_a_single_window_need_not_hold_up_the_rest(sea, prior, exact, set_aside, gets_there):
+    lengths = sorted(window.means['port_length'] for window in exact)
+    divided = Divided(sea, long=0.999 * lengths[-1])
+    options = EstimatorOptions(
+        unsettled=0.0, second_start=False, largest_step=0.5, set_aside=set_aside
+    )
+    estimator = Estimator(divided, prior, sea.OBSERVABLES, options)
+    astray = np.array(sea.TRUTH)
+    astray[0] += 2.5 * sea.STD[0]
+    estimator.begin([linearise(divided, sea.OBSERVABLES, one, astray) for one in exact], astray)
+    estimate = estimator.finish()
+    assert estimate.windows == len(exact)
+    away = abs(estimate.values[0] - sea.TRUTH[0]) / estimate.std[0]
+    assert (away < 3.0) == gets_there
+    assert ('without a steady state' in estimate.reason) != gets_there
 
 
 def test_the_likelier_of_two_fits_stays(sea, prior, exact):

@@ -12,7 +12,7 @@ from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
-from trawl_ros.diagnosis.refit import Refit, fit_boards
+from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
 from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, Verdict
 from trawl_ros.diagnosis.screen import Screen, screen
 from trawl_ros.diagnosis.showing import Errors, Split, errors, split
@@ -184,6 +184,13 @@ def diagnose(
             shown=_shown(predictor, base, None, None, parts),
         )
     named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
+    if named.lost:
+        told('leaving out what has no steady state with the best effect')
+        kept = tuple(window for window in parts.deciding if window.index not in named.lost)
+        if (again := fit(predictor, prior, kept)) is not None:
+            base, seen = again, screen(predictor, again.fit, catalogue())
+            known = replace(known, base=base, seen=seen)
+            named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
     best = named.weighed[0].refit if named.weighed else None
     other, found = None, None
     if named.verdict == 'UNKNOWN':
@@ -192,7 +199,8 @@ def diagnose(
         if found is not None:
             other, best = best, found.weighed.refit
         noise, left = (float(np.median(one.fit.scales)) for one in (base, best or base))
-        if noise > NOWHERE_NEAR and left > NEAR:
+        nowhere_near = noise > NOWHERE_NEAR and left > NEAR
+        if nowhere_near and not was_in_order(predictor, prior, parts.deciding, baseline):
             return replace(
                 known,
                 reason=wrong_unit(predictor, prior, parts.deciding)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, extended
-from trawl_ros.diagnosis.refit import OPTIONS, Refit, refit
+from trawl_ros.diagnosis.refit import OPTIONS, Refit, likelier, refit
 from trawl_ros.diagnosis.rules import (
     BOUND_SHARE,
     LEAST_BIC,
@@ -23,6 +23,7 @@ from trawl_ros.diagnosis.rules import (
 from trawl_ros.diagnosis.screen import Screen
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
 from trawl_ros.identification.estimator_options import EstimatorOptions
+from trawl_ros.identification.relinearise import with_those_of
 from trawl_ros.solver.predict import Predictor
 
 REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)
@@ -51,6 +52,9 @@ class Named:
         Effects that are not excluded.
     left_over
         What the best leaves over.
+    lost
+        Windows that have no steady state with what was the best to first order: then nothing was
+        weighed, and they are better left out.
     """
 
     verdict: Verdict
@@ -59,6 +63,7 @@ class Named:
     alike: tuple[str, ...]
     rivals: tuple[str, ...]
     left_over: LeftOver
+    lost: frozenset[int] = frozenset()
 
 
 def name(
@@ -91,18 +96,14 @@ def name(
     refits = []
     for candidate in chosen[:SCREENED]:
         tried(candidate.name)
-        found = refitted(predictor, base, seen, (candidate,))
-        if found is not None:
+        found = _refitted(predictor, base, seen, (candidate,), REFITTING)
+        lost = _lost(base, found)
+        if found is not None and not lost:
             refits.append(found)
+        elif candidate is chosen[0] and len(lost) <= OPTIONS.set_aside * len(base.fit.windows):
+            return _without_states(lost)
     if not refits:
-        return Named(
-            'UNKNOWN',
-            'no effect leads to a gear with steady states',
-            (),
-            (),
-            (),
-            LeftOver(0.0, 1.0),
-        )
+        return _without_states(frozenset())
     weighed = _possible_first(weigh(base, seen, refits))
     best = weighed[0]
     left = left_over(base, seen, best.refit)
@@ -157,7 +158,16 @@ def _near(seen: Screen, weighed: Sequence[Weighed]) -> frozenset[str]:
     """What does nearly as well as the best, or nearly the same: then both may be there."""
     refitted_too = {name for other in weighed[1:] for name in other.refit.names}
     alike = refitted_too.intersection(twins(seen, weighed[0].refit, NEARLY_ALIKE))
-    return frozenset({*_rivals(seen, weighed), *alike})
+    return frozenset({*_rivals(seen, weighed), *alike, *_of_one_instrument(seen, weighed[0])})
+
+
+def _of_one_instrument(seen: Screen, best: Weighed) -> frozenset[str]:
+    """Other errors of the instrument whose error is the best: one seldom comes without them."""
+    (first,) = best.refit.wanted
+    own = first.effect.instrument
+    return frozenset(one.name for one in seen.wanted if own and one.effect.instrument == own) - {
+        first.name
+    }
 
 
 def _seconds(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
@@ -200,6 +210,30 @@ def refitted(
     With ``options``, or those of a refit. None where a state that was towed has no steady state
     then: that explains nothing.
     """
+    found = _refitted(predictor, base, seen, wanted, options or REFITTING)
+    return None if _lost(base, found) else found
+
+
+def _lost(base: Refit, found: Refit | None) -> frozenset[int]:
+    """Windows that have a steady state with the boards alone, and none in a refit."""
+    if found is None:
+        return frozenset(part.window.index for part in base.fit.windows)
+    return frozenset(window.index for window in with_those_of(base.fit, found.fit)[1])
+
+
+def _without_states(lost: frozenset[int]) -> Named:
+    reason = 'no effect leads to a gear with steady states'
+    return Named('UNKNOWN', reason, (), (), (), LeftOver(0.0, 1.0), lost)
+
+
+def _refitted(
+    predictor: Predictor,
+    base: Refit,
+    seen: Screen,
+    wanted: Sequence[Candidate],
+    options: EstimatorOptions,
+) -> Refit | None:
+    """As `refitted`, but with the windows there are where some have lost their steady state."""
     rows = [place for candidate in wanted for place in seen.block(candidate)]
     columns = [own[:, rows] for own in seen.columns]
     parts = extended(base.fit, wanted, columns, base.fit.options).windows
@@ -209,12 +243,8 @@ def refitted(
     best: Refit | None = None
     # First order may lead astray: then from where there is nothing but the boards.
     for start in (values, starts):
-        found = refit(predictor, base.fit, wanted, start, parts, options or REFITTING)
-        if found is None or len(found.fit.windows) < len(base.fit.windows):
-            continue
-        if best is None or found.fit.surprise < best.fit.surprise:
-            best = found
-        if best.fit.surprise < base.fit.surprise:
+        best = likelier(best, refit(predictor, base.fit, wanted, start, parts, options))
+        if best is not None and not _lost(base, best) and best.fit.surprise < base.fit.surprise:
             break
     return best
 
@@ -242,8 +272,11 @@ def _with_second(
     alone = tuple(one for one in found if len(one.refit.wanted) < PAIR)
     if pair is not None:
         with_both = left_over(base, seen, pair.refit)
-        alike = pair.refit.names[1] in twins(seen, weighed[0].refit, NEARLY_ALIKE)
-        least = LEAST_BIC if alike else _to_be_there(alone[0])
+        alike = {
+            *twins(seen, weighed[0].refit, NEARLY_ALIKE),
+            *_of_one_instrument(seen, weighed[0]),
+        }
+        least = LEAST_BIC if pair.refit.names[1] in alike else _to_be_there(alone[0])
         if not with_both.too_much and pair.delta_bic > least + alone[0].delta_bic:
             return (pair, *alone), with_both
     return alone, left_over(base, seen, alone[0].refit)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, extended_prior
+from trawl_ros.diagnosis.rules import NEAR
 from trawl_ros.identification.estimate import Estimate, on_bound
 from trawl_ros.identification.estimator import Estimator
 from trawl_ros.identification.estimator_options import EstimatorOptions
@@ -22,11 +23,13 @@ OPTIONS = EstimatorOptions(
     iterations_final=14,
     halvings=3,
     relinearise_final=0.1,
+    set_aside=0.1,
     tolerance=0.05,
     model_trend=1.0,
 )
-"""A fit that lacks an effect explains its readings badly, from wherever it is started. What the
-model is wrong by changes with the length of the warps, which would pass for an effect."""
+"""A fit that lacks an effect explains its readings badly, from wherever it is started, and on its
+way some windows lose their steady state. What the model is wrong by changes with the length of the
+warps, which would pass for an effect."""
 
 POOR = 3.0
 """A misfit from where the boards are fitted anew, another way."""
@@ -105,6 +108,18 @@ def fit_boards(
         by_turns.add(window)
     estimate = by_turns.finish()
     return likelier(found, None if estimate is None else Refit((), by_turns, estimate))
+
+
+def was_in_order(
+    predictor: Predictor,
+    prior: BoardPrior,
+    windows: Sequence[SteadyWindow],
+    baseline: frozenset[int],
+) -> bool:
+    """Whether the baseline alone looks like this gear."""
+    before = [window for window in windows if window.tow in baseline]
+    found = fit_boards(predictor, prior, before) if before else None
+    return found is not None and float(np.median(found.fit.scales)) < NEAR
 
 
 def likelier(one: Refit | None, other: Refit | None) -> Refit | None:

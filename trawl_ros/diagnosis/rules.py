@@ -61,7 +61,8 @@ FEWEST_UNITS = 3
 
 NOWHERE_NEAR, NEAR = 10.0, 3.0
 """Noise found over noise stated, boards alone, from where it is another gear if no effect has a
-name, and neither effect nor empirical term brings it below the second."""
+name, and neither effect nor empirical term brings it below the second. A baseline that is below
+the second shows that it is the same."""
 
 EMPIRICAL_OVER_PLACEBO = 1.5
 """An empirical term explains so many times the χ² of the best placebo, or is none."""

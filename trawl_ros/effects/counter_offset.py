@@ -20,4 +20,5 @@ EFFECT = CounterOffset(
     excited_by='warp length',
     confused_with=('counter_scale', 'warp_strumming'),
     direct='Pay out warp to a mark of known distance and read the counters.',
+    instrument='counters',
 )

@@ -26,4 +26,5 @@ EFFECT = CounterScale(
     excited_by='warp length',
     confused_with=('warp_strumming', 'counter_offset'),
     direct='Pay out warp past marks of known distance and read the counters.',
+    instrument='counters',
 )

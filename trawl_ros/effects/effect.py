@@ -97,6 +97,8 @@ class Effect:
         Whether it shows only while something changes, and never in steady tows.
     direct
         How it can be seen without any tow, in one sentence; empty where it cannot.
+    instrument
+        Whose error it is, where that may have others too; empty where it is no such error.
     """
 
     name: str
@@ -106,6 +108,7 @@ class Effect:
     confused_with: tuple[str, ...] = ()
     dynamic: bool = False
     direct: str = ''
+    instrument: str = ''
 
     @property
     def neutral(self) -> np.ndarray:

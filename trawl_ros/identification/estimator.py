@@ -7,6 +7,7 @@ would no longer do. There is no forgetting: without excitation it would wind up.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from trawl_ros.identification.linearised import Linearised, linearise, measured_
 from trawl_ros.identification.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.prior import BoardPrior
-from trawl_ros.identification.relinearise import comparable, far, moved
+from trawl_ros.identification.relinearise import comparable, far, moved, with_those_of
 from trawl_ros.identification.window_records import SteadyWindow
 
 SHORTER = 0.5
@@ -311,22 +312,33 @@ class Estimator:
         )
         if size < options.tolerance and known:
             return replace(step, needless=True)
-        for halving in range(options.halvings + 1):
+        for spare, halving in product(self._spares(), range(options.halvings + 1)):
+            if spare and step.obstacle != NO_STEADY_STATE:
+                break
             try:
                 there = moved(
-                    fit, aimed, part * 0.5**halving, relinearise, self.predictor, self.observables
-                )
+                    fit, aimed, part * 0.5**halving, relinearise, self.predictor,
+                    self.observables, spare,
+                )  # fmt: skip
             except NoSteadyState:
                 step = replace(step, obstacle=NO_STEADY_STATE)
                 continue
+            left, lost = with_those_of(fit, there)
             # Errors do something else there; whichever way one looks at it, it is to be better.
-            better = min(there.cost, there.cost_beside(fit)) <= fit.cost * (1.0 + 1e-12)
-            if better or not comparable(fit, there):
+            better = min(there.cost, there.cost_beside(left)) <= left.cost * (1.0 + 1e-12)
+            if better or not comparable(left, there):
                 self._fit = there
+                self._without += lost
                 self.history.append(Progress(len(there.windows), there.cost, there.objective))
                 return replace(step, obstacle=None)
             step = replace(step, obstacle='no step lowers the cost')
         return step
+
+    def _spares(self) -> tuple[int, ...]:
+        """How many windows a step may set aside: none, or else as many as are left to be."""
+        number = len(self._fit.windows) + len(self._without)
+        left = int(self.options.set_aside * number) - len(self._without)
+        return (0, left) if left > 0 else (0,)
 
     def _innovation(self, part: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance

@@ -6,7 +6,7 @@ from trawl_ros.errors import TrawlError
 
 MAY_BE_ZERO = (
     'prior_weight', 'state_share', 'model_error', 'model_trend', 'unsettled', 'net_drag',
-    'net_weight', 'second_start',
+    'net_weight', 'second_start', 'set_aside',
 )  # fmt: skip
 
 
@@ -42,6 +42,9 @@ class EstimatorOptions:
     relinearise, relinearise_final
         A window is solved anew when a predicted reading has moved by this many std, on the
         way and at the end.
+    set_aside
+        Part of the windows that are left out where they have no steady state on the way, and taken
+        back at the end. Where an effect is missing a single one would hold up all the rest.
     tolerance
         A step below this part of every coefficient's std is the end.
     second_start
@@ -66,6 +69,7 @@ class EstimatorOptions:
     largest_step: float = 1.0
     relinearise: float = 2.0
     relinearise_final: float = 0.02
+    set_aside: float = 0.0
     tolerance: float = 0.02
     second_start: bool = True
 
@@ -74,6 +78,6 @@ class EstimatorOptions:
             value = getattr(self, field.name)
             if not value >= 0.0 or (value == 0.0 and field.name not in MAY_BE_ZERO):
                 raise TrawlError(f'{field.name} is {value}, expected a positive number')
-        for name in ('confidence', 'state_share'):
+        for name in ('confidence', 'state_share', 'set_aside'):
             if not (value := getattr(self, name)) < 1.0:
                 raise TrawlError(f'{name} is {value}, expected a number below 1')

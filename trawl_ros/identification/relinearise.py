@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.errors import NoSteadyState
 from trawl_ros.identification.fit import Fit
 from trawl_ros.identification.linearised import Linearised, linearise
 from trawl_ros.identification.prediction import Predictor
+from trawl_ros.identification.window_records import SteadyWindow
 
 WELL_KNOWN = 0.5
 """What a window shows is known to first order this many std of a reading from its solution."""
@@ -45,15 +47,17 @@ def moved(
     threshold: float,
     predictor: Predictor,
     observables: tuple[str, ...],
+    spare: int = 0,
 ) -> Fit:
     """The fit at this share of the way to another, solved anew where first order would not do.
 
-    The newest window always is, lest many small steps walk out of the steady states.
+    The newest window always is, lest many small steps walk out of the steady states. So many
+    windows as there are to ``spare`` are left out where they have none.
 
     Raises
     ------
     NoSteadyState
-        If a window has none there.
+        If more windows have none there.
     """
     coefficients = fit.coefficients + share * (aimed.coefficients - fit.coefficients)
     coefficients = np.clip(coefficients, fit.prior.low, fit.prior.high)
@@ -62,12 +66,27 @@ def moved(
         inputs = part.inputs + share * (ahead - part.inputs)
         net = None if aimed.net is None else part.net + share * (aimed.net - part.net)
         if part is fit.windows[-1] or far(part, coefficients, inputs, net, threshold):
-            part = linearise(
-                predictor, observables, part.window, coefficients, (part.state,), inputs, net,
-                even=False,
-            )  # fmt: skip
+            try:
+                part = linearise(
+                    predictor, observables, part.window, coefficients, (part.state,), inputs, net,
+                    even=False,
+                )  # fmt: skip
+            except NoSteadyState:
+                if not spare:
+                    raise
+                spare -= 1
+                continue
         windows.append(part)
     return replace(fit, windows=tuple(windows), coefficients=coefficients)
+
+
+def with_those_of(fit: Fit, other: Fit) -> tuple[Fit, list[SteadyWindow]]:
+    """A fit with the windows of another only, and the windows that it loses by that."""
+    kept = {part.window.index for part in other.windows}
+    lost = [part.window for part in fit.windows if part.window.index not in kept]
+    if not lost:
+        return fit, lost
+    return replace(fit, windows=tuple(p for p in fit.windows if p.window.index in kept)), lost
 
 
 def comparable(fit: Fit, other: Fit) -> bool:
