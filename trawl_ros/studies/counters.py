@@ -43,7 +43,7 @@ BASELINE, EXAMINED = 6, 18
 """Tows before the counters err, and with counters that do."""
 
 SEED = 46
-"""Of the trial as it is reported; rules and tows were chosen by looking at those of 1 and 41 to 45."""
+"""Of the trial as it is reported; rules and tows were chosen by looking at 1 and 41 to 45."""
 
 GEAR = 'kaifuha'
 ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
