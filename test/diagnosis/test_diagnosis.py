@@ -244,3 +244,23 @@ def test_a_baseline_that_looks_like_the_gear_shows_that_it_is_the_same(coarse, h
     assert not was_in_order(predictor, prior, with_catch, frozenset())
     windows = hide.trial(coarse, hide.Hidden(shown=other), 6, tows=1)
     assert not was_in_order(predictor, prior, windows, frozenset({0}))
+
+
+def test_another_error_of_the_same_instrument_is_looked_for_too(caught):
+    """Whatever else explains most of what the best leaves over."""
+
+    def of_one(candidate):
+        same = candidate.name in ('catch_build_up', 'spread_sensor')
+        effect = replace(candidate.effect, instrument='one' if same else '')
+        return replace(candidate, effect=effect)
+
+    before, best = caught.seen, caught.best
+    seen = replace(before, wanted=tuple(of_one(one) for one in before.wanted))
+    (place,) = (n for n, one in enumerate(before.wanted) if one is best.refit.wanted[0])
+    told = replace(best, refit=replace(best.refit, wanted=(seen.wanted[place],)))
+    without, with_it = (
+        [one.name for one in naming._seconds(looks, [weighed], caught.named.left_over)]
+        for looks, weighed in ((before, best), (seen, told))
+    )
+    assert 'spread_sensor' not in without
+    assert with_it == [*without, 'spread_sensor']

@@ -1,6 +1,6 @@
 """Second look: the best effects refitted, weighed against each other, and judged."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -158,7 +158,7 @@ def _near(seen: Screen, weighed: Sequence[Weighed]) -> frozenset[str]:
     """What does nearly as well as the best, or nearly the same: then both may be there."""
     refitted_too = {name for other in weighed[1:] for name in other.refit.names}
     alike = refitted_too.intersection(twins(seen, weighed[0].refit, NEARLY_ALIKE))
-    return frozenset({*_rivals(seen, weighed), *alike, *_of_one_instrument(seen, weighed[0])})
+    return frozenset({*_rivals(seen, weighed), *alike})
 
 
 def _of_one_instrument(seen: Screen, best: Weighed) -> frozenset[str]:
@@ -172,25 +172,31 @@ def _of_one_instrument(seen: Screen, best: Weighed) -> frozenset[str]:
 
 def _seconds(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
     """What may be there beside the best: some of its rivals, or else of all effects, that explain
-    most of what is left over.
+    most of what is left over; and other errors of its instrument.
     """
     best = weighed[0]
     (first,) = best.refit.wanted
     rest = seen.evidence.without(seen.block(first))
     others = [one for one in seen.wanted if one.name != first.name]
     others.sort(key=lambda one: seen.penalised(one, rest), reverse=True)
-    near = _near(seen, weighed)
-    chosen: list[Candidate] = []
-    for one in others:
-        if one.name in near and all(one.name != other.name for other in chosen):
-            chosen.append(one)
-    if chosen:
-        # What the best leaves to its like is seen badly to first order.
-        return tuple(chosen[:SECONDS])
-    most = others[:1]
-    if left.too_much or not most:
-        return tuple(most)
-    return tuple(one for one in most if seen.penalised(one, rest) > _to_be_there(best))
+    near, own = _near(seen, weighed), _of_one_instrument(seen, best)
+    # What the best leaves to its like is seen badly to first order.
+    chosen = _once(one for one in others if one.name in near)[:SECONDS]
+    if not chosen:
+        chosen = tuple(
+            one
+            for one in others[:1]
+            if left.too_much or seen.penalised(one, rest) > _to_be_there(best)
+        )
+    return _once([*chosen, *(one for one in others if one.name in own)])
+
+
+def _once(found: Iterable[Candidate]) -> tuple[Candidate, ...]:
+    """Of each effect the first."""
+    first: dict[str, Candidate] = {}
+    for one in found:
+        first.setdefault(one.name, one)
+    return tuple(first.values())
 
 
 def _to_be_there(best: Weighed) -> float:

@@ -11,8 +11,8 @@ from trawl_ros.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.studies.discrepancy.trials.trial import Form, Spec
 from trawl_ros.studies.identification.plant import Cut
 
-SEED = 35
-"""Of the study as it is reported; rules were chosen by looking at trials of 1, 31 to 34 and 51."""
+SEED = 36
+"""Of the study as it is reported; rules were chosen by looking at trials of 1, 31 to 35 and 51."""
 
 FINER = Cut(around=12, lines=2, unjoined=True)
 """Plant and model."""
