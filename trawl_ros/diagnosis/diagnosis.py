@@ -252,6 +252,8 @@ def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> R
 
     Where none is named, only one that was refitted already will do.
     """
+    if not named.weighed:
+        return None
     taken = {*named.weighed[0].refit.names, *named.alike}
     for other in named.weighed[1:]:
         if not taken & set(other.refit.names):
