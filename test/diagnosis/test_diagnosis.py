@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import fit_beside, naming
+from trawl_ros.diagnosis import diagnosis, fit_beside, naming
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
@@ -264,3 +264,9 @@ def test_another_error_of_the_same_instrument_is_looked_for_too(caught):
     )
     assert 'spread_sensor' not in without
     assert with_it == [*without, 'spread_sensor']
+
+
+def test_where_no_effect_could_be_refitted_there_is_no_placebo(coarse, caught):
+    nothing = replace(caught.named, verdict='UNKNOWN', weighed=(), alike=())
+    predictor = Predictor(build_model(coarse))
+    assert diagnosis._placebo(predictor, caught.base, caught.seen, nothing) is None
