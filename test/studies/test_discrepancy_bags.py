@@ -154,14 +154,15 @@ def test_classes_come_from_the_plan_alone():
     assert 'counter_scale' in alike['counter_offset']
 
 
-def test_one_in_twenty_is_made_as_bags_and_some_of_these_in_time():
+def test_one_in_twenty_is_made_as_bags_and_some_are_towed_in_time():
     specs = Plan(dynamic=3).specs()
     windows = {spec.number: spec for spec in specs if spec.form == 'windows'}
     bags = [spec for spec in specs if spec.form == 'bags']
     in_time = [spec for spec in specs if spec.form == 'dynamic']
     assert len(bags) == pytest.approx(len(windows) / 20, abs=1.0)
     assert len(in_time) == 3
-    assert {spec.like for spec in in_time} <= {spec.like for spec in bags}
+    assert {spec.like for spec in in_time} <= set(windows)
+    assert {spec.series for spec in in_time} >= {'clean', 'inside'}
     for spec in (*bags, *in_time):
         own = windows[spec.like]
         assert replace(spec, number=own.number, form='windows', like=None) == own

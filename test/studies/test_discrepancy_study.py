@@ -246,7 +246,7 @@ def test_another_plan_in_the_same_folder_is_refused(tmp_path):
 def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
     out = tmp_path / 'report'
     few = ['study', 'discrepancy', '--out', str(out), '--seed', '1', '--clean', '1', '--inside',
-           '0', '--outside', '0', '--pairs', '0', '--poor', '0']  # fmt: skip
+           '0', '--outside', '0', '--pairs', '0', '--poor', '0', '--dynamic', '0']  # fmt: skip
     first = CliRunner().invoke(trawl, few)
     assert first.exit_code == 0, first.output
     records = json.loads((out / 'discrepancy.json').read_text())['rows']

@@ -64,7 +64,7 @@ class Plan:
     poor
         Trials, with a poor plan, of each of `ALIKE_WHERE_POOR`.
     dynamic
-        Of the trials that are made as bags too, so many are also towed in time.
+        So many trials are towed in time too; of 23 some cannot be, and 20 are left.
     around
         Meshes around the mouth of the model's net.
     """
@@ -76,7 +76,7 @@ class Plan:
     outside: int = 1
     pairs: int = 2
     poor: int = 2
-    dynamic: int = 2
+    dynamic: int = 23
     around: int = FINER.around
 
     @property
@@ -88,9 +88,10 @@ class Plan:
         """All trials."""
         alone = tuple(self._in_windows())
         numbers = count(len(alone))
-        again = [one for one in alone if one.plan == 'full'][IN_BAGS // 2 :: IN_BAGS]
-        apart = max(1, len(again) // max(1, self.dynamic))
-        in_time = again[::-apart][: self.dynamic]
+        full = [one for one in alone if one.plan == 'full']
+        again = full[IN_BAGS // 2 :: IN_BAGS]
+        apart = max(1, len(full) // max(1, self.dynamic))
+        in_time = full[apart // 2 :: apart][: self.dynamic]
 
         def same(one: Spec, form: Form) -> Spec:
             return replace(one, number=next(numbers), form=form, like=one.number)

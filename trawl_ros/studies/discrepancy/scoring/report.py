@@ -81,7 +81,7 @@ def _method(plan: Plan, trials: Sequence[Scored], classes: Classes) -> str:
         'file of windows with a random name; the score sees diagnosis.json and the key alone. What '
         "is as good as an effect's own name was found before any trial was made, from the cosines "
         f'of the plan ({_listed(classes)}). One in {IN_BAGS} of the trials is made as bags too, of '
-        'every reading, and some of these are towed in time, warps hauled and paid out at '
+        f'every reading, and {plan.dynamic} are towed in time too, warps hauled and paid out at '
         f'{HAULING_SPEED:g} m/s; the sizes hidden, plants and instruments are those of the '
         'windows, noise and windows are not. Poor trials have, after the same baseline, three '
         f'tows of one course and one length of warps, and effects of {POOR_STRENGTH:g} times the '
