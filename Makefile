@@ -28,6 +28,9 @@ unexport RMW_IMPLEMENTATION ROS_DISTRO ROS_PYTHON_VERSION ROS_VERSION
 endif
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
+# Without it each of some hundred processes would compile all that it imports: two seconds each.
+unexport PYTHONDONTWRITEBYTECODE
+
 help:
 	@echo 'make demo   tow a sea trial through the ROS graph, replay it, refit the boards: $(DEMO)/'
 	@echo 'make test   check the style and run all tests'
