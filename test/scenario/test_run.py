@@ -20,10 +20,10 @@ steps:
 
 
 @pytest.fixture
-def scenario(tmp_path):
+def scenario(tmp_path, coarse_gear):
     def load(text=STEPS):
         path = tmp_path / 'trial.yaml'
-        path.write_text(text)
+        path.write_text(text.replace('kaifuha', str(coarse_gear)))
         return load_scenario(path)
 
     return load
