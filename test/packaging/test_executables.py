@@ -82,7 +82,7 @@ def diagnostics(domain: int) -> Iterator[tuple[SingleThreadedExecutor, list[Diag
 
 
 # All nodes end in one way of the same code, so each signal is tried on half of them.
-@pytest.mark.parametrize(('node', 'end'), zip(NODES, cycle((signal.SIGINT, signal.SIGTERM))))
+@pytest.mark.parametrize(('node', 'end'), list(zip(NODES, cycle((signal.SIGINT, signal.SIGTERM)))))
 def test_starts_publishes_and_ends_cleanly(workspace, node, end, tmp_path, monkeypatch):
     domain = DOMAINS[NODES.index(node)]
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')

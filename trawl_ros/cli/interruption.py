@@ -44,8 +44,8 @@ class Uninterrupted:
     """While entered, SIGINT and SIGTERM wait; afterwards they come to whoever hears them else.
 
     Python breaks in between any two instructions, also between the start of a process and the
-    note that it was started. Handlers do this, not the mask of signals, since a child would
-    inherit the mask and never hear of its end. Only the main thread is ever interrupted, so in
+    note that it was started. Handlers do this, not the mask of signals, since a child inherits
+    the mask and would not hear of its end. Only the main thread is ever interrupted, so in
     another one this does nothing.
 
     Parameters

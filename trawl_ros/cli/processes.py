@@ -7,7 +7,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
@@ -71,11 +72,11 @@ class Processes:
             for word in ('-p', f'{key}:={json.dumps(value)}')
         ]
         code = (
-            f"import sys; sys.argv[0] = '{node}'; from trawl_ros.nodes.{node} import main; "
-            'sys.exit(main())'
+            'import signal, sys; signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT]); '
+            f"sys.argv[0] = '{node}'; from trawl_ros.nodes.{node} import main; sys.exit(main())"
         )
         command = [sys.executable, '-c', code, '--ros-args', *options]
-        with self._log(node).open('wb') as log, Uninterrupted():
+        with self._log(node).open('wb') as log, Uninterrupted(), _born_deaf():
             # A session of their own: Ctrl-C is for the demo, which ends them in good order.
             self._running[node] = subprocess.Popen(
                 command,
@@ -165,3 +166,16 @@ class Processes:
 
     def _hasten(self) -> None:
         self._deadline = time.monotonic()
+
+
+@contextmanager
+def _born_deaf() -> Iterator[None]:
+    """Let SIGINT wait in a child until it unblocks it.
+
+    An interpreter that is interrupted before its first line calls that a fatal error.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
