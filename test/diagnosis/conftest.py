@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -33,6 +34,7 @@ class Hidden:
     shown: Callable[[dict[str, float]], dict[str, float]] = lambda values: values
 
 
+@cache
 def looks(gear: GearRecord, hidden: Hidden) -> tuple[Look, ...]:
     """The states of one tow of a board that differs from the start values."""
     prior = board_prior(gear)
