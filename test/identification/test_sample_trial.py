@@ -25,7 +25,7 @@ def fitted():
     for _, sample in SampleStream([share_path('bags', 'sea_trial')], NAMESPACE):
         identification.feed(sample)
     identification.finish()
-    return result(report(identification, true_coefficients(scenario), folds=3))
+    return result(report(identification, true_coefficients(scenario), folds=2))
 
 
 @pytest.mark.slow

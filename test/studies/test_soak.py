@@ -1,6 +1,6 @@
-"""The chain for half an hour at sea: memory stays, nothing falls behind, all fits on one core.
+"""The chain for a quarter of an hour at sea: memory stays, nothing falls behind, all fits on one core.
 
-It is towed with a coarse net and truth every two seconds, which takes half a minute; the day of
+It is towed with a coarse net and truth every two seconds, which takes a minute; the day of
 `docs/studies/soak.md` has truth four times as often.
 """
 
@@ -24,8 +24,8 @@ def shown(title, total_s):
 
 
 @pytest.mark.timeout(400)
-def test_half_an_hour_at_sea(coarse_gear, tmp_path):
-    plan = Plan(hours=0.5, gear=str(coarse_gear), real_time_s=5.0, truth_rate_hz=0.5)
+def test_a_quarter_of_an_hour_at_sea(coarse_gear, tmp_path):
+    plan = Plan(hours=0.25, gear=str(coarse_gear), real_time_s=5.0, truth_rate_hz=0.5)
     soak = run_soak(plan, tmp_path, shown, lambda: False)
     rows = soak_rows(soak)
     missed = [f'{row.what}: {row.value:.3g} {row.unit}' for row in rows if not row.ok]
