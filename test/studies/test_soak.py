@@ -1,4 +1,4 @@
-"""The chain for a quarter of an hour at sea: memory stays, nothing falls behind, all fits on one core.
+"""The chain for a quarter of an hour at sea: memory stays, nothing lags, all fits on one core.
 
 It is towed with a coarse net and truth every two seconds, which takes a minute; the day of
 `docs/studies/soak.md` has truth four times as often.
