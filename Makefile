@@ -28,7 +28,7 @@ unexport RMW_IMPLEMENTATION ROS_DISTRO ROS_PYTHON_VERSION ROS_VERSION
 endif
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-# Without it each of some hundred processes would compile all that it imports: two seconds each.
+# Where it is set, each of the processes of a test or demo compiles all that it imports, again.
 unexport PYTHONDONTWRITEBYTECODE
 
 help:

@@ -3,6 +3,7 @@
 Every message names the file, key or topic, what was found there and what was expected.
 """
 
+from traceback import format_exception
 from typing import Literal
 
 Refusal = Literal['none found', 'collapsed', 'surfaced', 'outside law', 'unstable']
@@ -56,3 +57,13 @@ class NoSteadyState(TrawlError):
     def __init__(self, message: str, reason: Refusal = 'none found') -> None:
         super().__init__(message)
         self.reason: Refusal = reason
+
+
+def sentence_of(reason: Exception) -> str:
+    """What went wrong, for those who cannot let it rise: threads and processes of others.
+
+    An error of the program is told with all that helps to mend it.
+    """
+    if isinstance(reason, TrawlError):
+        return str(reason)
+    return f'an error of the program; {"".join(format_exception(reason))}'

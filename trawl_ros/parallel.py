@@ -10,13 +10,12 @@ import signal
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
-from traceback import format_exc
 from typing import Any, TypeVar
 
 from dask import config
 from distributed import Client, KilledWorker, LocalCluster, as_completed
 
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import TrawlError, sentence_of
 
 TaskT = TypeVar('TaskT')
 ResultT = TypeVar('ResultT')
@@ -91,11 +90,9 @@ def _outcome(function: Callable[[Any], Any], task: Any) -> tuple[str | None, Any
     """Run one task; what goes wrong comes back as a sentence, which can always be sent."""
     try:
         return None, function(task)
-    except TrawlError as reason:
-        return str(reason), None
-    except Exception:
+    except Exception as reason:
         # Told whole: the traceback would otherwise stay on the worker.
-        return f'an error of the program; {format_exc()}', None
+        return sentence_of(reason), None
 
 
 def _result(name: str, future: Any) -> Any:

@@ -22,6 +22,8 @@ class Slow:
         assert self.may.wait(10.0)
         if not windows:
             raise TrawlError('nothing to diagnose')
+        if windows == (0,):
+            raise ZeroDivisionError('nothing to divide by')
         return windows
 
 
@@ -67,6 +69,18 @@ def test_what_goes_wrong_is_said(watched):
     thread.look_at(())
     asyncio.run(at_rest(thread))
     assert told == [Tried(None, 'nothing to diagnose')]
+
+
+def test_an_error_of_the_program_is_told_whole_and_the_next_windows_are_diagnosed(watched):
+    thread, slow, told = watched
+    slow.may.set()
+    thread.look_at((0,))
+    asyncio.run(at_rest(thread))
+    thread.look_at((1,))
+    asyncio.run(at_rest(thread))
+    assert told[0].trouble.startswith('an error of the program; Traceback')
+    assert 'ZeroDivisionError: nothing to divide by' in told[0].trouble
+    assert told[1:] == [Tried((1,))]
 
 
 def test_it_ends_after_what_it_has_to_do(watched):

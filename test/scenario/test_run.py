@@ -11,7 +11,7 @@ SECOND = 1_000_000_000
 
 STEPS = """\
 description: six seconds
-gear: kaifuha
+gear: coarse.yaml
 start: {warp_length_m: 500.0, speed_m_s: 2.1}
 steps:
   - {name: hold, minutes: 0.05}
@@ -23,7 +23,8 @@ steps:
 def scenario(tmp_path, coarse_gear):
     def load(text=STEPS):
         path = tmp_path / 'trial.yaml'
-        path.write_text(text.replace('kaifuha', str(coarse_gear)))
+        path.write_text(text)
+        (tmp_path / 'coarse.yaml').write_bytes(coarse_gear.read_bytes())
         return load_scenario(path)
 
     return load

@@ -154,6 +154,12 @@ def test_classes_come_from_the_plan_alone():
     assert 'counter_scale' in alike['counter_offset']
 
 
+def test_of_fewer_trials_than_asked_for_each_is_towed_in_time():
+    few = Plan(clean=2, inside=0, outside=0, pairs=0, poor=0).specs()
+    assert [spec.like for spec in few if spec.form == 'dynamic'] == [0, 1]
+    assert sum(spec.form == 'dynamic' for spec in Plan().specs()) == Plan().dynamic
+
+
 def test_one_in_twenty_is_made_as_bags_and_some_are_towed_in_time():
     specs = Plan(dynamic=3).specs()
     windows = {spec.number: spec for spec in specs if spec.form == 'windows'}

@@ -214,7 +214,7 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
               type=click.IntRange(0, 1000), help='Trials of a few states, of each effect '
               'that they cannot tell.')  # fmt: skip
 @click.option('--dynamic', default=DiscrepancyPlan.dynamic, show_default=True,
-              type=click.IntRange(0, 100), help='Trials that are towed in time '
+              type=click.IntRange(0, 100), help='Trials, of all, that are towed in time '
               'too.')  # fmt: skip
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip

@@ -4,9 +4,8 @@ import time
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
 from threading import Thread
-from traceback import format_exc
 
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import sentence_of
 from trawl_ros.identification.fit import Fit
 from trawl_ros.identification.planning_next import Advice, Adviser
 
@@ -85,11 +84,9 @@ class AdvisingThread(Thread):
             return False
         try:
             return act(self._fit)
-        except TrawlError as reason:
-            self._told(None, str(reason))
-        except Exception:
+        except Exception as reason:
             # Without advice the node still estimates, so this ends the thread's work on this fit.
-            self._told(None, f'an error of the program; {format_exc()}')
+            self._told(None, sentence_of(reason))
         return False
 
     def _advise(self, fit: Fit) -> bool:

@@ -8,9 +8,8 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
-from traceback import format_exc
 
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import sentence_of
 from trawl_ros.identification.pipeline import Identification, WindowUsed
 from trawl_ros.identification.whiteness import Whiteness
 from trawl_ros.instruments.samples import Sample
@@ -197,11 +196,9 @@ class IdentificationWorker(Thread):
         """Do something; what goes wrong is said, and the thread lives on."""
         try:
             act()
-        except TrawlError as reason:
-            self._troubles[what] = str(reason)
-        except Exception:
+        except Exception as reason:
             # Unsaid, it would end the thread: the node would look alive and estimate nothing.
-            self._troubles[what] = f'an error of the program; {format_exc()}'
+            self._troubles[what] = sentence_of(reason)
 
     def _tell(self, finished: str | None = None, failed: bool = False) -> None:
         self.outcome = self._outcome(finished, failed)

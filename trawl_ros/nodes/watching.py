@@ -4,10 +4,9 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from queue import SimpleQueue
 from threading import Event, Lock, Thread
-from traceback import format_exc
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis
-from trawl_ros.errors import TrawlError
+from trawl_ros.errors import sentence_of
 from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.nodes.identification_worker import POLL_S
 
@@ -97,8 +96,6 @@ class WatchingThread(Thread):
     def _attempt(self, windows: Windows) -> Tried:
         try:
             return Tried(self._diagnose(windows))
-        except TrawlError as reason:
-            return Tried(trouble=str(reason))
-        except Exception:
+        except Exception as reason:
             # Unsaid, it would end the thread: the node would look alive and diagnose nothing.
-            return Tried(trouble=f'an error of the program; {format_exc()}')
+            return Tried(trouble=sentence_of(reason))

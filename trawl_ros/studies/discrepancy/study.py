@@ -64,7 +64,8 @@ class Plan:
     poor
         Trials, with a poor plan, of each of `ALIKE_WHERE_POOR`.
     dynamic
-        So many trials are towed in time too; of 23 some cannot be, and 20 are left.
+        So many trials, or all if these are fewer, are towed in time too. Some of them will not be
+        possible; 20 of the default are to be left.
     around
         Meshes around the mouth of the model's net.
     """

@@ -61,6 +61,7 @@ def _method(plan: Plan, trials: Sequence[Scored], classes: Classes) -> str:
     why = Counter(re.split(' of |:', trial.key['why_not'])[0] for trial in not_testable)
     listed = ', '.join(f'{name} {count}' for name, count in why.most_common()) or 'none'
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
+    in_time = sum(spec.form == 'dynamic' for spec in plan.specs())
     tows, states, before = len(FULL.tows), len(FULL.tows[0].states), FULL.baseline
     return (
         f'A trial has {tows} tows of {states} steady states, 300 to 900 m of warp at 2.0 to '
@@ -81,7 +82,7 @@ def _method(plan: Plan, trials: Sequence[Scored], classes: Classes) -> str:
         'file of windows with a random name; the score sees diagnosis.json and the key alone. What '
         "is as good as an effect's own name was found before any trial was made, from the cosines "
         f'of the plan ({_listed(classes)}). One in {IN_BAGS} of the trials is made as bags too, of '
-        f'every reading, and {plan.dynamic} are towed in time too, warps hauled and paid out at '
+        f'every reading, and {in_time} are towed in time too, warps hauled and paid out at '
         f'{HAULING_SPEED:g} m/s; the sizes hidden, plants and instruments are those of the '
         'windows, noise and windows are not. Poor trials have, after the same baseline, three '
         f'tows of one course and one length of warps, and effects of {POOR_STRENGTH:g} times the '
