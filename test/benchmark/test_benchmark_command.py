@@ -5,7 +5,7 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from trawl_ros.benchmark import modules
+from trawl_ros.benchmark import findings, modules
 from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.machine import cpu_model, software
 from trawl_ros.benchmark.modules import NAMES
@@ -37,6 +37,16 @@ def test_every_module_runs_in_its_small_version(name, tmp_path):
     for line in report.splitlines():
         if line.startswith('!['):
             assert (tmp_path / line.rpartition('(')[2].rstrip(')')).is_file()
+
+
+@pytest.mark.parametrize('name', ['start', 'recording'])
+def test_without_ros_figures_of_nodes_are_missed_and_it_is_said_why(name, tmp_path, monkeypatch):
+    monkeypatch.setattr(findings, 'find_spec', lambda _: None)
+    result = run('--small', '--out', tmp_path, name)
+    assert result.exit_code == 0, result.output
+    (row,) = json.loads((tmp_path / 'benchmark.json').read_text())['rows']
+    assert (row['value'], row['ok']) == (None, False)
+    assert row['note'].startswith('rclpy is not installed')
 
 
 def test_a_name_that_is_none_is_refused_with_those_that_are(tmp_path):

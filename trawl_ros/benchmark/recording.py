@@ -8,12 +8,11 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
-from importlib.util import find_spec
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from trawl_ros.bags.reader import Bag
-from trawl_ros.benchmark.findings import Findings
+from trawl_ros.benchmark.findings import Findings, without_ros
 from trawl_ros.benchmark.row import Row
 from trawl_ros.cli.processes import NodeFailed, Processes, own_graph
 
@@ -94,9 +93,9 @@ def record(folder: Path, rate: float, seconds: float) -> Recorded:
 def measure(small: bool) -> Findings:
     """Record at each rate and count."""
     what = f'messages lost at {RATES_HZ[0]:g} messages/s of all topics'
-    if find_spec('rclpy') is None:
-        note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'
-        return Findings((Row(what, math.nan, '', 0.0, 'at_most', note),))
+    asked = Row(what, math.nan, '', 0.0, 'at_most')
+    if (nothing := without_ros(asked)) is not None:
+        return nothing
     seconds = SMALL_SECONDS if small else SECONDS
     rows = []
     for rate in RATES_HZ[:1] if small else RATES_HZ:
@@ -106,10 +105,9 @@ def measure(small: bool) -> Findings:
         note = f'of {count} on {len(found.published)} topics in {seconds:g} s'
         if found.behind_s:
             note += f'; the publisher itself fell {found.behind_s:.1f} s behind'
-        asked = rate == RATES_HZ[0]
         rows.append(
-            Row(what, found.lost, '', 0.0, 'at_most', note)
-            if asked
+            replace(asked, value=found.lost, note=note)
+            if rate == RATES_HZ[0]
             else Row(f'messages lost at {rate:g} messages/s', found.lost, '', note=note)
         )
         rows.append(

@@ -9,12 +9,11 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from importlib.util import find_spec
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
 
-from trawl_ros.benchmark.findings import Findings
+from trawl_ros.benchmark.findings import Findings, without_ros
 from trawl_ros.benchmark.gears import default_gear
 from trawl_ros.benchmark.row import Row
 from trawl_ros.benchmark.timing import median_s
@@ -64,9 +63,9 @@ def starts(folder: Path) -> tuple[Start, ...]:
 def measure(small: bool) -> Findings:
     """Start one node after another and wait for its first message."""
     what = 'cold start of a node to its first message, wall, the slowest node'
-    if find_spec('rclpy') is None:
-        note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'
-        return Findings((Row(what, math.nan, 's', LIMIT_S, 'at_most', note),))
+    asked = Row(what, math.nan, 's', LIMIT_S, 'at_most')
+    if (nothing := without_ros(asked)) is not None:
+        return nothing
     with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST):
         folder = Path(name)
         chosen = starts(folder)[:1] if small else starts(folder)
@@ -82,7 +81,7 @@ def measure(small: bool) -> Findings:
         f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s '
         f'in {len(times[slowest])} starts; why they differ so was not established'
     )
-    rows = [Row(what, median(times[slowest]), 's', LIMIT_S, 'at_most', note)]
+    rows = [replace(asked, value=median(times[slowest]), note=note)]
     for node, found in times.items():
         note = f'{min(found):.2f} to {max(found):.2f} s in {len(found)} starts'
         rows.append(Row(f'{node}, wall', median(found), 's', note=note))
