@@ -14,9 +14,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from trawl_ros.complaints import complaints, shown
 from trawl_ros.errors import TrawlError
+from trawl_ros.limits import YAML_BYTES, YAML_DEPTH
 
-MAX_BYTES = 1_000_000
-MAX_DEPTH = 20
 MAX_COMPLAINTS = 10
 
 
@@ -62,11 +61,11 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, Any]:
         raise error(f'{path}: not a file, expected a YAML file')
     try:
         with path.open('rb') as stream:
-            raw = stream.read(MAX_BYTES + 1)
+            raw = stream.read(YAML_BYTES.value + 1)
     except OSError as reason:
         raise error(f'{path}: cannot be read ({reason.strerror})') from reason
-    if len(raw) > MAX_BYTES:
-        raise error(f'{path}: larger than {MAX_BYTES} bytes, expected a smaller YAML file')
+    if len(raw) > YAML_BYTES.value:
+        raise error(f'{path}: larger than {YAML_BYTES}, expected a smaller YAML file')
     try:
         data = yaml.load(raw.decode('utf-8'), _Loader)
     except UnicodeDecodeError as reason:
@@ -130,8 +129,8 @@ class _Loader(yaml.SafeLoader):
             # A few lines of aliases can stand for billions of values.
             self._refuse(self.peek_event(), 'an alias (*), expected the value itself')
         self._depth += 1
-        if self._depth > MAX_DEPTH:
-            self._refuse(self.peek_event(), f'nesting, expected {MAX_DEPTH} levels at most')
+        if self._depth > YAML_DEPTH.value:
+            self._refuse(self.peek_event(), f'nesting, expected {YAML_DEPTH} at most')
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node

@@ -1,0 +1,54 @@
+"""Boundary to foreign files: whatever goes wrong while one is read becomes a sentence."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from trawl_ros.errors import TrawlError
+
+
+@contextmanager
+def reading(
+    path: str | Path,
+    error: type[TrawlError],
+    place: Callable[[], str] | None = None,
+) -> Iterator[None]:
+    """Turn what libraries raise while they read a foreign file into the project's own error.
+
+    Readers say themselves what they expected wherever they know; this is for what they could not
+    foresee, so that no file can show a traceback.
+
+    Parameters
+    ----------
+    path
+        The file, named in the error.
+    error
+        Class of the error to raise.
+    place
+        Says where in the file the reader was (``'byte 4711'``, ``'line 3'``), asked only then.
+
+    Raises
+    ------
+    TrawlError
+        Of class ``error``, with file, place and what was raised. Errors of the project pass
+        unchanged, as does a wish to stop.
+    """
+    try:
+        yield
+    except TrawlError:
+        raise
+    except Exception as reason:
+        where = f'{path}: {place()}' if place else str(path)
+        raise error(
+            f'{where}: cannot be read ({_short(reason)}), expected a sound file'
+        ) from reason
+
+
+def _short(reason: Exception, width: int = 120) -> str:
+    """Name an exception in one line of bounded length."""
+    if isinstance(reason, OSError) and reason.strerror:
+        return reason.strerror
+    text = f'{type(reason).__name__}: {reason}'.split('\n', 1)[0].rstrip(': ')
+    # What a file says may hold control characters, which a terminal would obey.
+    text = ''.join(sign if sign.isprintable() else '?' for sign in text)
+    return text if len(text) <= width else f'{text[: width - 3]}...'

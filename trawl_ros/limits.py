@@ -1,0 +1,38 @@
+"""Limits of what is taken from foreign files and messages, in one table.
+
+Each is applied before memory is taken or time is spent. What stands here is all there is: readers
+import a limit from this table, and `docs/limits.md` is held equal to it by a test.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A bound of what a file or message may ask for.
+
+    Attributes
+    ----------
+    value
+        The largest that is accepted.
+    unit
+        Of the value; empty for a count that ``what`` names.
+    what
+        What is bounded.
+    """
+
+    value: int
+    unit: str
+    what: str
+
+    def __str__(self) -> str:
+        return f'{self.value} {self.unit}'.strip()
+
+
+YAML_BYTES = Limit(1_000_000, 'bytes', 'size of a YAML file of the project')
+YAML_DEPTH = Limit(20, 'levels', 'nesting of a YAML file of the project')
+
+TABLE: dict[str, Limit] = {
+    name: limit for name, limit in list(globals().items()) if isinstance(limit, Limit)
+}
+"""All limits by their names, in the order of this file."""
