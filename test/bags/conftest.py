@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from trawl_ros.bags.reader import Bag, read_messages
 from trawl_ros.bags.writer import BagWriter
@@ -39,6 +41,37 @@ def write_small_bag(path: Path) -> Path:
             if number % (2 * SECONDS // CHUNKS) == 0:
                 bag.flush()
     return path
+
+
+def write_again(path: Path, **options) -> None:
+    """Write an MCAP file of `write_small_bag` anew, as the library of MCAP writes it by itself.
+
+    Descriptions of topics stand in the first chunk and, unless ``options`` say otherwise, in the
+    summary.
+    """
+    with path.open('rb') as stream:
+        found = list(make_reader(stream).iter_messages())
+    channels: dict[str, int] = {}
+    with path.open('wb') as stream:
+        writer = Writer(stream, **options)
+        writer.start('ros2', 'test')
+        for number, (schema, channel, message) in enumerate(found):
+            if channel.topic not in channels:
+                said = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.topic] = writer.register_channel(
+                    channel.topic, channel.message_encoding, said, channel.metadata
+                )
+            if number and number % (2 * SECONDS // CHUNKS) == 0:
+                writer.flush()
+            times = message.log_time, message.data, message.publish_time
+            writer.add_message(channels[channel.topic], *times)
+        writer.finish()
+
+
+@pytest.fixture
+def rewrite():
+    """Give what writes an MCAP file as others do, see `write_again`."""
+    return write_again
 
 
 @pytest.fixture(scope='session')

@@ -5,10 +5,12 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import yaml
 from mcap.reader import make_reader
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Chunk
+from mcap.stream_reader import StreamReader, breakup_chunk
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
@@ -69,6 +71,48 @@ def test_every_chunk_has_a_checksum(sound_bag):
     chunks = [record for record in records if type(record).__name__ == 'Chunk']
     assert len(chunks) == 5
     assert all(chunk.uncompressed_crc and chunk.compression == 'zstd' for chunk in chunks)
+
+
+def descriptions(path):
+    """Give, chunk for chunk, the topics described in it."""
+    with path.open('rb') as stream:
+        records = list(StreamReader(stream, emit_chunks=True).records)
+    chunks = [breakup_chunk(record) for record in records if isinstance(record, Chunk)]
+    return [[r.topic for r in chunk if isinstance(r, Channel)] for chunk in chunks]
+
+
+def test_what_describes_a_topic_stands_in_the_next_chunk_again(tmp_path, messages):
+    with BagWriter(tmp_path / 'bag') as bag:
+        for number, message in enumerate(messages):
+            if number < 8 or message[0] == WINCH:
+                bag.write(*message)
+            bag.flush()
+            if number == 8:
+                bag.write('/late', *messages[1][1:])
+    found = descriptions(tmp_path / 'bag/bag_0.mcap')
+    assert found[:2] == [[WINCH], [WINCH, PRESSURE]]
+    assert found[2] == [WINCH, PRESSURE]
+    assert not any(found[3:8])
+    both = next(place for place, topics in enumerate(found) if '/late' in topics)
+    assert found[both + 1] == [WINCH, PRESSURE, '/late']
+
+
+def test_each_full_chunk_describes_all_topics_at_a_small_part_of_its_size(tmp_path):
+    random = np.random.default_rng(5)
+    with BagWriter(tmp_path / 'bag') as bag:
+        for stamp in range(40):
+            bag.write('/noise', 'std_msgs/msg/String', random.bytes(100_000), stamp)
+    found = descriptions(tmp_path / 'bag/bag_0.mcap')
+    assert len(found) >= 4
+    assert all(topics == ['/noise'] for topics in found)
+
+
+def test_two_damages_cost_the_messages_of_their_own_chunk_only(bag_path, mcap_path, messages, raw):
+    whole = bytearray(mcap_path.read_bytes())
+    for place in (200, len(whole) - 60):
+        whole[place] ^= 1
+    mcap_path.write_bytes(whole)
+    assert raw(bag_path)[0] == messages[120:]
 
 
 def test_the_metadata_is_complete(sound_bag, messages):
