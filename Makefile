@@ -5,11 +5,12 @@ SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint lock clean
+.PHONY: help demo test fuzz lint lock clean
 
 # Any of these may be given on the command line: make PYTHON=python3.12 test
 PYTHON ?=
 DEMO := out/demo
+MINUTES := 60
 WORKERS := 2
 
 VENV := .venv
@@ -34,6 +35,7 @@ unexport PYTHONDONTWRITEBYTECODE
 help:
 	@echo 'make demo   tow a sea trial through the ROS graph, replay it, refit the boards: $(DEMO)/'
 	@echo 'make test   check the style and run all tests'
+	@echo 'make fuzz   give all readers hostile input for MINUTES: docs/studies/fuzz.json'
 	@echo 'make lint   style and types only'
 	@echo 'make lock   choose the newest allowed versions anew and write requirements.lock'
 	@echo 'make clean  remove .venv, out/ and what builds and tools leave behind'
@@ -44,6 +46,9 @@ demo: $(VENV)/ready
 test: $(VENV)/ready
 	@$(BIN)/ruff check --quiet .
 	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
+
+fuzz: $(VENV)/ready
+	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json
 
 lint: $(VENV)/ready
 	@$(BIN)/ruff check .

@@ -46,6 +46,7 @@ TEST = [
     'colcon-core>=0.18,<1',
     'colcon-package-information>=0.4,<1',
     'colcon-ros>=0.5,<1',
+    'hypothesis>=6.100,<7',
     'mypy>=1.13,<3',
     'pytest>=7.4,<10',
     'pytest-timeout>=2.3,<3',

@@ -31,6 +31,7 @@ class Limit:
 
 YAML_BYTES = Limit(1_000_000, 'bytes', 'size of a YAML file of the project')
 YAML_DEPTH = Limit(20, 'levels', 'nesting of a YAML file of the project')
+YAML_VALUES = Limit(20_000, 'values', 'keys and values in a YAML file of the project')
 
 TABLE: dict[str, Limit] = {
     name: limit for name, limit in list(globals().items()) if isinstance(limit, Limit)

@@ -14,7 +14,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from trawl_ros.complaints import complaints, shown
 from trawl_ros.errors import TrawlError
-from trawl_ros.limits import YAML_BYTES, YAML_DEPTH
+from trawl_ros.foreign import reading
+from trawl_ros.limits import YAML_BYTES, YAML_DEPTH, YAML_VALUES
 
 MAX_COMPLAINTS = 10
 
@@ -52,7 +53,7 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, Any]:
     ------
     TrawlError
         Of class ``error``: the file is missing, unreadable, too large, not YAML or not a
-        mapping; a key stands twice or is not text; an alias is used.
+        mapping; a key stands twice or is not text; an alias or a tag is used.
     """
     path = Path(path)
     if not path.exists():
@@ -66,12 +67,15 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, Any]:
         raise error(f'{path}: cannot be read ({reason.strerror})') from reason
     if len(raw) > YAML_BYTES.value:
         raise error(f'{path}: larger than {YAML_BYTES}, expected a smaller YAML file')
-    try:
-        data = yaml.load(raw.decode('utf-8'), _Loader)
-    except UnicodeDecodeError as reason:
-        raise error(f'{path}: byte {reason.start} is not UTF-8, expected a text file') from reason
-    except yaml.YAMLError as reason:
-        raise error(f'{path}: {_yaml_complaint(reason)}') from reason
+    with reading(path, error):
+        try:
+            data = yaml.load(raw.decode('utf-8'), _Loader)
+        except UnicodeDecodeError as reason:
+            raise error(
+                f'{path}: byte {reason.start} is not UTF-8, expected a text file'
+            ) from reason
+        except yaml.YAMLError as reason:
+            raise error(f'{path}: {_yaml_complaint(reason)}') from reason
     if data is None:
         raise error(f'{path}: the file is empty, expected keys and values')
     if not isinstance(data, dict):
@@ -119,18 +123,31 @@ def validated(
         raise error('\n'.join(told)) from reason
 
 
+_SURROGATE = re.compile('[\ud800-\udfff]')
+
+
 class _Loader(yaml.SafeLoader):
-    """SafeLoader with the scalars of YAML 1.2, no aliases, no key twice, bounded depth."""
+    """SafeLoader with the scalars of YAML 1.2; no aliases or tags, no key twice, all bounded."""
 
     _depth = 0
+    _values = 0
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        if self.check_event(yaml.AliasEvent):
+        event = self.peek_event()
+        if isinstance(event, yaml.AliasEvent):
             # A few lines of aliases can stand for billions of values.
-            self._refuse(self.peek_event(), 'an alias (*), expected the value itself')
+            self._refuse(event, 'an alias (*), expected the value itself')
+        if getattr(event, 'tag', None) is not None:
+            # `!!int abc` makes constructors fail in ways of their own.
+            self._refuse(event, f'a tag ({event.tag}), expected the value itself')
+        if isinstance(event, yaml.ScalarEvent) and _SURROGATE.search(event.value):
+            self._refuse(event, 'half a character (\\ud800 to \\udfff), expected text')
         self._depth += 1
+        self._values += 1
         if self._depth > YAML_DEPTH.value:
-            self._refuse(self.peek_event(), f'nesting, expected {YAML_DEPTH} at most')
+            self._refuse(event, f'nesting, expected {YAML_DEPTH} at most')
+        if self._values > YAML_VALUES.value:
+            self._refuse(event, f'one value more, expected {YAML_VALUES} at most')
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
