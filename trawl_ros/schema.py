@@ -7,10 +7,10 @@ there and what was expected.
 
 import re
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Annotated, Any, NoReturn, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from trawl_ros.complaints import complaints, shown
 from trawl_ros.errors import TrawlError
@@ -29,6 +29,25 @@ class Record(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra='forbid', strict=True, allow_inf_nan=False)
 
+
+class FrozenDict(dict[str, float]):
+    """Numbers by name that cannot be changed, so that a record that holds them can be hashed."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(frozenset(self.items()))
+
+    def __reduce__(self) -> tuple[type['FrozenDict'], tuple[dict[str, float]]]:
+        return FrozenDict, (dict(self),)
+
+    def _refuse(self, *_: Any, **__: Any) -> NoReturn:
+        raise TypeError(f'found a change of {shown(dict(self))}, expected none: it is frozen')
+
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    clear = pop = popitem = setdefault = update = _refuse
+
+
+Numbers = Annotated[dict[str, float], AfterValidator(FrozenDict)]
+"""Numbers by name, in a `Record`."""
 
 RecordT = TypeVar('RecordT', bound=BaseModel)
 

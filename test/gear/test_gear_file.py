@@ -1,11 +1,13 @@
 """A gear file is checked on load: what is wrong is said with file, key, found and expected."""
 
+import pickle
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
+from trawl_ros.diagnosis.repair import gear_text
 from trawl_ros.errors import GearError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -133,6 +135,27 @@ def test_refining_multiplies_the_numbers_of_pieces_and_nothing_else() -> None:
     assert fine.netting.codend_segments == 2 * gear.netting.codend_segments
     assert gear.refined() == gear
     assert isinstance(fine, GearRecord)
+
+
+def test_a_gear_with_effects_can_be_hashed_but_not_changed(
+    tmp_path: Path, data: dict[str, Any]
+) -> None:
+    data['effects'] = [
+        {
+            'name': 'warp_strumming',
+            'values': {'factor': 1.4},
+            'provenance': {'found_by': 'trawl diagnose', 'evidence': {'delta_chi2': 91.0}},
+        }
+    ]
+    path = tmp_path / 'gear.yaml'
+    path.write_text(yaml.safe_dump(data))
+    gear = load_gear(path)
+    assert hash(gear) == hash(load_gear(path))
+    assert pickle.loads(pickle.dumps(gear)) == gear
+    with pytest.raises(TypeError, match='frozen'):
+        gear.effects[0].values['factor'] = 2.0
+    path.write_text(gear_text(gear))
+    assert load_gear(path) == gear
 
 
 def test_every_value_says_where_it_comes_from() -> None:

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from trawl_ros.schema import Record
+from trawl_ros.schema import FrozenDict, Numbers, Record
 
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
@@ -268,14 +268,14 @@ class ProvenanceRecord(Record):
 
     found_by: str
     bags: tuple[SourceRecord, ...] = ()
-    evidence: dict[str, float] = Field(default_factory=dict)
+    evidence: Numbers = FrozenDict()
 
 
 class EffectRecord(Record):
     """An effect beyond the paper's model: its name in the catalogue, and its parameters."""
 
     name: str
-    values: dict[str, float] = Field(default_factory=dict)
+    values: Numbers = FrozenDict()
     provenance: ProvenanceRecord | None = None
 
 

@@ -1,0 +1,32 @@
+"""A gear file with effects, its net as fine as it ships."""
+
+from pathlib import Path
+
+import pytest
+
+from trawl_ros.diagnosis.repair import gear_text
+from trawl_ros.effects.acting import acting
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import EffectRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.solver.equilibrium import steady_state
+
+
+@pytest.fixture(scope='module')
+def affected(gear, tmp_path_factory):
+    path: Path = tmp_path_factory.mktemp('gear') / 'affected.yaml'
+    drag = EffectRecord(name='net_drag', values={'factor': 1.3})
+    path.write_text(gear_text(gear.model_copy(update={'effects': (drag,)})))
+    return load_gear(path)
+
+
+def test_it_has_a_steady_state(affected):
+    assert steady_state(build_model(affected), 500.0, 2.1).observables.door_spread > 100.0
+
+
+def test_it_is_towed_with_the_effect(gear, affected):
+    command = Command(500.0, 500.0, 2.1)
+    without = Simulation(build_model(gear), command).truth()
+    there = Simulation(build_model(affected), command, acting=acting(affected)).truth()
+    assert there.winches[0].tension > 1.1 * without.winches[0].tension
