@@ -39,12 +39,10 @@ def reading(
         raise
     except Exception as reason:
         where = f'{path}: {place()}' if place else str(path)
-        raise error(
-            f'{where}: cannot be read ({_short(reason)}), expected a sound file'
-        ) from reason
+        raise error(f'{where}: cannot be read ({short(reason)}), expected a sound file') from reason
 
 
-def _short(reason: Exception, width: int = 120) -> str:
+def short(reason: Exception, width: int = 120) -> str:
     """Name an exception in one line of bounded length."""
     if isinstance(reason, OSError) and reason.strerror:
         return reason.strerror

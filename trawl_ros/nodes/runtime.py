@@ -1,19 +1,24 @@
 """From the command line to a spinning node and to a clean end."""
 
+import re
 import signal
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from traceback import walk_tb
 from types import FrameType
 
 import rclpy
 from rclpy.exceptions import ROSInterruptException
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, get_logger_level, set_logger_level
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.foreign import short
 from trawl_ros.nodes.node import TrawlNode
 
 try:
@@ -27,6 +32,12 @@ WAKE_S = 0.1
 
 QUIET_S = 0.3
 LONGEST_DRAIN_S = 5.0
+
+SOURCE_PLACES = re.compile(r',?( at)? /project/\S+:\d+')
+"""Where in the sources of ROS 2 something was noticed, which is of no use to who reads it."""
+
+REFUSAL_WIDTH = 400
+"""Signs of what ROS 2 says, which may hold the path of a file."""
 
 
 class _Stop:
@@ -69,8 +80,7 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
     program = Path(arguments[0]).name if arguments else 'trawl_ros'
     with _Stop() as stop:
         try:
-            # ROS's own handlers would close the context before the last words are said.
-            rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+            _open_ros(arguments)
             unknown = remove_ros_args(arguments)[1:]
             if unknown:
                 raise TrawlError(
@@ -87,8 +97,37 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
             rclpy.try_shutdown()
 
 
+def _open_ros(arguments: Sequence[str]) -> None:
+    # What it would log of wrong arguments it raises as well.
+    set_logger_level('rcl', LoggingSeverity.FATAL)
+    try:
+        with _refusals():
+            # ROS's own handlers would close the context before the last words are said.
+            rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    finally:
+        if get_logger_level('rcl') == LoggingSeverity.FATAL:
+            set_logger_level('rcl', LoggingSeverity.UNSET)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Turn what ROS 2 raises at the start, of arguments and environment, into a sentence."""
+    try:
+        yield
+    except Exception as reason:
+        *_, (frame, _) = walk_tb(reason.__traceback__)
+        # Its classes have no base in common; what the project's own code raises is a mistake there.
+        if not frame.f_globals['__name__'].startswith('rclpy'):
+            raise
+        said = SOURCE_PLACES.sub('', short(reason, REFUSAL_WIDTH))
+        raise TrawlError(
+            f'ROS 2 refuses to start: {said}; expected arguments and environment as it takes them'
+        ) from reason
+
+
 def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
-    node = make()
+    with _refusals():
+        node = make()
     executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
     executor.add_node(node)
     try:
