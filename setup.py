@@ -45,6 +45,8 @@ TEST = [
     'colcon-bash>=0.5,<1',
     'colcon-core>=0.18,<1',
     'colcon-package-information>=0.4,<1',
+    # `colcon build --packages-select`, as the README has it.
+    'colcon-package-selection>=0.2,<1',
     'colcon-ros>=0.5,<1',
     'hypothesis>=6.100,<7',
     'mypy>=1.13,<3',

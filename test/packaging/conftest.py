@@ -76,17 +76,27 @@ def source_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+def readme_line(beginning: str) -> str:
+    """The line of the README's blocks of commands that begins so."""
+    lines = (ROOT / 'README.md').read_text(encoding='utf-8').splitlines()
+    (found,) = (line for line in lines if line.startswith(beginning))
+    return found
+
+
 @pytest.fixture(scope='session')
-def workspace(source_workspace: Path, colcon: Callable[..., str]) -> Workspace:
-    """The workspace after `colcon build` and `source install/setup.bash`."""
-    colcon(source_workspace, 'build')
+def workspace(source_workspace: Path) -> Workspace:
+    """The workspace after what the README says to build and source it."""
+    environment = clean_environment(source_workspace)
+    beside = Path(sys.executable).parent
     sourced = subprocess.run(
-        ['bash', '-c', 'source install/setup.bash && env -0'],
+        ['bash', '-c', f'{{ {readme_line("colcon build")}; }} >&2 && env -0'],
         cwd=source_workspace,
-        env=clean_environment(source_workspace),
+        env={**environment, 'PATH': f'{beside}{os.pathsep}{environment["PATH"]}'},
+        stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        check=True,
+        check=False,
     )
+    assert sourced.returncode == 0, sourced.stderr
     variables = dict(line.split('=', 1) for line in sourced.stdout.split('\0') if line)
     return Workspace(source_workspace, variables)
