@@ -14,7 +14,8 @@ from pathlib import Path
 from trawl_ros.bags.reader import Bag
 from trawl_ros.benchmark.findings import Findings, without_ros
 from trawl_ros.benchmark.row import Row
-from trawl_ros.cli.processes import NodeFailed, Processes, own_graph
+from trawl_ros.cli.own_graph import own_graph
+from trawl_ros.cli.processes import NodeFailed, Processes
 
 RATES_HZ = (500.0, 1000.0)
 """The first is what is asked for."""
@@ -62,12 +63,14 @@ def record(folder: Path, rate: float, seconds: float) -> Recorded:
         If one of them does.
     """
     bag = folder / 'bag'
-    environment = own_graph(folder / 'log')
     publishing = [
         sys.executable, '-m', 'trawl_ros.benchmark.full_chain', '--ros-args',
         '-p', f'rate:={rate}', '-p', f'seconds:={seconds}', '-p', f'wait_for:=[{RECORDER}]',
     ]  # fmt: skip
-    with Processes(folder / 'output', environment) as processes:
+    with (
+        own_graph(folder / 'log') as environment,
+        Processes(folder / 'output', environment) as processes,
+    ):
         processes.start(RECORDER, output=str(bag))
         try:
             done = subprocess.run(

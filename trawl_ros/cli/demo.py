@@ -1,6 +1,5 @@
 """``trawl demo``: the whole chain through the real ROS graph, one process per node."""
 
-import random
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -15,6 +14,7 @@ from trawl_ros.cli.demo_folder import DemoFolder
 from trawl_ros.cli.demo_hidden import hidden_effect
 from trawl_ros.cli.demo_report import load_result, print_result
 from trawl_ros.cli.files import FOLDER, SCENARIO
+from trawl_ros.cli.own_graph import own_graph
 from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.errors import RosMissing, TrawlError
@@ -35,12 +35,6 @@ if TYPE_CHECKING:
     from trawl_ros.nodes.monitor import Monitor
 
 INSTRUMENT_NODES = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
-DOMAINS = (*range(20, 70), *range(215, 233))
-"""Neither ROS's own 0 nor those whose ports Linux also gives to outgoing connections."""
-
-GEAR_HZ = 0.1
-"""At its usual 1 Hz the picture of the gear would take a third of the time of the tow."""
-
 LOOK_S = 0.2
 
 
@@ -76,13 +70,12 @@ def command(out: Path, scenario: Path) -> None:
     truth = dict(zip(COEFFICIENTS, true_coefficients(path).tolist(), strict=True))
     folder = DemoFolder(out)
     console = error_console()
-    environment = {
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
-        'ROS_DOMAIN_ID': str(random.SystemRandom().choice(DOMAINS)),
-        'ROS_LOG_DIR': str(folder.logs.resolve()),
-    }
     began = time.monotonic()
-    with Processes(folder.logs, environment) as processes, _monitor(environment) as monitor:
+    with (
+        own_graph(folder.logs) as environment,
+        Processes(folder.logs, environment) as processes,
+        _monitor(environment) as monitor,
+    ):
         tow_s = _tow(processes, monitor, loaded, folder, console)
         traffic = _traffic(monitor, folder)
         _replay(processes, monitor, loaded, folder, console)

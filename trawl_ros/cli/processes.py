@@ -2,7 +2,6 @@
 
 import json
 import os
-import random
 import signal
 import subprocess
 import sys
@@ -27,19 +26,7 @@ END_S = 20.0
 
 POLL_S = 0.02
 
-DOMAINS = (*range(20, 70), *range(215, 233))
-"""Neither ROS's own 0 nor those whose ports Linux also gives to outgoing connections."""
-
 Value = str | int | float | bool | list[str]
-
-
-def own_graph(logs: Path) -> dict[str, str]:
-    """Environment of a graph that nobody else is in: this machine only, a domain by chance."""
-    return {
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
-        'ROS_DOMAIN_ID': str(random.SystemRandom().choice(DOMAINS)),
-        'ROS_LOG_DIR': str(logs.resolve()),
-    }
 
 
 class NodeFailed(TrawlError):

@@ -7,7 +7,8 @@ from pathlib import Path
 from shutil import disk_usage
 from tempfile import TemporaryDirectory
 
-from trawl_ros.cli.processes import Processes, own_graph
+from trawl_ros.cli.own_graph import own_graph
+from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.errors import RosMissing, TrawlError
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -108,9 +109,9 @@ def _run(
     except ImportError as reason:
         raise RosMissing('the study', reason) from reason
     scenario = write_long_tow(scratch, gear, hours, truth_hz)
-    environment = own_graph(logs)
     title = 'in real time' if time_scale else 'at sea'
     with (
+        own_graph(logs) as environment,
         Processes(logs, environment) as processes,
         DelayMonitor(environment) as monitor,
         shown(title, 3600.0 * hours) as progress,

@@ -17,7 +17,8 @@ import psutil
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.cli.processes import Processes, own_graph
+from trawl_ros.cli.own_graph import own_graph
+from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.errors import RosMissing, TrawlError
 from trawl_ros.messages.stamps import SECOND
@@ -135,9 +136,9 @@ def live(
         from trawl_ros.nodes.estimate_monitor import EstimateMonitor
     except ImportError as reason:
         raise RosMissing('the node', reason) from reason
-    environment = own_graph(logs)
     bag = str(share_path('bags', 'sea_trial'))
     with (
+        own_graph(logs) as environment,
         Processes(logs, environment) as processes,
         EstimateMonitor(environment) as monitor,
         shown('node in real time', seconds) as progress,
