@@ -131,6 +131,20 @@ def test_a_file_cut_short_says_how_much_is_missing(bag_path, mcap_path, read):
     assert f'{len(received)} of 600 messages could be read' in problems[-1]
 
 
+def test_a_recording_that_was_killed_says_what_it_has_more_than_it_counted(
+    bag_path, mcap_path, messages, raw
+):
+    whole = mcap_path.read_bytes()
+    mcap_path.write_bytes(whole[: middle_of_chunk(mcap_path, 4)])
+    path = bag_path / 'metadata.yaml'
+    data = yaml.safe_load(path.read_text())
+    data['rosbag2_bagfile_information']['message_count'] = 360
+    path.write_text(yaml.safe_dump(data))
+    found, problems = raw(bag_path)
+    assert found == messages[:480]
+    assert '480 messages could be read, 120 more than were counted' in problems[-1]
+
+
 def test_no_flipped_byte_passes_or_crashes(bag_path, mcap_path, messages, raw):
     whole = mcap_path.read_bytes()
     random = np.random.default_rng(11)

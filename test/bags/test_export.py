@@ -156,10 +156,35 @@ def test_an_empty_blob_is_nothing_to_leave_out(tmp_path):
 
 
 def test_a_topic_of_which_nothing_is_left_gets_no_file(tmp_path):
-    topics, _ = exported(tmp_path, ('/lab/outline', polygon(9).polygon), array_limit=8)
+    outline, other = (
+        ('/lab/outline', polygon(9).polygon),
+        ('/lab/count', ros.std_msgs__msg__Int8(3)),
+    )
+    topics, _ = exported(tmp_path, outline, other, array_limit=8)
     assert topics['/lab/outline'].file is None
     assert topics['/lab/outline'].left_out == {'points': 'has 9 elements, more than 8'}
-    assert sorted(file.name for file in (tmp_path / 'out').iterdir()) == [DICTIONARY]
+    files = sorted(file.name for file in (tmp_path / 'out').iterdir())
+    assert files == [DICTIONARY, 'lab.count.csv']
+
+
+def test_an_export_that_would_write_nothing_is_an_error_that_says_why(tmp_path):
+    with pytest.raises(BagError, match='points of /lab/outline has 9 elements, more than 8'):
+        exported(tmp_path, ('/lab/outline', polygon(9).polygon), array_limit=8)
+    assert not (tmp_path / 'out').exists()
+
+
+def test_a_topic_whose_definition_is_not_understood_is_said(tmp_path, messages):
+    path = tmp_path / 'lab.mcap'
+    with path.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start('ros2', 'test')
+        schema = writer.register_schema('lab_msgs/msg/Thing', 'ros2msg', b'no such field')
+        writer.add_message(writer.register_channel('/lab/thing', 'cdr', schema), 1, b'1234', 1)
+        writer.finish()
+    with pytest.raises(
+        BagError, match=r'no row of a table .*Thing in the bag cannot be understood'
+    ):
+        export_bag(path, tmp_path / 'out')
 
 
 def test_topics_can_be_picked_by_either_name(sound_bag, tmp_path):

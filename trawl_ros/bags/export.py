@@ -76,11 +76,20 @@ def export_bag(
     Raises
     ------
     BagError
-        If there is no bag, no such topic, or the folder exists or cannot be written.
+        If there is no bag, no such topic, nothing that can be written, or the folder exists or
+        cannot be written.
     """
     bag = Bag(path, namespace=namespace, lenient=True)
     wanted = _wanted(bag, topics, namespace)
     layouts = _layouts(bag, wanted, array_limit)
+    if not any(table.columns for table in layouts.values()):
+        reasons = [
+            f'{field} of {topic} {reason}'
+            for topic, table in layouts.items()
+            for field, reason in table.layout.left_out.items()
+        ]
+        known = '; '.join([*bag.problems, *reasons]) or 'no message'
+        raise BagError(f'{bag.path}: gives no row of a table ({known})')
     folder = Path(folder)
     try:
         folder.mkdir(parents=True)
@@ -138,7 +147,8 @@ def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]
     for topic in wanted:
         try:
             store = find_store(topic, definitions[topic])
-        except BagError:
+        except BagError as reason:
+            bag.problems.append(f'{bag.path}: {reason}; its messages are left out')
             continue
         name = definitions[topic].type
         known[topic] = varies(store, name), singles(store, name)

@@ -6,17 +6,16 @@ through record by record as far as it goes.
 
 import heapq
 import struct
-import zlib
+from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 from mcap.opcode import Opcode
-from mcap.reader import FOOTER_SIZE
-from mcap.records import Channel, ChunkIndex, Footer, Message, Schema, Statistics
+from mcap.records import Message, Statistics
 from mcap.writer import MCAP0_MAGIC
 
+from trawl_ros.bags.chunk_index import Piece, is_finished, read_summary
 from trawl_ros.bags.chunks import (
     DAMAGE,
     MAX_CHUNK_BYTES,
@@ -25,6 +24,8 @@ from trawl_ros.bags.chunks import (
     open_chunk,
     parse_records,
 )
+from trawl_ros.bags.copies import find_copies
+from trawl_ros.bags.descriptions import Descriptions
 from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.bags.walk import RECORD_START, walk
 from trawl_ros.errors import BagError
@@ -32,16 +33,7 @@ from trawl_ros.errors import BagError
 _CHUNK_HEAD = struct.Struct('<QQQII')
 """First and last time, size, checksum, and length of the compression's name behind it."""
 _COMPRESSION_BYTES = 16
-_MESSAGE_TIME = struct.Struct('<HIQ')
-
-
-@dataclass(frozen=True, order=True)
-class Piece:
-    """A chunk, or a message outside of chunks: earliest log time (ns), offset and length."""
-
-    start: int
-    offset: int
-    length: int
+_MESSAGE_HEAD = struct.Struct('<HIQ')
 
 
 class McapFile:
@@ -71,8 +63,9 @@ class McapFile:
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         self.path = path
         self._report = report
-        self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, Channel] = {}
+        self._known = Descriptions()
+        self._used: set[int] = set()
+        """Channels that have messages."""
         self._statistics: Statistics | None = None
         self._damaged: set[int] = set()
         self.passed_bytes = 0
@@ -86,7 +79,9 @@ class McapFile:
             self._check_start(stream)
             indexed = self._by_index(stream)
             self.indexed = indexed is not None
-            self._pieces = sorted(self._by_scan(stream) if indexed is None else indexed)
+            pieces = sorted(self._by_scan(stream) if indexed is None else indexed)
+            self._pieces = self._without_copies(stream, pieces)
+            self._describe(stream)
 
     @property
     def damaged_chunks(self) -> int:
@@ -97,13 +92,13 @@ class McapFile:
     def definitions(self) -> dict[str, Definition]:
         """What is known of each topic's messages; the first channel of a topic counts."""
         found: dict[str, Definition] = {}
-        for channel in self._channels.values():
-            found.setdefault(channel.topic, self._definition(channel))
+        for topic, definition in self._known.all():
+            found.setdefault(topic, definition)
         return found
 
     def types(self) -> set[tuple[str, str]]:
         """Give all (topic, type) there are."""
-        return {(c.topic, self._definition(c).type) for c in self._channels.values()}
+        return {(topic, definition.type) for topic, definition in self._known.all()}
 
     def counts(self) -> dict[tuple[str, str], int] | None:
         """Give the number of messages by (topic, type) as the file states it; None if it does not.
@@ -114,9 +109,9 @@ class McapFile:
             return None
         found: dict[tuple[str, str], int] = {}
         for number, count in self._statistics.channel_message_counts.items():
-            channel = self._channels.get(number)
-            if channel and count:
-                key = (channel.topic, self._definition(channel).type)
+            described = self._known.find(number)
+            if described and count:
+                key = (described[0], described[1].type)
                 found[key] = found.get(key, 0) + count
         return found
 
@@ -126,17 +121,16 @@ class McapFile:
         Chunks are opened as their time comes, so that memory holds only those that overlap.
         """
         waiting: list[tuple[int, int, int, Message]] = []
-        lost_channels: dict[int, int] = {}
+        lost_channels: Counter[int] = Counter()
         with self._open() as stream:
             for piece in [*self._pieces, None]:
                 while waiting and (piece is None or waiting[0][0] < piece.start):
                     message = heapq.heappop(waiting)[3]
-                    channel = self._channels.get(message.channel_id)
-                    if channel is None:
-                        lost_channels.setdefault(message.channel_id, 0)
+                    described = self._known.find(message.channel_id)
+                    if described is None:
                         lost_channels[message.channel_id] += 1
                         continue
-                    yield Stored(channel.topic, self._definition(channel).type, message)
+                    yield Stored(described[0], described[1].type, message)
                 if piece is None:
                     break
                 for place, record in enumerate(self._load(stream, piece) or ()):
@@ -162,55 +156,28 @@ class McapFile:
         if magic != MCAP0_MAGIC:
             raise BagError(f'{self.path}: starts with {magic!r}; expected an MCAP file')
 
-    def _by_index(self, stream: BinaryIO) -> list[Piece] | None:
+    def _by_index(self, stream: BinaryIO) -> tuple[Piece, ...] | None:
         """Find the chunks by the summary; None where it is missing, damaged or without index."""
-        tail = FOOTER_SIZE + len(MCAP0_MAGIC)
-        if self._size < len(MCAP0_MAGIC) + tail:
+        self.complete = is_finished(stream, self._size)
+        if not self.complete:
             return None
-        stream.seek(self._size - tail)
-        end = stream.read(tail)
-        if not end.endswith(MCAP0_MAGIC):
-            return None
-        self.complete = True
         try:
-            footer = next(parse_records(end[:FOOTER_SIZE]))
-            if not isinstance(footer, Footer):
-                raise Damaged('no footer')
-            if footer.summary_start == 0:
-                return None
-            length = self._size - tail - footer.summary_start
-            if not 0 < length <= MAX_CHUNK_BYTES:
-                raise Damaged(f'a summary of {length} bytes')
-            stream.seek(footer.summary_start)
-            summary = stream.read(length)
-            # All but the checksum itself is covered, with the footer's own start.
-            covered = summary + end[: FOOTER_SIZE - 4]
-            if footer.summary_crc and zlib.crc32(covered) != footer.summary_crc:
-                raise Damaged('its checksum does not match')
-            return self._take_summary(list(parse_records(summary + end)))
+            summary = read_summary(stream, self._size)
+            if summary and sum(piece.length for piece in summary.pieces or ()) > self._size:
+                raise Damaged('its chunks overlap')
         except DAMAGE as reason:
             self._report(
                 f'{self.path}: the index at the end is damaged ({reason}); '
                 'the file is read from its start instead'
             )
             return None
-
-    def _take_summary(self, records: list[object]) -> list[Piece] | None:
-        pieces = []
-        for record in records:
-            if isinstance(record, Schema | Channel):
-                self._learn(record)
-            elif isinstance(record, Statistics):
-                self._statistics = record
-            elif isinstance(record, ChunkIndex):
-                self.chunk_compressions.add(record.compression)
-                pieces.append(
-                    Piece(record.message_start_time, record.chunk_start_offset, record.chunk_length)
-                )
-        stated = self._statistics
-        if stated is None or (stated.message_count and len(pieces) != stated.chunk_count):
+        if summary is None:
             return None
-        return pieces if pieces or not stated.message_count else None
+        self._known.learn(summary.records)
+        self._used |= summary.channels
+        self._statistics = summary.statistics
+        self.chunk_compressions |= summary.compressions
+        return summary.pieces
 
     def _by_scan(self, stream: BinaryIO) -> list[Piece]:
         """Go through the file record by record, and open chunks for the channels in them."""
@@ -221,8 +188,9 @@ class McapFile:
                 start, *_, name = _CHUNK_HEAD.unpack(stream.read(_CHUNK_HEAD.size))
                 compression = stream.read(min(name, _COMPRESSION_BYTES))
                 piece = Piece(start, offset, length)
-            elif opcode == Opcode.MESSAGE and length >= RECORD_START.size + _MESSAGE_TIME.size:
-                _, _, start = _MESSAGE_TIME.unpack(stream.read(_MESSAGE_TIME.size))
+            elif opcode == Opcode.MESSAGE and length >= RECORD_START.size + _MESSAGE_HEAD.size:
+                number, _, start = _MESSAGE_HEAD.unpack(stream.read(_MESSAGE_HEAD.size))
+                self._used.add(number)
                 pieces.append(Piece(start, offset, length))
                 continue
             elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
@@ -230,13 +198,31 @@ class McapFile:
             else:
                 continue
             records = self._load(stream, piece)
-            for record in records or ():
-                if isinstance(record, Schema | Channel):
-                    self._learn(record)
+            self._known.learn(records or ())
             if opcode == Opcode.CHUNK and records is not None:
+                messages = [record for record in records if isinstance(record, Message)]
+                self._used |= {message.channel_id for message in messages}
                 self.chunk_compressions.add(compression.decode('ascii', 'replace'))
-                pieces.append(piece)
+                # No checksum covers the times that the chunk's head states.
+                start = min((message.log_time for message in messages), default=start)
+                pieces.append(Piece(start, offset, length))
         return pieces
+
+    def _without_copies(self, stream: BinaryIO, pieces: list[Piece]) -> list[Piece]:
+        copies = find_copies(stream, pieces)
+        for copy, first in copies.items():
+            self._report(
+                f'{self.path}: the chunk at byte {copy.offset} is a copy of the one at byte '
+                f'{first.offset} and was left out'
+            )
+        return [piece for piece in pieces if piece not in copies]
+
+    def _describe(self, stream: BinaryIO) -> None:
+        """Look for channels in chunks as far as the summary does not describe them."""
+        for piece in self._pieces if self.indexed else ():
+            if not self._known.lacking(self._used):
+                return
+            self._known.learn(self._load(stream, piece) or ())
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Give opcode, offset and length of each record before the end of data."""
@@ -273,25 +259,4 @@ class McapFile:
                 'and was stepped over'
             )
             return None
-        for record in records:
-            if isinstance(record, Schema | Channel):
-                self._learn(record)
         return records
-
-    def _learn(self, record: Schema | Channel) -> None:
-        if isinstance(record, Schema):
-            self._schemas.setdefault(record.id, record)
-        else:
-            self._channels.setdefault(record.id, record)
-
-    def _definition(self, channel: Channel) -> Definition:
-        schema = self._schemas.get(channel.schema_id)
-        said = (
-            channel.metadata.get('offered_qos_profiles', ''),
-            channel.metadata.get('topic_type_hash', ''),
-        )
-        if schema is None:
-            return Definition('', channel.message_encoding, '', b'', *said)
-        return Definition(
-            schema.name, channel.message_encoding, schema.encoding, schema.data, *said
-        )

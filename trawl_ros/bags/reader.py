@@ -141,8 +141,13 @@ class Bag:
             read += 1
             yield RawMessage(topic, type_name, message.log_time, message.publish_time, message.data)
         stated = self._source.stated_count
-        if read and stated is not None and stated != read:
+        if read and stated is not None and stated > read:
             self._report(f'{self.path}: {read} of {stated} messages could be read')
+        elif read and stated is not None and stated < read:
+            self._report(
+                f'{self.path}: {read} messages could be read, {read - stated} more than were '
+                'counted when the bag was last brought up to date'
+            )
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Received]:
         """Give decoded messages, of all topics or of those named in full.
