@@ -1,11 +1,11 @@
-# `make demo` and `make test` need Python 3.10 to 3.13, make and a package index; what they
+# `make demo` and the tests need Python 3.10 to 3.13, make and a package index; what they
 # install goes into .venv and is done once.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz lint lock clean
+.PHONY: help demo check test test-slow promises fuzz lint lock clean
 
 # Any of these may be given on the command line: make PYTHON=python3.12 test
 PYTHON ?=
@@ -15,6 +15,7 @@ WORKERS := 2
 
 VENV := .venv
 BIN := $(VENV)/bin
+PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 # Nodes of a demo or test talk to nobody outside this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE := LOCALHOST
@@ -33,19 +34,30 @@ unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport PYTHONDONTWRITEBYTECODE
 
 help:
-	@echo 'make demo   tow a sea trial through the ROS graph, replay it, refit the boards: $(DEMO)/'
-	@echo 'make test   check the style and run all tests'
-	@echo 'make fuzz   give all readers hostile input for MINUTES: docs/studies/fuzz.json'
-	@echo 'make lint   style and types only'
-	@echo 'make lock   choose the newest allowed versions anew and write requirements.lock'
-	@echo 'make clean  remove .venv, out/ and what builds and tools leave behind'
+	@echo 'make demo       tow a sea trial through the ROS graph, replay it, refit: $(DEMO)/'
+	@echo 'make check      style, types and the quick tests: a minute'
+	@echo 'make test       style, types and all tests but the long ones'
+	@echo 'make test-slow  the long tests: commands that take minutes among them'
+	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
+	@echo 'make lint       style and types only'
+	@echo 'make promises   run every command of the documents and write docs/promises.md'
+	@echo 'make lock       choose the newest allowed versions anew and write requirements.lock'
+	@echo 'make clean      remove .venv, out/ and what builds and tools leave behind'
 
 demo: $(VENV)/ready
 	@$(BIN)/trawl demo --out $(DEMO)
 
-test: $(VENV)/ready
-	@$(BIN)/ruff check --quiet .
-	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
+check: lint
+	@$(PYTEST) -m 'not slow and not ros'
+
+test: lint
+	@$(PYTEST) -m 'not slow'
+
+test-slow: $(VENV)/ready
+	@$(PYTEST) -m slow
+
+promises: $(VENV)/ready
+	@$(BIN)/python -m pytest test/promises --write-promises
 
 fuzz: $(VENV)/ready
 	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json

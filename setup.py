@@ -49,6 +49,7 @@ TEST = [
     'colcon-package-selection>=0.2,<1',
     'colcon-ros>=0.5,<1',
     'hypothesis>=6.100,<7',
+    'markdown-it-py>=3,<5',
     'mypy>=1.13,<3',
     'pytest>=7.4,<10',
     'pytest-timeout>=2.3,<3',

@@ -1,0 +1,98 @@
+"""One test per command of README and docs, and the table of how long each takes."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from promised.documents import ROOT, TABLE, Document, read_document
+from promised.story import NOT_RUN, Story
+
+SLOW_S = 20.0
+UNKNOWN_S = 600.0
+DOCUMENTS = [
+    read_document(path)
+    for path in (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
+    if path != TABLE
+]
+HEAD = f"""\
+# Commands of these documents
+
+Made by `make promises`, which runs every command and block of code of the README and of these
+documents as it stands there, on the default gear. `make test` runs those that, with all that they
+need of others, take up to {SLOW_S:g} s; `make test-slow` runs the rest. Where words stand instead
+of a time, the command is not run, or was not measured yet, which counts as slow. Wall-clock times.
+
+| command | where | s |
+|---|---|---|
+"""
+NOT_MEASURED = 'not measured yet'
+
+
+def measured() -> dict[tuple[str, str], float]:
+    """Seconds of each command, by document and command, as the table has them."""
+    lines = TABLE.read_text().splitlines() if TABLE.exists() else []
+    rows = (re.fullmatch(r'\| `(.+)` \| \[(\S+)\]\(.*\) \| ([\d.]+) \|', line) for line in lines)
+    return {(row[2], row[1]): float(row[3]) for row in rows if row}
+
+
+def table(seconds: dict[tuple[str, str], float]) -> str:
+    """The table of all commands, documents in their order."""
+    lines = []
+    for document in DOCUMENTS:
+        name = document.name
+        link = f'[{name}]({name[5:] if name.startswith("docs/") else f"../{name}"})'
+        for title in dict.fromkeys(promise.title for promise in document.promises):
+            took = seconds.get((name, title))
+            value = NOT_MEASURED if took is None else f'{took:.1f}'
+            lines.append(f'| `{title}` | {link} | {NOT_RUN.get(title, value)} |\n')
+    return HEAD + ''.join(lines)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        '--write-promises', action='store_true', help=f'measure all commands for {TABLE.name}'
+    )
+
+
+@pytest.fixture(scope='session')
+def documents() -> list[Document]:
+    return DOCUMENTS
+
+
+@pytest.fixture(scope='session')
+def stories(
+    tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest
+) -> Iterator[dict[str, Story]]:
+    """One story per document; what they took is put into the table if that is asked for."""
+    made = {
+        document.name: Story(document, tmp_path_factory.mktemp('story'))
+        for document in DOCUMENTS
+        if document.promises
+    }
+    yield made
+    if request.config.getoption('--write-promises', default=False):
+        took = {
+            (promise.document, promise.title): seconds
+            for story in made.values()
+            for promise, seconds in story.seconds.items()
+        }
+        TABLE.write_text(table(measured() | took))
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Mark a command slow where it, with all that it needs, took long when it was measured."""
+    if 'promise' not in metafunc.fixturenames:
+        return
+    seconds = measured()
+    cases = []
+    for document in DOCUMENTS:
+        for promise in document.promises:
+            if promise.title in NOT_RUN:
+                continue
+            chain = [promise, *document.before(promise)]
+            takes = sum(seconds.get((document.name, part.title), UNKNOWN_S) for part in chain)
+            marks = [pytest.mark.timeout(240.0 + 6.0 * takes)]
+            if takes > SLOW_S:
+                marks.append(pytest.mark.slow)
+            cases.append(pytest.param(promise, marks=marks, id=f'{promise.place} {promise.title}'))
+    metafunc.parametrize('promise', cases)
