@@ -46,7 +46,13 @@ def short(reason: Exception, width: int = 120) -> str:
     """Name an exception in one line of bounded length."""
     if isinstance(reason, OSError) and reason.strerror:
         return reason.strerror
-    text = f'{type(reason).__name__}: {reason}'.split('\n', 1)[0].rstrip(': ')
-    # What a file says may hold control characters, which a terminal would obey.
+    return one_line(f'{type(reason).__name__}: {reason}'.rstrip(': '), width)
+
+
+def one_line(text: str, width: int) -> str:
+    """Cut what a file or message brings along to its first line, at most ``width`` long."""
+    # Not split before it is cut: what is foreign may be long.
+    text = text[: 2 * width].split('\n', 1)[0].rstrip()
+    # It may hold control characters, which a terminal would obey.
     text = ''.join(sign if sign.isprintable() else '?' for sign in text)
     return text if len(text) <= width else f'{text[: width - 3]}...'

@@ -157,7 +157,10 @@ while not sender.get_subscription_count():
     time.sleep(0.05)
 time.sleep(0.5)
 message = JointState(position=[0.0] * 2000)
-for number in range({number}):
+sender.publish(message)
+# A gap shows between two messages, so the first is to arrive.
+time.sleep(0.5)
+for number in range({number} - 1):
     sender.publish(message)
 sys.stdin.read()
 """

@@ -1,8 +1,7 @@
 """What all nodes of the project have in common: bytes in and out, diagnostics, a clean end."""
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -13,20 +12,30 @@ from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from trawl_ros.errors import MessageError, TrawlError
-from trawl_ros.messages.cdr import deserialize, serialize
+from trawl_ros.foreign import one_line
+from trawl_ros.limits import SENTENCE
+from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
-from trawl_ros.messages.topics import NAMESPACE, find_topic
-from trawl_ros.nodes.graph_checks import Listening, clock_status, connection_problems
+from trawl_ros.messages.topics import CLOCK, NAMESPACE, find_topic
+from trawl_ros.nodes.graph_checks import SHARED, Listening, clock_status, connection_problems
 from trawl_ros.nodes.headway import Headway
+from trawl_ros.nodes.incoming import (
+    Incoming,
+    believing_clock,
+    decoding,
+    error_of_program,
+    settling,
+)
 from trawl_ros.nodes.message_classes import message_class
 from trawl_ros.nodes.parameters import Parameters, Spec
 from trawl_ros.nodes.qos import offered, overriding
+from trawl_ros.nodes.source import Source
 from trawl_ros.nodes.traffic import Traffic
 
 DIAGNOSTICS = '/diagnostics'
@@ -69,14 +78,17 @@ class TrawlNode(Node):
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         kwargs.setdefault('namespace', NAMESPACE)
-        super().__init__(name, **kwargs)
+        # Before ROS itself listens to /clock.
         self.traffic = Traffic()
+        self._refused: dict[str, str] = {}
+        self._troubles: dict[str, str] = {}
+        self._sources: dict[str, Source] = {}
+        super().__init__(name, **kwargs)
         self.headway = Headway()
         self.exit_code: int | None = None
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._senders: dict[str, Publisher] = {}
         self._listeners: dict[str, tuple[Subscription, str]] = {}
-        self._refused: dict[str, str] = {}
         self._said: dict[str, tuple[int, str]] = {}
         self._closed = False
         self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
@@ -134,10 +146,53 @@ class TrawlNode(Node):
         """Call back at a period of wall time, whatever ROS time does."""
 
         def call() -> None:
-            with self._ending_on_error():
+            # Raised on, it would come out of the executor, or end other nodes too.
+            try:
                 callback()
+            except TrawlError as reason:
+                self.end(1, str(reason))
+            except Exception as reason:
+                self._note_trouble(callback.__qualname__, error_of_program(reason))
 
         return self.create_timer(period_s, call, clock=self.steady_clock)
+
+    def create_subscription(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[[Any], None],
+        *args: Any,
+        single: bool = False,
+        **kwargs: Any,
+    ) -> Subscription:
+        """Subscribe as any node does; ROS itself subscribes to /clock by this.
+
+        What goes wrong with a message is counted and said, and the node lives on. With ``single``
+        it stays with one publisher.
+        """
+        full = self.full_name(topic)
+        if full == CLOCK.name:
+            callback = believing_clock(callback, lambda reason: self.refuse(full, reason))
+        # Made before the subscription that it asks.
+        source = Source(lambda: subscription.get_publisher_count())
+        subscription = super().create_subscription(
+            msg_type,
+            topic,
+            Incoming(
+                full,
+                callback,
+                lambda reason: self.refuse(full, reason),
+                lambda reason: self.end(1, reason),
+                source,
+                single,
+            ),
+            *args,
+            # Asked for an event while another one comes in, the middleware locks up for ever.
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            **kwargs,
+        )
+        self._sources[full] = source
+        return subscription
 
     def listen(
         self,
@@ -145,17 +200,20 @@ class TrawlNode(Node):
         handler: Callable[[Any], None],
         profile: QoSProfile,
         type_name: str | None = None,
+        *,
+        settled: bool = False,
     ) -> None:
-        """Subscribe; messages that cannot be used are counted and said, not raised."""
+        """Subscribe; messages that cannot be used are counted and said, not raised.
+
+        With ``settled`` those are held back that are stamped far from the ones before, until
+        three agree.
+        """
         kind = self._type_of(topic, type_name)
-
-        def take(data: bytes) -> None:
-            try:
-                handler(deserialize(data, kind))
-            except MessageError as reason:
-                self.refuse(topic, str(reason))
-
-        self.listen_raw(topic, kind, take, profile)
+        if settled:
+            handler = settling(topic, handler, lambda reason: self.refuse(topic, reason))
+        self.listen_raw(
+            topic, kind, decoding(topic, kind, handler), profile, single=self._is_single(topic)
+        )
 
     def listen_raw(
         self,
@@ -165,14 +223,17 @@ class TrawlNode(Node):
         profile: QoSProfile,
         *,
         overridable: bool = True,
+        single: bool = False,
     ) -> None:
-        """Subscribe to the bytes of a topic; ``overridable`` lets users override the profile."""
+        """Subscribe to the bytes of a topic.
+
+        ``overridable`` lets users override the profile; ``single`` as for `create_subscription`.
+        """
         full = self.full_name(topic)
 
         def take(data: bytes) -> None:
             self.traffic.count('received', full)
-            with self._ending_on_error():
-                handler(data)
+            handler(data)
 
         subscription = self.create_subscription(
             message_class(type_name),
@@ -181,21 +242,22 @@ class TrawlNode(Node):
             copy(profile),
             qos_overriding_options=overriding() if overridable else None,
             raw=True,
-            event_callbacks=SubscriptionEventCallbacks(
-                message_lost=lambda event: self.traffic.lost(full, event.total_count)
-            ),
+            single=single,
         )
         self._listeners[full] = (subscription, type_name)
         self.traffic.expect('received', full)
 
     def offer(self, service: str, act: Callable[[], str]) -> None:
-        """Offer a Trigger service; a `TrawlError` of what it does is its refusal, with reason."""
+        """Offer a Trigger service; an error of what it does is its refusal, with reason."""
 
         def answer(request: Any, response: Any) -> Any:
             try:
                 response.success, response.message = True, act()
             except TrawlError as reason:
                 response.success, response.message = False, str(reason)
+            except Exception as reason:
+                response.success, response.message = False, error_of_program(reason)
+                self.get_logger().error(f'{service}: {response.message}')
             return response
 
         self.create_service(Trigger, service, answer)
@@ -208,6 +270,8 @@ class TrawlNode(Node):
     def refuse(self, topic: str, reason: str) -> None:
         """Take note of a message that is not used, and say why when the reason is new."""
         full = self.full_name(topic)
+        # A reason may repeat what the message brought along.
+        reason = one_line(reason, SENTENCE.value)
         self.traffic.count('refused', full)
         if self._refused.get(full) != reason:
             self._refused[full] = reason
@@ -265,13 +329,16 @@ class TrawlNode(Node):
         elif before != OK:
             log.info(f'{name}: {message}')
 
-    @contextmanager
-    def _ending_on_error(self) -> Iterator[None]:
-        # Raised on, it would come out of the executor with a traceback, or end other nodes too.
-        try:
-            yield
-        except TrawlError as reason:
-            self.end(1, str(reason))
+    def _note_trouble(self, what: str, sentence: str) -> None:
+        if self._troubles.get(what) != sentence:
+            self._troubles[what] = sentence
+            self.get_logger().error(f'{what}: {sentence}')
+
+    def _is_single(self, topic: str) -> bool:
+        """Whether a topic of the contract is to have one publisher."""
+        shared = {self.full_name(name) for name in SHARED}
+        row = find_topic(topic, self.get_namespace())
+        return row is not None and self.full_name(topic) not in shared
 
     def _type_of(self, topic: str, type_name: str | None) -> str:
         if type_name is not None:
@@ -307,8 +374,16 @@ class TrawlNode(Node):
         if refused := self.traffic.total('refused'):
             last = next(reversed(self._refused.values()))
             problems.append(f'{refused} messages left out, the last because {last}')
+        # What a latched topic gives up for its newest message is meant to be given up.
+        for full, (subscription, _) in self._listeners.items():
+            if subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
+                self.traffic.lost(full, self._sources[full].lost)
         if dropped := self.traffic.dropped:
             problems.append(f'{dropped} messages were lost on the way here')
         values = self.traffic.report()
         message = '; '.join(problems) or 'messages are flowing as they should'
-        return Status('messages', WARN if problems else OK, message, values)
+        level = WARN if problems else OK
+        if self._troubles:
+            what, sentence = list(self._troubles.items())[-1]
+            level, message = ERROR, f'{what}: {sentence}'
+        return Status('messages', level, message, values)

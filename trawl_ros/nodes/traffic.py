@@ -34,7 +34,8 @@ class Traffic:
 
     def lost(self, topic: str, total: int) -> None:
         """Take note of how many messages of a topic were lost on the way, all together."""
-        self._lost[topic] = total
+        if total:
+            self._lost[topic] = total
 
     def counts(self, direction: str) -> dict[str, int]:
         """Give the number of messages by full topic name."""

@@ -1,0 +1,98 @@
+"""Publisher that a subscription stays with, told from others by the numbers of its messages.
+
+ROS gives subscribers no name of who has sent a message, but the number that its publisher gave it.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+SHORTEST_PATIENCE_S, LONGEST_PATIENCE_S = 2.0, 60.0
+PERIODS = 3.0
+"""A source that is silent for as many of its periods as this has gone."""
+
+MOST_PUBLISHERS = 8
+"""Publishers of one topic that are told apart."""
+
+
+@dataclass
+class _Publisher:
+    number: int
+    heard_at: float
+    period_s: float = 0.0
+
+    def heard(self, number: int, now: float) -> None:
+        self.period_s = now - self.heard_at
+        self.number, self.heard_at = number, now
+
+    @property
+    def patience_s(self) -> float:
+        return min(max(PERIODS * self.period_s, SHORTEST_PATIENCE_S), LONGEST_PATIENCE_S)
+
+
+class Source:
+    """Stays with the publisher that was heard first, as long as it is heard.
+
+    Two sources of one quantity contradict each other, and a mixture of both is worse than either.
+
+    Parameters
+    ----------
+    publishers
+        Gives how many publishers are matched just now.
+    clock
+        Gives wall time in s.
+
+    Attributes
+    ----------
+    lost : int
+        How many messages of the source have not arrived.
+    """
+
+    def __init__(
+        self, publishers: Callable[[], int], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._publishers = publishers
+        self._clock = clock
+        self._source: _Publisher | None = None
+        self._others: list[_Publisher] = []
+        self.lost = 0
+
+    def take(self, number: int | None) -> bool:
+        """Tell whether the message with a number comes from the source.
+
+        Without numbers (None), as with some middleware, no message of several publishers does.
+        """
+        several = self._publishers() > 1
+        if number is None:
+            return not several
+        now = self._clock()
+        source = self._source
+        if source is None:
+            self._source = _Publisher(number, now)
+            return True
+        if number == source.number + 1:
+            source.heard(number, now)
+            return True
+        other = next((one for one in self._others if number == one.number + 1), None)
+        if not several and other is None:
+            self._go_on(source, number, now)
+            return True
+        if other is None:
+            other = _Publisher(number, now)
+            self._others = [*self._others[1 - MOST_PUBLISHERS :], other]
+        else:
+            other.heard(number, now)
+        if several and now - source.heard_at <= source.patience_s:
+            return False
+        self._source = other
+        self._others = [one for one in self._others if one is not other]
+        return True
+
+    def _go_on(self, source: _Publisher, number: int, now: float) -> None:
+        """Take a message of the only publisher, after a loss or of one that was started anew."""
+        if number > source.number:
+            self.lost += number - source.number - 1
+            source.heard(number, now)
+        else:
+            self._source = _Publisher(number, now, source.period_s)
+        self._others = []
