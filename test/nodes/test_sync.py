@@ -4,6 +4,7 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+from trawl_ros.limits import Limit  # noqa: E402
 from trawl_ros.messages.stamps import SECOND, header  # noqa: E402
 from trawl_ros.nodes import sync  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
@@ -114,6 +115,36 @@ def test_who_is_silent_for_long_is_missing_and_not_waited_for(graph, source, rep
 def test_progress_from_before_the_beginning_is_worth_nothing(source, report, begin):
     report('needed', begin + 61 * SECOND)
     assert source.consumers.slowest() == begin
+
+
+def test_who_does_not_get_on_is_waited_for_for_a_while_and_again_once_it_does(
+    source, report, begin, monkeypatch
+):
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.followed(begin + 50 * SECOND)
+    assert not source.consumers.followed(begin + 55 * SECOND)
+    assert not source.consumers.stalled()
+    monkeypatch.setattr(sync, 'STALLED_S', 0.0)
+    assert source.consumers.stalled() == ['needed']
+    assert source.consumers.followed(begin + 55 * SECOND)
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.stalled() == ['needed']
+    report('needed', begin + 51 * SECOND)
+    assert not source.consumers.stalled()
+    assert not source.consumers.followed(begin + 55 * SECOND)
+
+
+def test_old_progress_takes_nothing_back(source, report, begin):
+    report('needed', begin + 59 * SECOND)
+    report('needed', begin + 2 * SECOND)
+    assert source.consumers.slowest() == begin + 59 * SECOND
+
+
+def test_names_that_never_end_are_not_kept(source, report, begin, monkeypatch):
+    monkeypatch.setattr(sync, 'CONSUMERS', Limit(2, '', ''))
+    for number in range(5):
+        report(f'consumer {number}', begin + SECOND)
+    assert len(source.consumers._heard) == 2
 
 
 class Follower(TrawlNode):

@@ -212,7 +212,7 @@ class AutopilotNode(TrawlNode):
             if isinstance(sample, HeadingSample | FixSample | VelocitySample | SchoolsSample):
                 self._take(topic, sample)
 
-        self.listen(topic, take, CONSUMER)
+        self.listen(topic, take, CONSUMER, settled=True)
 
     def _take(
         self, topic: str, sample: HeadingSample | FixSample | VelocitySample | SchoolsSample

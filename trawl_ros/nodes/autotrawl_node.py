@@ -68,7 +68,7 @@ class AutotrawlNode(TrawlNode):
         self._found = (math.nan, math.nan)
         self.advertise(WINCH_COMMAND)
         self._progress = Progress(self, idle=lambda: True)
-        self.listen(WINCH, self._take, CONSUMER)
+        self.listen(WINCH, self._take, CONSUMER, settled=True)
 
     def parameter_changed(self, name: str) -> None:
         """Let a live parameter's new value have its effect."""

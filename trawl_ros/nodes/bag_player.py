@@ -19,7 +19,7 @@ from trawl_ros.nodes.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.qos import PUBLISHED_DEPTH
 from trawl_ros.nodes.replay import replayed
 from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import Consumers
+from trawl_ros.nodes.sync import STALLED_S, Consumers
 
 BURST_S = 0.05
 TICK_S = 0.002
@@ -115,7 +115,12 @@ class BagPlayer(TrawlNode):
         if missing:
             text = f'waits for {", ".join(missing)}, which should report on sync/progress'
             return [Status('bag', WARN, text, values)]
-        if problems := [*self._left_out, *self._bag.problems]:
+        problems = [*self._left_out, *self._bag.problems]
+        if stalled := self._consumers.stalled():
+            problems.append(
+                f'goes on without {", ".join(stalled)}, not getting on for {STALLED_S:g} s'
+            )
+        if problems:
             return [Status('bag', WARN, '; '.join(problems), values)]
         if self._paused:
             return [Status('bag', OK, 'paused', values)]
@@ -175,9 +180,9 @@ class BagPlayer(TrawlNode):
             self._finish_round()
 
     def _may_go_on(self, stamp: int) -> bool:
-        slowest = self._consumers.slowest()
         lead = round(self.parameters['lead_s'] * SECOND)
-        if slowest is not None and self._latest > slowest + lead and not self._stand_still(slowest):
+        followed = self._consumers.followed(self._latest - lead)
+        if not followed and not self._stand_still(self._consumers.slowest()):
             self._pacer.restart()
             return False
         return self._pacer.due(stamp / SECOND)

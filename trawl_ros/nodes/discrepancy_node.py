@@ -22,7 +22,7 @@ from trawl_ros.nodes.finding_status import CALM, finding_statuses
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.parameters import Number, Text
 from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.rewinding import Rewinding
+from trawl_ros.nodes.rewinding import Reached, Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.nodes.watching import Tried, WatchingThread
@@ -62,7 +62,7 @@ class DiscrepancyNode(TrawlNode):
         self._finder = finder_for(self._gear, window_options(parameters))
         self._windows: list[SteadyWindow] = []
         self._tried = Tried()
-        self._stamp = 0
+        self._reached = Reached()
         self._rewinding = Rewinding()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._told)
@@ -97,16 +97,15 @@ class DiscrepancyNode(TrawlNode):
             if anew:
                 self._forget()
             for sample in samples:
-                self._stamp = max(self._stamp, sample.stamp)
                 self._take(self._finder.feed(sample))
-                self._progress.done(self._stamp)
+                self._progress.done(self._reached.take(sample.stamp))
 
         return feed
 
     def _forget(self) -> None:
         self._finder.reset()
         self._watching.forget()
-        self._windows, self._stamp, self._tried = [], 0, Tried()
+        self._windows, self._reached, self._tried = [], Reached(), Tried()
         self.get_logger().warning('stamps of the winch went back; all begins anew')
 
     def _take(self, decided: Sequence[SteadyWindow | RejectedWindow]) -> None:
@@ -124,7 +123,7 @@ class DiscrepancyNode(TrawlNode):
         self._tried = replace(tried, found=tried.found or self._tried.found)
         if tried.found is not None:
             statuses = finding_statuses(tried.found)
-            self.send(FINDINGS, diagnostic_array(self._stamp, statuses))
+            self.send(FINDINGS, diagnostic_array(self._reached.stamp, statuses))
 
     def _write(self) -> tuple[str, bool]:
         """Write the report; the sentence with which all ends, and whether all windows count."""

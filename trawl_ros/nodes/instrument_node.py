@@ -187,7 +187,7 @@ class InstrumentNode(TrawlNode, ABC):
             self._progress.done(stamp)
 
         # As patient as a recorder: a truth that is lost is a sample that is lost.
-        self.listen(topic, take, CONSUMER)
+        self.listen(topic, take, CONSUMER, settled=True)
 
 
 def _faults(texts: Sequence[str]) -> dict[str, str]:

@@ -32,6 +32,7 @@ from trawl_ros.nodes.incoming import (
     error_of_program,
     settling,
 )
+from trawl_ros.nodes.introduction import introduction
 from trawl_ros.nodes.message_classes import message_class
 from trawl_ros.nodes.parameters import Parameters, Spec
 from trawl_ros.nodes.qos import offered, overriding
@@ -109,6 +110,14 @@ class TrawlNode(Node):
     def finish_work(self) -> None:
         """Bring to an end what was begun; called once, before the last diagnostics."""
 
+    def introduce(self) -> None:
+        """Say in the log what the node does, on what, and with which topics."""
+        own = [sender.topic_name for name, sender in self._senders.items() if name != DIAGNOSTICS]
+        values = {spec.name: self.parameters[spec.name] for spec in self.SPECS}
+        topics = {'publishes': own, 'listens to': list(self._listeners)}
+        for line in introduction(type(self), values, self.get_namespace(), topics):
+            self.get_logger().info(line)
+
     def full_name(self, topic: str) -> str:
         """Give a topic's full name after namespace and remapping."""
         return self.resolve_topic_name(topic)
@@ -171,7 +180,7 @@ class TrawlNode(Node):
         it stays with one publisher.
         """
         full = self.full_name(topic)
-        if full == CLOCK.name:
+        if full == CLOCK.name and not kwargs.get('raw'):
             callback = believing_clock(callback, lambda reason: self.refuse(full, reason))
         # Made before the subscription that it asks.
         source = Source(lambda: subscription.get_publisher_count())

@@ -128,6 +128,7 @@ def _refusals() -> Iterator[None]:
 def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
     with _refusals():
         node = make()
+    node.introduce()
     executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
     executor.add_node(node)
     try:

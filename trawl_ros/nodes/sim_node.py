@@ -25,7 +25,7 @@ from trawl_ros.nodes.pacer import Pacer
 from trawl_ros.nodes.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.qos import STREAM
 from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import SILENT_S, Consumers
+from trawl_ros.nodes.sync import SILENT_S, STALLED_S, Consumers
 from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import CommandedTow, Tow
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -148,6 +148,9 @@ class SimNode(TrawlNode):
             return WARN, f'goes on without {", ".join(missing)}, silent for {SILENT_S:g} s'
         if missing:
             return WARN, f'waits for {", ".join(missing)}, which should report on sync/progress'
+        if stalled := self._consumers.stalled():
+            names = ', '.join(stalled)
+            return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'
         if self._paused:
             return OK, 'paused'
         if self._pacer.lost_s > 0.0:
@@ -218,9 +221,8 @@ class SimNode(TrawlNode):
 
     def _followed(self) -> bool:
         """Whether consumers are near enough for one truth more."""
-        slowest = self._consumers.slowest()
         lead = round(self.parameters['lead_s'] * SECOND)
-        return slowest is None or self._latest + self._period <= slowest + lead
+        return self._consumers.followed(self._latest + self._period - lead)
 
     def _go_on(self) -> None:
         try:
@@ -263,8 +265,9 @@ class SimNode(TrawlNode):
             return
         slowest = self._consumers.slowest()
         done = slowest is None or slowest >= self._latest
-        if done and (missing := self._consumers.missing()):
-            self.end(1, f'the scenario has come to its end without {", ".join(missing)}')
+        absent = [*self._consumers.missing(), *self._consumers.stalled()]
+        if done and absent:
+            self.end(1, f'the scenario has come to its end without {", ".join(absent)}')
         elif done and self.all_acknowledged(1.0):
             self.end(0, f'the scenario has come to its end at {self._tow.time_s:.1f} s')
         elif monotonic() - (self._ended or 0.0) > PATIENCE_S and not done:

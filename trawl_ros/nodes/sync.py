@@ -11,6 +11,8 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from trawl_ros.errors import MessageError
+from trawl_ros.limits import CONSUMERS
 from trawl_ros.messages.stamps import SECOND, from_time, header
 from trawl_ros.nodes.graph_checks import SYNC
 from trawl_ros.nodes.node import TrawlNode
@@ -32,6 +34,10 @@ NOTHING = 0
 
 SILENT_S = 10.0
 """A consumer not heard for this long has gone."""
+
+STALLED_S = 120.0
+"""A consumer that does not get on for this long is not waited for; a look at a window takes less.
+"""
 
 
 class Progress:
@@ -99,7 +105,8 @@ class Consumers:
     Those it needs count from the beginning on. Others count once they have dealt with anything
     of it: what was published before they were there will never reach them, so to wait for
     them would be to wait for ever. The same holds for one that was started anew; and one that
-    is not heard for `SILENT_S` does not count, needed or not, until it is heard again.
+    is not heard for `SILENT_S`, or has kept the source waiting for `STALLED_S` without getting on,
+    does not count, needed or not, until it is heard or gets on again.
 
     Parameters
     ----------
@@ -114,6 +121,7 @@ class Consumers:
         self._names = tuple(names)
         self._stamps: dict[str, int] = {}
         self._heard: dict[str, float] = {}
+        self._waited_for: dict[str, float] = {}
         self._span = (0, 0)
         self._subscribers: dict[str, tuple[int, int]] = {}
         self._changed = time.monotonic()
@@ -133,9 +141,19 @@ class Consumers:
         """Names of the needed that have not been heard, or not for long."""
         return [name for name in self._names if not self._present(name)]
 
+    def stalled(self) -> list[str]:
+        """Names of those that are there and do not get on, and are not waited for any more."""
+        now = time.monotonic()
+        return [
+            name
+            for name, since in self._waited_for.items()
+            if self._present(name) and now - since > STALLED_S
+        ]
+
     def begin(self, stamp: int) -> None:
         """Data time begins (anew) at a stamp (ns): what was reported so far is worth nothing."""
         self._stamps = dict.fromkeys(self._names, stamp)
+        self._waited_for = {}
         self._span = (stamp, stamp)
 
     def sent(self, stamp: int) -> None:
@@ -143,9 +161,24 @@ class Consumers:
         self._span = (self._span[0], stamp)
         self._node.headway.reached(stamp)
 
+    def followed(self, stamp: int) -> bool:
+        """Whether all that count have come to a stamp (ns); asked when the source could go on."""
+        slowest = self.slowest()
+        if slowest is None or slowest >= stamp:
+            return True
+        for name, done in self._stamps.items():
+            if done < stamp:
+                self._waited_for.setdefault(name, time.monotonic())
+        return False
+
     def slowest(self) -> int | None:
         """Give the stamp (ns) that all have reached; None where nobody counts."""
-        counting = (stamp for name, stamp in self._stamps.items() if self._present(name))
+        stalled = self.stalled()
+        counting = (
+            stamp
+            for name, stamp in self._stamps.items()
+            if self._present(name) and name not in stalled
+        )
         return min(counting, default=None)
 
     def _present(self, name: str) -> bool:
@@ -155,10 +188,15 @@ class Consumers:
         name, stamp = message.frame_id, from_time(message.stamp)
         if name == self._node.get_name():
             return
+        if name not in self._heard and len(self._heard) >= CONSUMERS.value:
+            raise MessageError(f'{SYNC}: one consumer more; expected at most {CONSUMERS}')
         self._heard[name] = time.monotonic()
         first, latest = self._span
-        # Progress outside of what was published since the beginning is from before it.
-        if first < stamp <= latest:
+        # Progress outside of what was published since the beginning is from before it, and what
+        # was dealt with once stays so.
+        if first < stamp <= latest and stamp > self._stamps.get(name, first):
             self._stamps[name] = stamp
+            self._waited_for.pop(name, None)
         elif stamp == NOTHING and self._stamps.get(name, first) > first:
             del self._stamps[name]
+            self._waited_for.pop(name, None)

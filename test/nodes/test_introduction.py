@@ -1,0 +1,30 @@
+"""A node that starts says what it does, on what, and with which topics."""
+
+from trawl_ros.nodes.introduction import introduction
+
+
+class Node:
+    """Tows a `gear`
+    by a scenario. And more.
+
+    At length.
+    """
+
+
+class Silent(Node):
+    pass
+
+
+def test_it_fits_two_lines():
+    values = {'gear': 'kaifuha', 'scenario': '', 'time_scale': 0.0, 'lead_s': 3.0}
+    published = [f'/trawl/truth/{number}' for number in range(8)]
+    topics = {'publishes': published, 'listens to': ['/trawl/command/winch', '/clock'], 'x': []}
+    assert introduction(Node, values, '/trawl', topics) == [
+        'Tows a gear by a scenario (gear kaifuha, time_scale 0.0)',
+        'in /trawl: publishes truth/0, truth/1, truth/2, truth/3, truth/4, truth/5 and 2 more; '
+        'listens to command/winch, /clock',
+    ]
+
+
+def test_who_does_not_say_what_it_does_has_nothing_to_say():
+    assert introduction(Silent, {}, '/trawl', {'publishes': ['a']}) == []
