@@ -1,8 +1,11 @@
 """Boundary to foreign files: whatever goes wrong while one is read becomes a sentence."""
 
+import os
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from trawl_ros.errors import TrawlError
 
@@ -40,6 +43,24 @@ def reading(
     except Exception as reason:
         where = f'{path}: {place()}' if place else str(path)
         raise error(f'{where}: cannot be read ({short(reason)}), expected a sound file') from reason
+
+
+def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
+    """Open a file for reading if it is one: a pipe or device would wait, or never end.
+
+    Raises
+    ------
+    TrawlError
+        Of class ``error``, if it is something else or cannot be opened.
+    """
+    try:
+        number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError as reason:
+        raise error(f'{path}: cannot be read ({reason.strerror})') from reason
+    if not stat.S_ISREG(os.fstat(number).st_mode):
+        os.close(number)
+        raise error(f'{path}: not a file but a folder, pipe or device; expected a file')
+    return os.fdopen(number, 'rb')
 
 
 def short(reason: Exception, width: int = 120) -> str:

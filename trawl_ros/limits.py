@@ -38,6 +38,29 @@ SCAN_BYTES = Limit(5_000_000, 'bytes', 'size of a LaserScan, DiagnosticArray or 
 IMAGE_BYTES = Limit(100_000_000, 'bytes', 'size of an Image or PointCloud2')
 SENTENCE = Limit(300, 'characters', 'what a node says of a message, in its log and diagnostics')
 CONSUMERS = Limit(100, '', 'consumers that a source takes note of')
+DEFINITION_BYTES = Limit(256_000, 'bytes', 'text of the definition of a message type in a bag')
+DEFINITION_FIELDS = Limit(2000, 'fields', 'such a definition, with all types in it')
+DEFINITION_VALUES = Limit(
+    1000, 'values', 'a message without its sequences, an array of numbers counting as one'
+)
+DEFINITION_DEPTH = Limit(20, 'levels', 'types within types')
+BAG_TOPICS = Limit(5000, 'topics', 'a bag')
+BAG_FIELDS = Limit(20_000, 'fields', 'all definitions of a bag that are not those of ROS 2 Jazzy')
+BAG_FILES = Limit(1000, 'files', 'a bag')
+CHUNK_BYTES = Limit(256 << 20, 'bytes', 'a chunk, record or message of a bag, unpacked')
+MESSAGE_OBJECTS = Limit(4_000_000, '', 'strings, records and their values in one message')
+BAG_MESSAGES = Limit(500_000, 'messages', 'a file of a bag, and one more per 8 bytes of the file')
+BAG_UNPACKED = Limit(
+    512 << 20, 'bytes', 'what a file of a bag unpacks to, and 200 more per byte of the file'
+)
+BAG_WAITING = Limit(512 << 20, 'bytes', 'chunks that overlap in time, so that all are held at once')
+BAG_OPERATIONS = Limit(
+    50_000_000, 'steps of SQLite', 'reading a database, and 20 more per byte of the file'
+)
+METADATA_BYTES = Limit(4_000_000, 'bytes', 'metadata.yaml of a bag')
+METADATA_VALUES = Limit(500_000, 'values', 'metadata.yaml, aliases written out')
+METADATA_DEPTH = Limit(20, 'levels', 'nesting of metadata.yaml')
+LATEST_STAMP = Limit(2**63 - 1, 'ns', 'log time of a message, since 1970')
 
 TABLE: dict[str, Limit] = {
     name: limit for name, limit in list(globals().items()) if isinstance(limit, Limit)

@@ -70,10 +70,7 @@ def check_bag(
     """
     wanted = _required(required, namespace)
     bag = Bag(path, namespace=namespace, lenient=True)
-    records = {
-        topic: _Record(stamp_reader(topic, definition))
-        for topic, definition in bag.definitions().items()
-    }
+    records = {topic: _Record(stamp_reader(bag, topic)) for topic in bag.topics}
     for message in bag.as_stored():
         records[message.topic].take(message)
     offered = bag.offered()

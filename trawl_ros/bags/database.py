@@ -4,24 +4,36 @@ A database is read as it lies there, without its ``metadata.yaml``: that is comp
 """
 
 import sqlite3
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from mcap.records import Message
 
-from trawl_ros.bags.chunks import MAX_CHUNK_BYTES
 from trawl_ros.bags.qos import dump_profiles, parse_profiles
 from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.errors import BagError
+from trawl_ros.foreign import one_line, open_file
+from trawl_ros.limits import BAG_OPERATIONS, CHUNK_BYTES
 
-_TABLES = ('messages', 'topics')
-_READ = (
-    'SELECT topic_id, timestamp, data FROM messages WHERE length(data) <= ? ORDER BY timestamp, id'
-)
+_TABLES = {
+    'messages': {'id', 'topic_id', 'timestamp', 'data'},
+    'topics': {'id', 'name', 'type', 'serialization_format'},
+}
+"""Columns by table, without which it is no bag."""
+
+_DEFINITIONS = ('topic_type', 'encoding', 'encoded_message_definition')
+
+_ALLOWED = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA)
+_FUNCTIONS = ('length', 'count', 'total')
+_STEPS = 10_000
+"""After how many steps of SQLite it is asked whether that is enough."""
+
+_READ = 'SELECT topic_id, timestamp, data FROM messages WHERE length(data) <= ? ORDER BY '
 
 
 class Database:
@@ -48,6 +60,11 @@ class Database:
         self.damaged_chunks = 0
         self.distro = ''
         self._report = report
+        self._size = path.stat().st_size + sum(
+            log.stat().st_size for log in [path.with_name(f'{path.name}-wal')] if log.is_file()
+        )
+        # Where a damaged page keeps it from being seen how much there is, nothing is sorted.
+        self._order = 'id'
         self._topics: dict[int, tuple[str, str]] = {}
         self._definitions: dict[str, Definition] = {}
         try:
@@ -86,11 +103,14 @@ class Database:
     def messages(self) -> Iterator[Stored]:
         """Give all messages in the order of their times, as far as the database can be read."""
         lost: Counter[str] = Counter()
-        read = 0
+        read = size = 0
         try:
             with closing(self._connect()) as database:
-                for number, stamp, data in database.execute(_READ, (MAX_CHUNK_BYTES,)):
+                rows = database.execute(_READ + self._order, (CHUNK_BYTES.value,))
+                for number, stamp, data in rows:
                     read += 1
+                    size += len(data) if isinstance(data, bytes) else 0
+                    self._check_size(size)
                     if number not in self._topics:
                         lost[f'of topic {number}, whose description is missing'] += 1
                     elif not isinstance(stamp, int) or not isinstance(data, bytes):
@@ -101,7 +121,7 @@ class Database:
                         yield Stored(topic, type_name, message)
                 (there,) = database.execute('SELECT count(*) FROM messages').fetchone()
                 if there > read:
-                    lost[f'of more than {MAX_CHUNK_BYTES} bytes'] += there - read
+                    lost[f'of more than {CHUNK_BYTES.value} bytes'] += there - read
         except sqlite3.Error as reason:
             self._report(
                 f'{self.path}: damaged behind {read} messages ({reason}); what stands before is '
@@ -111,8 +131,7 @@ class Database:
             self._report(f'{self.path}: {count} messages {which} were left out')
 
     def _connect(self) -> sqlite3.Connection:
-        if not self.path.is_file():
-            raise BagError(f'{self.path}: no such file')
+        open_file(self.path, BagError).close()
         # A recorder that was killed leaves its last messages in a log beside the database, which
         # is only looked at when the file is not said to be immutable.
         log = self.path.with_name(f'{self.path.name}-wal')
@@ -120,29 +139,50 @@ class Database:
         path = quote(str(self.path.resolve()))
         database = sqlite3.connect(f'file:{path}?mode=ro{immutable}', uri=True)
         database.execute('PRAGMA trusted_schema = OFF')
+        if sys.version_info >= (3, 11):
+            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, CHUNK_BYTES.value)
+        # Nothing that the file brings is executed: only plain columns of tables are read.
+        database.set_authorizer(_authorise)
+        left = iter(range((BAG_OPERATIONS.value + 20 * self._size) // _STEPS))
+        database.set_progress_handler(lambda: next(left, None) is None, _STEPS)
         return database
 
     def _learn(self, database: sqlite3.Connection) -> None:
         tables = {
-            name
-            for (name,) in database.execute('SELECT name FROM sqlite_master WHERE type="table"')
+            name: {row[1] for row in database.execute(f'PRAGMA table_info({name})')}
+            for (name,) in database.execute(
+                # Tables without a page of their own are virtual, and run code.
+                "SELECT name FROM sqlite_master WHERE type = 'table' AND rootpage > 0 "
+                "AND name IN ('messages', 'topics', 'schema', 'message_definitions')"
+            )
         }
-        if missing := [name for name in _TABLES if name not in tables]:
+        if lacking := [name for name in _TABLES if name not in tables]:
             raise BagError(
-                f'{self.path}: a database without table {" and ".join(missing)}; expected one of '
+                f'{self.path}: a database without table {" and ".join(lacking)}; expected one of '
                 'rosbag2'
             )
-        if 'schema' in tables:
-            (self.distro,) = database.execute('SELECT ros_distro FROM schema').fetchone() or ('',)
+        for name, columns in _TABLES.items():
+            # Computed columns are not among these.
+            if missing := sorted(columns - tables[name]):
+                raise BagError(
+                    f'{self.path}: table {name} without plain columns {", ".join(missing)}; '
+                    'expected a database of rosbag2'
+                )
+        if 'ros_distro' in tables.get('schema', ()):
+            (distro,) = database.execute('SELECT ros_distro FROM schema').fetchone() or ('',)
+            self.distro = one_line(str(distro or ''), 120)
+        with suppress(sqlite3.Error):
+            (total,) = database.execute('SELECT total(length(data)) FROM messages').fetchone()
+            self._check_size(total)
+            self._order = 'timestamp, id'
         texts = dict[str, tuple[str, bytes]]()
-        if 'message_definitions' in tables:
+        if tables.get('message_definitions', set()).issuperset(_DEFINITIONS):
             for name, encoding, text in database.execute(
-                'SELECT topic_type, encoding, encoded_message_definition FROM message_definitions'
+                f'SELECT {", ".join(_DEFINITIONS)} FROM message_definitions'
             ):
-                texts[name] = str(encoding), str(text).encode()
-        columns = {row[1] for row in database.execute('PRAGMA table_info(topics)')}
+                texts[str(name)] = str(encoding), str(text).encode()
         optional = [
-            name if name in columns else "''"
+            name if name in tables['topics'] else "''"
             for name in ('offered_qos_profiles', 'type_description_hash')
         ]
         for row in database.execute(
@@ -150,8 +190,18 @@ class Database:
         ):
             self._take_topic(row, texts)
 
+    def _check_size(self, total: float) -> None:
+        if total > self._size:
+            raise BagError(
+                f'{self.path}: {total:.0f} bytes of messages in a file of {self._size} bytes; '
+                'expected less'
+            )
+
     def _take_topic(self, row: tuple[Any, ...], texts: dict[str, tuple[str, bytes]]) -> None:
         number, topic, type_name, encoding, qos, type_hash = row
+        if not all(isinstance(text, str) for text in (topic, type_name, encoding)):
+            self._report(f'{self.path}: topic {number} has no name, type or encoding as text')
+            return
         self._topics[number] = topic, type_name
         try:
             offered = dump_profiles(parse_profiles(topic, qos or ''))
@@ -159,5 +209,11 @@ class Database:
             self._report(f'{self.path}: {reason}')
             offered = ''
         schema, text = texts.get(type_name, ('', b''))
-        definition = Definition(type_name, encoding, schema, text, offered, type_hash or '')
+        definition = Definition(type_name, encoding, schema, text, offered, str(type_hash or ''))
         self._definitions.setdefault(topic, definition)
+
+
+def _authorise(action: int, first: str | None, second: str | None, *_: str | None) -> int:
+    """Allow reading, and no other function than those that are asked for here."""
+    allowed = action in _ALLOWED or (action == sqlite3.SQLITE_FUNCTION and second in _FUNCTIONS)
+    return sqlite3.SQLITE_OK if allowed else sqlite3.SQLITE_DENY

@@ -4,79 +4,123 @@ A database of Foxy to Humble carries none. There the distribution is found by tr
 changed has another size, and a decoder takes nothing that is too short or too long.
 """
 
+import math
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
-from rosbags.typesys import (
-    Stores,
-    TypesysError,
-    get_types_from_idl,
-    get_types_from_msg,
-    get_typestore,
-)
+from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
+from trawl_ros.bags.definitions import make_store, objects_per_byte, parse_definition
 from trawl_ros.bags.stored import Definition
-from trawl_ros.errors import BagError
+from trawl_ros.errors import BagError, MessageError
+from trawl_ros.foreign import one_line, short
+from trawl_ros.limits import BAG_FIELDS, MESSAGE_OBJECTS
 from trawl_ros.messages.cdr import DECODING_ERRORS, STORE
+from trawl_ros.messages.cdr import definition as known_text
 
 Decoder = Callable[[bytes], Any]
-
-_IDL_SEPARATOR = '=' * 80 + '\n'
+"""Turns bytes into a message, or raises `MessageError`."""
 
 _WITHOUT_DEFINITIONS = (Stores.ROS2_HUMBLE, Stores.ROS2_GALACTIC, Stores.ROS2_FOXY)
 """Distributions whose databases carry no definitions, newest first."""
 
 
-def make_decoder(topic: str, definition: Definition) -> Decoder:
-    """Make what turns the bytes of a topic into messages.
+class BagTypes:
+    """The types of a bag as its definitions say them, or as ROS 2 does where there are none."""
 
-    Raises
-    ------
-    BagError
-        If the bag says neither in a way that can be understood, nor is the type known.
-    """
-    store = find_store(topic, definition)
-    name = definition.type
-    if definition.text:
-        return lambda data: store.deserialize_cdr(data, name)
-    return _Trying(name, store)
+    def __init__(self) -> None:
+        self._stores: dict[tuple[str, str, bytes], Typestore | BagError] = {}
+        self._fields = 0
 
+    def decoder(self, topic: str, definition: Definition) -> Decoder:
+        """Make what turns the bytes of a topic into messages.
 
-def find_store(topic: str, definition: Definition) -> Typestore:
-    """Give the types of a topic as its bag defines them, or as ROS 2 does where it does not.
+        Raises
+        ------
+        BagError
+            If the bag says neither in a way that can be understood, nor is the type known.
+        """
+        store = self.store(topic, definition)
+        name = definition.type
+        most = _most_bytes(name) if store is STORE else _most_bytes(name, store)
+        decode = _Trying(name, store) if not definition.text else store.deserialize_cdr
 
-    Raises
-    ------
-    BagError
-        As `make_decoder`.
-    """
-    if definition.message_encoding != 'cdr':
-        raise BagError(
-            f'{topic}: messages are encoded as {definition.message_encoding!r}; expected cdr'
-        )
-    name = definition.type
-    if not definition.text and name in STORE.types:
-        return STORE
-    store = get_typestore(Stores.EMPTY)
-    try:
-        store.register(_parse(definition))
-        if name in STORE.types and store.hash_rihs01(name) == STORE.hash_rihs01(name):
+        def decoded(data: bytes) -> Any:
+            try:
+                if len(data) > most:
+                    raise ValueError(f'may hold more than {MESSAGE_OBJECTS} objects')
+                return decode(data, name)
+            # Whatever generated code raises when bytes are not what the type says.
+            except Exception as reason:
+                raise MessageError(
+                    f'{topic}: {len(data)} bytes are not a {name} ({reason})'
+                ) from reason
+
+        return decoded
+
+    def store(self, topic: str, definition: Definition) -> Typestore:
+        """Give the types of a topic.
+
+        Raises
+        ------
+        BagError
+            As `decoder`.
+        """
+        if definition.message_encoding != 'cdr':
+            raise BagError(
+                f'{topic}: messages are encoded as '
+                f'{one_line(definition.message_encoding, 120)!r}; expected cdr'
+            )
+        key = definition.type, definition.schema_encoding, definition.text
+        if key not in self._stores:
+            try:
+                self._stores[key] = self._make(definition)
+            except BagError as reason:
+                self._stores[key] = reason
+        found = self._stores[key]
+        if isinstance(found, BagError):
+            raise BagError(f'{topic}: {found}')
+        return found
+
+    def _make(self, definition: Definition) -> Typestore:
+        name = definition.type
+        if name in STORE.types and definition.text in (b'', _text(name)):
             return STORE
-        store.get_msgdef(name)
-    except (TypesysError, KeyError, RecursionError, SyntaxError, *DECODING_ERRORS) as reason:
-        raise BagError(
-            f'{topic}: the definition of {name or "its type"} in the bag cannot be understood '
-            f'({type(reason).__name__}); expected ros2msg or ros2idl text'
-        ) from reason
-    return store
+        try:
+            types = parse_definition(definition)
+            self._fields += sum(len(fields) for _, fields in types.values())
+            if self._fields > BAG_FIELDS.value:
+                raise ValueError(f'{self._fields} with those before; expected {BAG_FIELDS} at most')
+            store = make_store(types)
+            if name in STORE.types and store.hash_rihs01(name) == STORE.hash_rihs01(name):
+                return STORE
+            store.get_msgdef(name)
+        except Exception as reason:
+            raise BagError(
+                f'the definition of {one_line(name, 120) or "its type"} in the bag cannot be '
+                f'understood ({short(reason)}); expected ros2msg or ros2idl text'
+            ) from reason
+        return store
+
+
+@cache
+def _text(name: str) -> bytes:
+    return known_text(name).encode()
+
+
+@cache
+def _most_bytes(name: str, store: Typestore = STORE) -> float:
+    """How large a message may be, so that it turns into no more objects than it may."""
+    density = objects_per_byte(store.fielddefs, name)
+    return MESSAGE_OBJECTS.value / density if density else math.inf
 
 
 class _Trying:
     """Decodes by the first distribution whose definition fits, and stays with that."""
 
     def __init__(self, name: str, store: Typestore) -> None:
-        self._name = name
         self._stores = [store]
         known = {store.hash_rihs01(name)}
         for older in map(get_typestore, _WITHOUT_DEFINITIONS):
@@ -84,10 +128,10 @@ class _Trying:
                 known.add(older.hash_rihs01(name))
                 self._stores.append(older)
 
-    def __call__(self, data: bytes) -> Any:
+    def __call__(self, data: bytes, name: str) -> Any:
         for store in tuple(self._stores):
             try:
-                message = store.deserialize_cdr(data, self._name)
+                message = store.deserialize_cdr(data, name)
             except DECODING_ERRORS:
                 if store is self._stores[-1]:
                     raise
@@ -96,18 +140,3 @@ class _Trying:
                 self._stores.insert(0, store)
                 return message
         raise AssertionError('there is at least one store')
-
-
-def _parse(definition: Definition) -> Any:
-    text = definition.text.decode('utf-8')
-    match definition.schema_encoding:
-        case 'ros2msg':
-            return get_types_from_msg(text, definition.type)
-        case 'ros2idl':
-            parts = [part for part in text.split(_IDL_SEPARATOR) if part.strip()]
-            types: dict[str, Any] = {}
-            for part in parts:
-                body = part.partition('\n')[2] if part.startswith('IDL: ') else part
-                types.update(get_types_from_idl(body))
-            return types
-    raise TypesysError(f'schema encoding {definition.schema_encoding!r}')

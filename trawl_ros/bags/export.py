@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from trawl_ros.bags.decoding import find_store
 from trawl_ros.bags.field_units import unit_of
 from trawl_ros.bags.flattening import Column, Layout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
@@ -141,16 +140,15 @@ def _wanted(bag: Bag, names: Collection[str], namespace: str) -> list[str]:
 
 def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]:
     """Find the columns of each topic: of those that vary, by looking at all of their messages."""
-    definitions = bag.definitions()
     layouts: dict[str, Layout] = {}
     known: dict[str, tuple[bool, frozenset[str]]] = {}
     for topic in wanted:
         try:
-            store = find_store(topic, definitions[topic])
+            store = bag.types_of(topic)
         except BagError as reason:
             bag.problems.append(f'{bag.path}: {reason}; its messages are left out')
             continue
-        name = definitions[topic].type
+        name = bag.topics[topic]
         known[topic] = varies(store, name), singles(store, name)
     for message in bag.as_stored():
         topic = message.topic

@@ -3,8 +3,7 @@
 import struct
 from collections.abc import Callable
 
-from trawl_ros.bags.decoding import find_store
-from trawl_ros.bags.stored import Definition
+from trawl_ros.bags.reader import Bag
 from trawl_ros.errors import BagError
 from trawl_ros.messages.stamps import SECOND
 
@@ -15,7 +14,7 @@ _ENCAPSULATION = 4
 _TIMES = {0: struct.Struct('>iI'), 1: struct.Struct('<iI')}
 
 
-def stamp_reader(topic: str, definition: Definition) -> StampReader | None:
+def stamp_reader(bag: Bag, topic: str) -> StampReader | None:
     """Make what reads the stamp (ns) off a topic's bytes without decoding the rest.
 
     Returns
@@ -25,7 +24,7 @@ def stamp_reader(topic: str, definition: Definition) -> StampReader | None:
         None for bytes that are too short.
     """
     try:
-        _, fields = find_store(topic, definition).fielddefs[definition.type]
+        _, fields = bag.types_of(topic).fielddefs[bag.topics[topic]]
     except (BagError, KeyError):
         return None
     if not fields or fields[0][1][1] != _HEADER:

@@ -15,10 +15,11 @@ from pydantic import BaseModel, ConfigDict
 from trawl_ros.bags.qos import dump_profiles, parse_profiles
 from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError
+from trawl_ros.foreign import open_file, short
+from trawl_ros.limits import METADATA_BYTES, METADATA_DEPTH, METADATA_VALUES
 from trawl_ros.schema import validated
 
 FILE_NAME = 'metadata.yaml'
-MAX_BYTES = 16_000_000
 
 _VERSION = 8
 _DISTRIBUTION = 'jazzy'
@@ -194,19 +195,48 @@ def read_information(path: Path) -> Any:
         If the file is unreadable, not YAML, or has no such key.
     """
     hint = 'the .mcap file beside it can be opened alone'
+    with open_file(path, BagError) as stream:
+        text = stream.read(METADATA_BYTES.value + 1)
+    if len(text) > METADATA_BYTES.value:
+        raise BagError(f'{path}: larger than {METADATA_BYTES}; expected a bag of sane size')
     try:
-        with path.open('rb') as stream:
-            text = stream.read(MAX_BYTES + 1)
-        if len(text) > MAX_BYTES:
-            raise BagError(f'{path}: larger than {MAX_BYTES} bytes; expected a bag of sane size')
-        data = yaml.load(text, _Loader)
-    except OSError as reason:
-        raise BagError(f'{path}: cannot be read ({reason.strerror})') from reason
-    except (yaml.YAMLError, UnicodeDecodeError, RecursionError, ValueError) as reason:
-        raise BagError(f'{path}: not YAML; {hint}') from reason
+        data = load_plain(text)
+    # Tags bring along whatever their constructors raise.
+    except Exception as reason:
+        raise BagError(f'{path}: not YAML ({short(reason)}); {hint}') from reason
     if not isinstance(data, dict) or 'rosbag2_bagfile_information' not in data:
         raise BagError(f'{path}: no key rosbag2_bagfile_information; {hint}')
     return data['rosbag2_bagfile_information']
+
+
+def load_plain(text: bytes | str) -> Any:
+    """Read YAML of a bag by the parser in C: of bounded depth, and bounded in what aliases make.
+
+    Raises
+    ------
+    Exception
+        Whatever the parser raises if it is none.
+    """
+    total = 0
+    sizes: dict[str | None, int] = {}
+    above: list[tuple[str | None, int]] = []
+    # The composer of the C loader goes down by recursion, and takes the interpreter with it.
+    for event in yaml.parse(text, Loader=_Loader):
+        if isinstance(event, yaml.AliasEvent):
+            # KeyError: of something that is not finished, so it would hold itself.
+            total += sizes[event.anchor]
+        elif isinstance(event, yaml.CollectionStartEvent):
+            above.append((event.anchor, total))
+            total += 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = above.pop()
+            sizes[anchor] = total - before
+        elif isinstance(event, yaml.ScalarEvent):
+            sizes[event.anchor] = 1
+            total += 1
+        if len(above) > METADATA_DEPTH.value or total > METADATA_VALUES.value:
+            raise ValueError(f'expected {METADATA_VALUES} in {METADATA_DEPTH} at most')
+    return yaml.load(text, _Loader)
 
 
 def _dump(data: Any) -> str:

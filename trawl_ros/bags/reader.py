@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from rosbags.interfaces import Qos
+from rosbags.typesys.store import Typestore
 
-from trawl_ros.bags.decoding import Decoder, make_decoder
+from trawl_ros.bags.decoding import BagTypes, Decoder
 from trawl_ros.bags.qos import parse_profiles
 from trawl_ros.bags.sources import BagFacts, open_source
 from trawl_ros.bags.stored import Definition
 from trawl_ros.bags.summary import BagSummary, count_topics
 from trawl_ros.errors import BagError, MessageError
-from trawl_ros.messages.cdr import DECODING_ERRORS
 from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 
@@ -80,6 +80,7 @@ class Bag:
         self._source = open_source(self.path, self._report, lenient=lenient)
         self.topics = {topic: definition.type for topic, definition in self.definitions().items()}
         self.custom_data = self._source.custom_data
+        self._types = BagTypes()
         self._decoders_made: dict[str, Decoder] = {}
 
     @property
@@ -164,7 +165,7 @@ class Bag:
         for raw in self.raw(decoders):
             try:
                 message = decoders[raw.topic](raw.data)
-            except DECODING_ERRORS:
+            except MessageError:
                 failed[raw.topic] += 1
                 continue
             yield Received(raw.topic, raw.type, raw.log_time, message)
@@ -185,15 +186,20 @@ class Bag:
             If the bytes are not a message of the type.
         """
         if raw.topic not in self._decoders_made:
-            self._decoders_made[raw.topic] = make_decoder(
+            self._decoders_made[raw.topic] = self._types.decoder(
                 raw.topic, self._source.definitions[raw.topic]
             )
-        try:
-            return self._decoders_made[raw.topic](raw.data)
-        except DECODING_ERRORS as reason:
-            raise MessageError(
-                f'{raw.topic}: {len(raw.data)} bytes are not a {raw.type} ({reason})'
-            ) from reason
+        return self._decoders_made[raw.topic](raw.data)
+
+    def types_of(self, topic: str) -> Typestore:
+        """Give the types by which a topic's messages are decoded.
+
+        Raises
+        ------
+        BagError
+            If the bag's definition of the type is not understood.
+        """
+        return self._types.store(topic, self._source.definitions[topic])
 
     def summary(self) -> BagSummary:
         """Read through the whole bag and count what is there."""
@@ -219,7 +225,7 @@ class Bag:
             if topics is not None and topic not in topics:
                 continue
             try:
-                decoders[topic] = make_decoder(topic, definition)
+                decoders[topic] = self._types.decoder(topic, definition)
             except BagError as reason:
                 sentence = f'{self.path}: {reason}'
                 if find_topic(topic, self._namespace) and not self._lenient:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from rclpy.qos import QoSProfile
 
-from trawl_ros.bags.decoding import find_store
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError, MessageError
@@ -61,7 +60,7 @@ def replayed(
     for topic in there:
         if wanted and topic not in wanted:
             continue
-        if reason := _hindrance(topic, definitions[topic]):
+        if reason := _hindrance(bag, topic, definitions[topic]):
             sentence = f'{bag.path}: {topic} cannot be played: {reason}'
             if wanted:
                 raise BagError(sentence)
@@ -75,15 +74,14 @@ def replayed(
     return found, left_out
 
 
-def _hindrance(topic: str, definition: Definition) -> str:
+def _hindrance(bag: Bag, topic: str, definition: Definition) -> str:
     """Why the bytes of a topic mean nothing to subscribers here; '' if they do."""
     name = definition.type
     try:
         message_class(name)
-        if name in STORE.types and definition.type_hash != type_hash(name):
-            store = find_store(topic, definition)
-            if store is not STORE:
-                return f'{name} was another type where it was recorded'
+        another = name in STORE.types and definition.type_hash != type_hash(name)
+        if another and bag.types_of(topic) is not STORE:
+            return f'{name} was another type where it was recorded'
     except (MessageError, BagError) as reason:
         return str(reason)
     return ''
