@@ -69,6 +69,26 @@ def test_a_node_ends_cleanly_when_stopped(tmp_path, environment):
     assert running_with(str(tmp_path)) == []
 
 
+def test_who_ended_by_itself_is_told_once_with_its_last_words(tmp_path, environment):
+    with Processes(tmp_path / 'log', environment) as processes:
+        processes.start('bag_recorder')
+        over = {}
+        wait_until(lambda: over.update(processes.ended()) or over)
+        assert 'parameter output: missing' in over['bag_recorder']
+        assert processes.ended() == {}
+        processes.check()
+
+
+def test_a_node_that_is_killed_is_gone_and_not_missed(tmp_path, environment):
+    with Processes(tmp_path / 'log', environment) as processes:
+        processes.start('winch_node')
+        processes.signal('winch_node', signal.SIGSTOP)
+        processes.kill('winch_node')
+        assert running_with(str(tmp_path)) == []
+        processes.check()
+        assert processes.pids() == {}
+
+
 @pytest.mark.parametrize('seconds', [0.0, 0.003, 0.01, 0.02, 0.03, 0.1])
 def test_a_node_that_has_not_begun_yet_may_be_stopped(tmp_path, environment, seconds):
     with Processes(tmp_path / 'log', environment) as processes:

@@ -1,7 +1,5 @@
 """A node that is killed in the middle of a tow stops no other, and comes back to work."""
 
-import signal
-
 import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
@@ -84,11 +82,6 @@ class Tow:
             parameters |= {'use_sim_time': True}
         self.processes.start(node, **parameters)
 
-    def kill(self, node):
-        process = self.processes._running.pop(node)
-        process.send_signal(signal.SIGKILL)
-        process.wait()
-
     def all_go_on(self):
         """Wait until each source has spoken and each listener has come further."""
         sources = {node: len(stamps) for node, stamps in self.lookout.stamps.items()}
@@ -125,7 +118,7 @@ def tow(open_graph, gear_path, tmp_path_factory):
 
 @pytest.mark.parametrize('node', [*INSTRUMENTS, *MODES, *LISTENERS])
 def test_a_node_that_is_killed_comes_back_to_work_and_stops_nobody(tow, node):
-    tow.kill(node)
+    tow.processes.kill(node)
     tow.start(node)
     tow.all_go_on()
     tow.processes.check()
@@ -134,7 +127,7 @@ def test_a_node_that_is_killed_comes_back_to_work_and_stops_nobody(tow, node):
 
 
 def test_a_simulation_that_is_killed_begins_anew_and_its_listeners_with_it(tow):
-    tow.kill('sim_node')
+    tow.processes.kill('sim_node')
     tow.graph.settle()
     reached = {node: stamps[-1] for node, stamps in tow.lookout.stamps.items()}
     for stamps in tow.lookout.stamps.values():

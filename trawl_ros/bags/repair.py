@@ -245,8 +245,7 @@ class _Damaged:
 
     def _open(self, path: Path) -> McapFile | None:
         try:
-            stated = self._metadata.stated() if self._metadata else None
-            return McapFile(path, self._report, stated)
+            return McapFile(path, self._report)
         except BagError as reason:
             self._report(str(reason))
             return None

@@ -94,6 +94,24 @@ class Processes:
         self.check()
         return code == 0
 
+    def ended(self) -> dict[str, str]:
+        """Give what those said that have ended by themselves; they are not watched any more."""
+        codes = {node: process.poll() for node, process in self._running.items()}
+        over = {node: self._failure(node, code) for node, code in codes.items() if code is not None}
+        for node in over:
+            del self._running[node]
+        return over
+
+    def signal(self, node: str, number: signal.Signals) -> None:
+        """Send a signal to a node."""
+        self._running[node].send_signal(number)
+
+    def kill(self, node: str) -> None:
+        """End a node without a word, and wait until it is gone."""
+        process = self._running.pop(node)
+        process.kill()
+        process.wait()
+
     def pids(self) -> dict[str, int]:
         """Give the number of each process that has not been seen to end."""
         return {node: process.pid for node, process in self._running.items()}

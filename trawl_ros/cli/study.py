@@ -14,6 +14,10 @@ from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
+from trawl_ros.studies.chaos.plan import Plan as ChaosPlan
+from trawl_ros.studies.chaos.report import REPORT as CHAOS_REPORT
+from trawl_ros.studies.chaos.report import write_chaos
+from trawl_ros.studies.chaos.study import run_chaos
 from trawl_ros.studies.counters import REPORT as COUNTERS_REPORT
 from trawl_ros.studies.counters import SEED as COUNTERS_SEED
 from trawl_ros.studies.counters import read_table, run_counters
@@ -70,6 +74,39 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
         )
         rows = write_soak(out, seen)
     _say(rows, out / REPORT, console)
+    if interruption.requested:
+        raise SystemExit(INTERRUPTED)
+
+
+@command.command('chaos')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@click.option('--hours', default=ChaosPlan.hours, show_default=True,
+              type=click.FloatRange(0.02, 24.0), help='Time at sea, towed twice.')  # fmt: skip
+@click.option('--kills', default=ChaosPlan.kills, show_default=True,
+              type=click.IntRange(0, 1000), help='Of the recorder at full load.')  # fmt: skip
+@click.option('--seed', default=ChaosPlan.seed, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of what happens when.')  # fmt: skip
+@click.option('--gear', default=ChaosPlan.gear, show_default=True, help='Gear file or name.')
+def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str) -> None:
+    """Stop and kill nodes, crowd their topics, fill the disk, and see what is left of a tow.
+
+    Every node is a process of its own. Writes chaos.json, .md, .html and .png; a target that is
+    missed is part of the report. Ctrl-C ends it early, and the report says so.
+    """
+    load_gear(gear)
+    empty_folder(out, force=force)
+    console = error_console()
+    with Interruption() as interruption:
+        seen = run_chaos(
+            ChaosPlan(hours, kills, seed, gear),
+            out,
+            lambda title, total_s: TimeProgress(title, total_s, console),
+            lambda title, number: _counted(title, number, console),
+            lambda: interruption.requested,
+        )
+        rows = write_chaos(out, seen)
+    _say(rows, out / CHAOS_REPORT, console)
     if interruption.requested:
         raise SystemExit(INTERRUPTED)
 

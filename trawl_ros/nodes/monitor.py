@@ -57,6 +57,9 @@ class Monitor:
         What the nodes of that graph have in their environment, such as ``ROS_DOMAIN_ID``.
     """
 
+    NAME = 'monitor'
+    """Of its node."""
+
     def __init__(self, environment: Mapping[str, str]) -> None:
         self._environment = environment
         self._heard = Heard()
@@ -113,7 +116,7 @@ class Monitor:
         # Recorded beside the others, its diagnostics are to lie in their time.
         in_simulated_time = Parameter('use_sim_time', value=True)
         self._node = TrawlNode(
-            'monitor',
+            self.NAME,
             namespace=NAMESPACE,
             context=self._context,
             parameter_overrides=[in_simulated_time],

@@ -82,7 +82,7 @@ def watch_chain(
     NodeFailed
         If a node ends by itself, or cannot end cleanly.
     """
-    watched = {node: psutil.Process(pid) for node, pid in processes.pids().items()}
+    watched = watched_of(processes)
     glances: list[Glance] = []
     delays: dict[str, list[float]] = {}
     began: float | None = None
@@ -96,7 +96,7 @@ def watch_chain(
         told(data_s)
         if not glances or data_s >= glances[-1].data_s + every_s:
             means = {node: fmean(found) for node, found in delays.items()}
-            seen = _glance(watched, data_s, time.monotonic() - began, means)
+            seen = glance(watched, data_s, time.monotonic() - began, means)
             if seen is not None:
                 glances.append(seen)
             delays = {}
@@ -107,12 +107,18 @@ def watch_chain(
     return glances
 
 
-def _glance(
+def watched_of(processes: Processes) -> dict[str, psutil.Process]:
+    """Give the processes that run, by node."""
+    return {node: psutil.Process(pid) for node, pid in processes.pids().items()}
+
+
+def glance(
     watched: Mapping[str, psutil.Process],
     data_s: float,
     wall_s: float,
     delays: Mapping[str, float],
 ) -> Glance | None:
+    """Look at processes by node; None where one of them is about to end."""
     memory, cpu = {}, {}
     try:
         for node, process in watched.items():

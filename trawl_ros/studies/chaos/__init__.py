@@ -1,0 +1,1 @@
+"""The graph under faults: nodes stopped and killed, strangers, full disks, wild clocks."""
