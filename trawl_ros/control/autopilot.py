@@ -1,4 +1,4 @@
-"""The autopilot: steers a heading, a course over ground, a track, or toward a school of fish."""
+"""Autopilot: steers a heading, a course over ground, a track, or toward a school of fish."""
 
 import math
 from dataclasses import dataclass, replace
@@ -34,7 +34,7 @@ SAME_SCHOOL_M = 500.0
 
 @dataclass(frozen=True)
 class AutopilotSettings:
-    """How an autopilot works.
+    """Settings of an autopilot.
 
     ``max_turn`` is the fastest rate of turn (rad/s), which the gear must be able to follow: in a
     faster turn it loses speed, so that its doors lose their lift and it sinks;
@@ -49,28 +49,28 @@ class AutopilotSettings:
 
 @dataclass(frozen=True)
 class HoldHeading:
-    """Steer a heading by compass: ENU yaw, rad."""
+    """Target: a heading by compass, ENU yaw, rad."""
 
     heading: float
 
 
 @dataclass(frozen=True)
 class HoldCourse:
-    """Steer a course over ground, whatever the current: ENU yaw, rad."""
+    """Target: a course over ground, whatever the current, ENU yaw, rad."""
 
     course: float
 
 
 @dataclass(frozen=True)
 class FollowTrack:
-    """Make for the first of ``waypoints`` (n, 2) (east and north in ``map``, m), then along."""
+    """Target: a track over ``waypoints`` (n, 2), east and north in ``map``, m."""
 
     waypoints: np.ndarray
 
 
 @dataclass(frozen=True)
 class ToSchool:
-    """Steer over the nearest school ahead that the fish sonar sees, and on from there."""
+    """Target: the nearest school ahead that the fish sonar sees, and straight on from there."""
 
 
 Target = HoldHeading | HoldCourse | FollowTrack | ToSchool
@@ -78,7 +78,7 @@ Target = HoldHeading | HoldCourse | FollowTrack | ToSchool
 
 @dataclass(frozen=True)
 class AutopilotState:
-    """What an autopilot has to say at one instant.
+    """Report of an autopilot at one instant.
 
     Angles in rad, ENU yaw; NaN where something is not known or not meant: ``wanted`` heading,
     ``course`` wanted over ground, ``across`` (m to port of the leg), ``left`` (m of it);
@@ -96,12 +96,12 @@ class AutopilotState:
 
 
 class Autopilot:
-    """Gives the rate of turn that leads the ship where she is to go.
+    """Autopilot: computes the rate of turn that steers the ship to its target.
 
     Parameters
     ----------
     settings
-        How.
+        Limits of the rate of turn, and the look-ahead.
     datum
         Origin of ``map``, from which fixes are counted.
 
@@ -124,7 +124,7 @@ class Autopilot:
         self._rate = 0.0
 
     def steer(self, target: Target) -> None:
-        """Go for something new."""
+        """Set a new target."""
         self._target = target
         self._track = None
         self._aim = None
@@ -132,11 +132,11 @@ class Autopilot:
         self._passed = False
 
     def take(self, sample: NavigationSample) -> None:
-        """Take in what a sensor says."""
+        """Update the bearings by a sensor's sample."""
         self._bearings.take(sample)
 
     def turn_rate(self, stamp: int) -> float:
-        """Give the wanted rate of turn (rad/s, to port positive) at a stamp (ns)."""
+        """Return the wanted rate of turn (rad/s, to port positive) at a stamp (ns)."""
         heading = self._bearings.heading
         age = self._bearings.age('heading', stamp)
         if heading is None or age > LOST_S:
@@ -172,7 +172,7 @@ class Autopilot:
     def _against_current(
         self, course: float, stamp: int, problems: tuple[str, ...] = ()
     ) -> AutopilotState:
-        """The heading on which the ship makes good a course."""
+        """State with the heading on which the ship makes good a course in the current."""
         self._course = course
         for what, name in (('ground', 'velocity over ground'), ('water', 'speed log')):
             if self._bearings.age(what, stamp) > LOST_S:
@@ -215,7 +215,7 @@ class Autopilot:
         return replace(state, left=distance, ended=self._passed)
 
     def _aim_at(self, position: np.ndarray, heading: float) -> np.ndarray | None:
-        """Where the school is that was chosen, or the nearest ahead if none is chosen yet."""
+        """Place of the chosen school, or of the nearest ahead if none is chosen yet."""
         schools = self._bearings.schools
         if self._aim is None:
             away = schools - position

@@ -70,12 +70,12 @@ def _beyond(value: float, dead_band: float) -> float:
 
 
 class Autotrawl:
-    """Drives both winches.
+    """Autotrawl: controller of both winches.
 
     Parameters
     ----------
     settings
-        How.
+        Mode, gains and limits.
     lengths
         Wanted lengths (port, starboard) as they stand when it takes over, m.
     """
@@ -109,7 +109,7 @@ class Autotrawl:
         return self._wanted
 
     def change(self, settings: AutotrawlSettings) -> None:
-        """Work otherwise from now on, without a jump of the wanted lengths.
+        """Change the settings, without a jump of the wanted lengths.
 
         In a new mode the warps go from where they are to the set lengths at the winch's speed.
         """
@@ -120,11 +120,11 @@ class Autotrawl:
         self.settings = settings
 
     def set_lengths(self, port: float, starboard: float) -> None:
-        """Hold other lengths (m) from now on."""
+        """Change the set lengths (m)."""
         self._target = (port, starboard)
 
     def update(self, sample: WinchSample) -> tuple[float, float]:
-        """Take a sample; give the wanted lengths (port, starboard), m."""
+        """Update by a sample; return the wanted lengths (port, starboard), m."""
         dt = self._time_since(sample.stamp)
         self._bounds = {}
         self._look(sample, dt)
@@ -139,7 +139,7 @@ class Autotrawl:
         return self._wanted
 
     def state(self) -> AutotrawlState:
-        """Say how it stands."""
+        """Return the controller's report."""
         watches = (*self._counters, *self._cells)
         return AutotrawlState(
             set_lengths=(self._set[0], self._set[1]),
@@ -183,7 +183,7 @@ class Autotrawl:
             self._at_rest_s += dt
 
     def _follow_counters(self, dt: float) -> None:
-        """The integral of what the counters lack; only while the warps should be at rest."""
+        """Integrate the counters' deviation; only while the warps should be at rest."""
         errors = [self._set[k] - self._counters[k].value for k in (0, 1)]
         if self.settings.mode == 'tension':
             errors = [0.5 * sum(errors)] * 2
@@ -212,7 +212,7 @@ class Autotrawl:
         self._balance = self._bounded('balance', self._balance + rate * dt, most)
 
     def _give_way(self, dt: float) -> None:
-        """The give moves as a winch can, so that a winch which is shown the way follows it."""
+        """Update the give within the winches' limits, so that a winch can follow it."""
         settings = self.settings
         share = min(1.0, FAST_S / dt) if dt > 0.0 else 0.0
         for side in (0, 1):

@@ -1,4 +1,4 @@
-"""How an autotrawl works, and what it has to say."""
+"""Settings and report of an autotrawl."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ Mode = Literal['lengths', 'tension']
 
 @dataclass(frozen=True)
 class AutotrawlSettings:
-    """How an autotrawl works.
+    """Settings of an autotrawl.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class AutotrawlSettings:
     max_difference
         Most difference between the warps that the balance makes, as a share of their length.
     max_speed, max_acceleration
-        What the winches can do, m/s and m/s².
+        Limits of the winches, m/s and m/s².
     """
 
     mode: Mode = 'tension'
@@ -60,7 +60,7 @@ class AutotrawlSettings:
 
 @dataclass(frozen=True)
 class AutotrawlState:
-    """What an autotrawl has to say: lengths in m, port first, and the relative difference.
+    """Report of an autotrawl: lengths in m, port first, and the relative difference of tension.
 
     ``difference`` is (T1 − T2) / (T1 + T2) of the smoothed tensions, NaN where one is missing;
     ``saturated`` names what is at its bound, ``problems`` what is wrong with sensors.

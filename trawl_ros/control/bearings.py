@@ -1,4 +1,4 @@
-"""What the autopilot knows of the ship: heading, place, current, put together from samples."""
+"""State estimate of the ship for the autopilot: heading, position, current from samples."""
 
 import math
 
@@ -25,7 +25,7 @@ SPEED_S = 10.0
 
 
 class Bearings:
-    """Keeps heading, place, speed and current up to date.
+    """Dead reckoning of heading, position, speed and current.
 
     The place is reckoned by the velocity over ground and drawn to each fix. The current is what
     velocity over ground has more than heading and speed log, so an error of the compass across
@@ -51,22 +51,22 @@ class Bearings:
 
     @property
     def heading(self) -> float | None:
-        """ENU yaw, rad; None before the first."""
+        """Heading, ENU yaw, rad; None before the first."""
         return self._heading
 
     @property
     def speed(self) -> float:
-        """Through the water, m/s; 0 before it is known."""
+        """Speed through the water, m/s; 0 before it is known."""
         return self._speed.value if math.isfinite(self._speed.value) else 0.0
 
     @property
     def current(self) -> np.ndarray:
-        """East and north (2,) of the water's velocity, m/s; 0 before it is known."""
+        """Velocity (2,) of the water, east and north, m/s; 0 before it is known."""
         found = np.array([part.value for part in self._current])
         return found if np.isfinite(found).all() else np.zeros(2)
 
     def position(self, stamp: int) -> np.ndarray | None:
-        """East and north (2,) at a stamp (ns), m; None where it is not known any more."""
+        """Position (2,), east and north, m, at a stamp (ns); None where it is out of date."""
         if self._position is None or self.age('fix', stamp) > DEAD_RECKONED_S:
             return None
         if self._ground is None:
@@ -74,12 +74,12 @@ class Bearings:
         return self._position + self._ground * (stamp - self._reckoned_at) / SECOND
 
     def age(self, what: str, stamp: int) -> float:
-        """Seconds since a sensor was heard: 'heading', 'fix', 'water', 'ground' or 'schools'."""
+        """Age (s) of the last sample: 'heading', 'fix', 'water', 'ground' or 'schools'."""
         heard = self._heard.get(what)
         return math.inf if heard is None else (stamp - heard) / SECOND
 
     def take(self, sample: NavigationSample) -> None:
-        """Take a sample in; one with NaN says nothing."""
+        """Update by a sample; one with NaN is ignored."""
         if isinstance(sample, HeadingSample):
             if math.isfinite(sample.heading):
                 self._heading = sample.heading

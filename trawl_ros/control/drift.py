@@ -1,4 +1,4 @@
-"""How a current carries a ship off, and which heading makes up for it."""
+"""Drift of a ship in a current, and the heading that compensates it."""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ MOST_DRIFT = 0.8
 
 @dataclass(frozen=True)
 class Way:
-    """How a ship moves: ``speed`` through the water (m/s), ``current`` (2,) to the east and north
+    """Motion of a ship: ``speed`` through the water (m/s), ``current`` (2,) to the east and north
     (m/s), and the rate (rad/s) at which she turns.
     """
 
@@ -20,7 +20,7 @@ class Way:
     turn: float
 
     def heading_on(self, course: float) -> float:
-        """The heading on which she makes good a course; both ENU yaw, rad."""
+        """Heading on which the ship makes good a course; both ENU yaw, rad."""
         if self.speed <= 0.0:
             return course
         east, north = self.current
@@ -28,14 +28,14 @@ class Way:
         return course - math.asin(min(max(across, -MOST_DRIFT), MOST_DRIFT))
 
     def turned(self, before: float, after: float, response: float) -> np.ndarray:
-        """East and north (2,) over ground, m, that she comes while turning between two headings.
+        """Displacement (2,), east and north over ground, m, during a turn between two headings.
 
         Parameters
         ----------
         before, after
             Headings, ENU yaw, rad; she turns the shorter way.
         response
-            How long she goes on straight before she turns, s.
+            Delay before the ship begins to turn, s.
         """
         angle = math.remainder(after - before, 2 * math.pi)
         rate = math.copysign(self.turn, angle)

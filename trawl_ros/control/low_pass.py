@@ -1,10 +1,10 @@
-"""A first-order low-pass of readings that do not come at even times."""
+"""First-order low-pass filter of readings at uneven times."""
 
 import math
 
 
 class LowPass:
-    """Follows a reading with a time constant; the first reading is taken as it is.
+    """First-order low-pass filter; it starts at the first reading.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class LowPass:
         self._begun = False
 
     def take(self, reading: float, dt: float) -> None:
-        """Take a reading, ``dt`` seconds after the one before."""
+        """Update by a reading, ``dt`` seconds after the one before."""
         if not self._begun:
             self.value, self._begun = reading, True
             return

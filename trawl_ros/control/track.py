@@ -1,4 +1,4 @@
-"""A track over ground, and how a ship comes to it and stays on it: line-of-sight guidance."""
+"""Track over ground, followed by line-of-sight guidance."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ as good as one line, there or back."""
 
 @dataclass(frozen=True)
 class OnTrack:
-    """Where a ship is on a track.
+    """Position of a ship relative to a track.
 
     ``leg`` counts from 0; ``across`` is how far she is to port of the leg and ``left`` how far it
     still goes, in m; ``course`` is the one to be steered over ground (ENU yaw, rad); ``ended``
@@ -32,7 +32,7 @@ class OnTrack:
 
 
 class Track:
-    """Follows straight legs from waypoint to waypoint.
+    """Track of straight legs from waypoint to waypoint.
 
     The course aims at a point on the leg a look-ahead before the ship (Fossen, Handbook of Marine
     Craft Hydrodynamics and Motion Control, 2021, section 12.4). A leg ends a little before its
@@ -74,16 +74,16 @@ class Track:
         return tuple(self._courses.tolist())
 
     def follow(self, position: np.ndarray, way: Way, response: float) -> OnTrack:
-        """Tell which course leads on.
+        """Return the course and the position relative to the track.
 
         Parameters
         ----------
         position : (2,) array
             East and north of the ship, m.
         way
-            How she moves.
+            Motion of the ship.
         response
-            How long she goes on before a turn takes effect, s.
+            Delay before a turn takes effect, s.
         """
         last = len(self._lengths) - 1
         along, across = self._place(position)
@@ -98,14 +98,14 @@ class Track:
         return OnTrack(self._leg, across, left, math.remainder(course, 2 * math.pi), self._ended)
 
     def _place(self, position: np.ndarray) -> tuple[float, float]:
-        """How far along a leg the ship is, and how far to port of it, m."""
+        """Distance along a leg and cross-track distance to port of it, m."""
         east, north = position - self._points[self._leg]
         course = self._courses[self._leg]
         cos, sin = math.cos(course), math.sin(course)
         return float(east * cos + north * sin), float(north * cos - east * sin)
 
     def _early(self, way: Way, response: float) -> float:
-        """How far before the end of a leg its turn begins, so that it ends on the next leg, m."""
+        """Distance (m) before a leg's end at which to turn, so that the turn ends on the next."""
         before, after = self._courses[self._leg], self._courses[self._leg + 1]
         apart = math.sin(after - before)
         if abs(apart) < LEAST_CORNER:

@@ -1,4 +1,4 @@
-"""Whether a sensor can be believed: reporting, lost, or frozen."""
+"""Fault detection of a sensor's channel: lost or frozen readings."""
 
 import math
 from collections import deque
@@ -8,7 +8,7 @@ from trawl_ros.instruments.sampling import SECOND
 
 
 class Watch:
-    """Looks at one channel of a sensor and gives its reading while it can be believed.
+    """Watchdog of one channel of a sensor; passes its reading while it is valid.
 
     A single outlier does not come through: the reading is the median of the last three. A
     channel is *lost* when it gives no number for a while, and *frozen* when its number stays the
@@ -19,16 +19,16 @@ class Watch:
     name
         Of the sensor, as people are told.
     lost_s
-        How long it may give no number, s.
+        Time without a number after which it is lost, s.
     frozen_after
-        How far that which it must follow may move without any change of the number.
+        Change of the followed quantity, without any of the number, after which it is frozen.
 
     Attributes
     ----------
     value : float
         The reading; NaN while the channel is not to be believed.
     problem : str
-        What is wrong with it, '' if nothing.
+        Description of its fault, '' without one.
     """
 
     def __init__(self, name: str, *, lost_s: float, frozen_after: float) -> None:
@@ -43,21 +43,21 @@ class Watch:
         self._frozen = False
 
     def take(self, reading: float, stamp: int, followed: float) -> bool:
-        """Take a reading.
+        """Update by a reading.
 
         Parameters
         ----------
         reading
-            What the sensor says; NaN where it says nothing.
+            The sensor's number; NaN where it gives none.
         stamp
-            When, ns.
+            Time of the reading, ns.
         followed
-            Where that is which the sensor must follow.
+            Value of the quantity that the sensor must follow.
 
         Returns
         -------
         bool
-            Whether the reading is another than the one before.
+            True if the reading differs from the one before.
         """
         if self._heard is None:
             self._heard = stamp

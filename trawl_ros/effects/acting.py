@@ -1,4 +1,4 @@
-"""The effects that a gear file switches on, acting together."""
+"""Effect set: the effects that a gear file switches on, applied one after another."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -15,20 +15,20 @@ from trawl_ros.model.gear_model import GearModel
 
 @dataclass(frozen=True)
 class Active:
-    """An effect with values (m,) in the order of its parameters."""
+    """Effect with its values (m,) in the order of its parameters."""
 
     effect: Effect
     values: np.ndarray
 
     @property
     def name(self) -> str:
-        """Of the effect."""
+        """Name of the effect."""
         return self.effect.name
 
 
 @dataclass(frozen=True)
 class Acting:
-    """Several effects; each acts on what those before it have left."""
+    """Effect set; each effect is applied to the result of those before it."""
 
     effects: tuple[Active, ...] = ()
 
@@ -36,30 +36,30 @@ class Acting:
         return bool(self.effects)
 
     def towed(self, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """Warp lengths and speed (3,) the gear is towed with where instruments show ``inputs``."""
+        """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         for active in self.effects:
             inputs = active.effect.towed(active.values, inputs, at)
         return inputs
 
     def gear(self, model: GearModel, at: Situation) -> GearModel:
-        """The gear with all effects in it."""
+        """Gear model with all effects applied."""
         for active in self.effects:
             model = active.effect.gear(active.values, model, at)
         return model
 
     def shown(self, readings: Readings, at: Situation) -> Readings:
-        """What sensors show."""
+        """Apply to sensors: readings with the errors of all effects."""
         for active in self.effects:
             readings = active.effect.shown(active.values, readings, at)
         return readings
 
     def of(self, effect: Effect) -> Active:
-        """An effect as it is here, neutral where it is not."""
+        """Effect with its values in this set, neutral where it is absent."""
         same = [active for active in self.effects if active.name == effect.name]
         return same[0] if same else Active(effect, effect.neutral)
 
     def having(self, active: Active) -> 'Acting':
-        """These with an effect as given: in place of the one of its name, or after all others."""
+        """Effect set with one effect replaced by name, or added last."""
         names = [other.name for other in self.effects]
         if active.name not in names:
             return Acting((*self.effects, active))
@@ -67,7 +67,7 @@ class Acting:
         return Acting((*self.effects[:place], active, *self.effects[place + 1 :]))
 
     def without(self, names: Collection[str]) -> 'Acting':
-        """These but for some."""
+        """Effect set without the named effects."""
         return Acting(tuple(active for active in self.effects if active.name not in names))
 
 
@@ -75,7 +75,7 @@ NONE = Acting()
 
 
 def acting(gear: GearRecord) -> Acting:
-    """The effects of a gear file.
+    """Effect set of a gear file.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Water that boards carry along when they are accelerated."""
+"""Added mass of the boards."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from trawl_ros.model.gear_model import GearModel
 
 
 class BoardAddedMass(Effect):
-    """Added mass across the board's face, as a part of the water in a cylinder around it."""
+    """Added mass across the board's face, as a share of the water in a cylinder around it."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with boards that carry water along."""
+        """Gear model with the boards' added mass."""
         board = model.board
         cylinder = 0.25 * np.pi * model.water.density * board.chord**2 * board.span
         return model.with_board(added_mass=board.added_mass + values[0] * cylinder * np.eye(3)[1])

@@ -1,4 +1,4 @@
-"""Boards that lose lift at high angles of attack."""
+"""Board stall: loss of lift at high angles of attack."""
 
 from dataclasses import dataclass
 
@@ -14,14 +14,14 @@ ONSET = np.radians(15.0)
 
 @dataclass(frozen=True)
 class Stalled:
-    """Eq. 14 with lift that bends away from its straight line."""
+    """Coefficient modifier: lift below its straight line (eq. 14) at high attack."""
 
     loss: float
 
     def __call__(
         self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
     ) -> np.ndarray:
-        """Take the loss off C_y^F; what is lost of lift is not given back as drag."""
+        """Subtract the loss from C_y^F; drag does not grow by it."""
         above = np.where(np.real(attack) > ONSET, attack - ONSET, 0.0)
         bent = coefficients + 0.0 * attack[..., None]
         bent[..., LIFT] -= self.loss * above**2
@@ -32,7 +32,7 @@ class BoardStall(Effect):
     """Less lift above 15° of attack."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with boards that stall."""
+        """Gear model with boards that stall."""
         return model.with_board(bend=Stalled(float(values[0])))
 
 

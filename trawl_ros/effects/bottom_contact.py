@@ -1,4 +1,4 @@
-"""A gear that touches the bottom."""
+"""Bottom contact of the lower wing tips."""
 
 from dataclasses import dataclass, replace
 
@@ -17,14 +17,14 @@ SLOW = 0.1
 
 @dataclass(frozen=True)
 class Ground:
-    """Holds back, and carries as much, what is below a depth."""
+    """Ground force on nodes below a depth: friction, and a vertical reaction of the same size."""
 
     nodes: np.ndarray
     depth: float
     friction: float
 
     def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-        """Friction against the way over the ground, and lift of the same size."""
+        """Friction against the velocity over ground, and an upward reaction of the same size, N."""
         below = (-positions[..., 2] - self.depth) / SOFT
         hold = 0.5 * self.friction * (1.0 + np.tanh(0.5 * below))
         upward = np.array([0.0, 0.0, 1.0])
@@ -32,14 +32,14 @@ class Ground:
 
 
 class BottomContact(Effect):
-    """Ground under both lower wing tips beyond a depth."""
+    """Ground contact of both lower wing tips beyond a depth."""
 
     def starts(self, depths: np.ndarray) -> tuple[np.ndarray, ...]:
-        """The ground may lie anywhere between the net's depths."""
+        """Start values: the ground may lie anywhere between the net's depths."""
         return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, (0.5, 0.75, 0.9)))
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear over ground."""
+        """Gear model with ground under the wing tips."""
         friction, depth = map(float, values)
         foot = model.layout.footrope
         ground = Ground(np.array([foot[0], foot[-1]]), depth, friction)

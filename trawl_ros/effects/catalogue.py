@@ -1,4 +1,4 @@
-"""All effects that are known: those of this folder, and those of other packages.
+"""Catalogue of the known effects: those of this folder, and those of other packages.
 
 Another package adds its own through an entry point of the group `trawl_ros.effects`, whose value is
 an `Effect`.
@@ -21,7 +21,7 @@ GROUP = 'trawl_ros.effects'
 
 @cache
 def catalogue() -> Mapping[str, Effect]:
-    """Every effect by its name, in the order of the names.
+    """All effects by name, in the order of the names.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A catch that fills the codend while one tows."""
+"""Catch build-up: drag of the codend that grows during a tow."""
 
 from dataclasses import replace
 
@@ -12,14 +12,14 @@ class CatchBuildUp(Effect):
     """Drag of the codend's end that grows with the time in the tow."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with the catch of so many hours."""
+        """Gear model with the catch of the situation's hours."""
         area = model.lump_drag_area.copy()
         area[_codend(model)] += values[0] * at.hours
         return replace(model, lump_drag_area=area)
 
 
 def _codend(model: GearModel) -> int:
-    """The last node of the codend."""
+    """Number of the last node of the codend."""
     ends = [points[-1] for name, points, _ in model.layout.lines if name == 'codend']
     return int(ends[-1])
 

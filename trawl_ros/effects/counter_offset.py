@@ -1,4 +1,4 @@
-"""Counters that show more or less than the warp that is out, by so many metres."""
+"""Offset of the warp counters."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from trawl_ros.effects.effect import Effect, Parameter, Situation
 
 
 class CounterOffset(Effect):
-    """Shows so many metres more than are out, on both sides."""
+    """Offset of both counters against the warp out, m."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """The warp that is out."""
+        """Warp lengths without the offset."""
         return inputs - values[0] * np.array([1.0, 1.0, 0.0])
 
 

@@ -1,4 +1,4 @@
-"""Counters that show more or less than the warp that is out, by a part of it."""
+"""Scale error of the warp counters."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from trawl_ros.effects.effect import Effect, Parameter, Situation
 
 
 class CounterScale(Effect):
-    """Shows (1 + scale) times the warp out, and at port more of it than at starboard."""
+    """Counters that show (1 + scale) times the warp out, at port more of it than at starboard."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """The warp that is out."""
+        """Warp lengths without the scale error."""
         scale, port_more = values
         shown = 1.0 + scale + 0.5 * port_more * np.array([1.0, -1.0])
         return np.append(inputs[:2] / shown, inputs[2])

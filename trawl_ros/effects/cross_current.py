@@ -1,4 +1,4 @@
-"""Water below the surface that moves across the ship's track."""
+"""Cross-current below the surface layer."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ class CrossCurrent(Effect):
     """A current across the track, the same below the surface layer and nothing in it."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear in water that moves to the left of the track."""
+        """Gear model in a current to the left of the track."""
         across = values[0] * at.across
         water = model.water.with_more_current(
             np.array([0.0, ABOVE, BELOW]), np.stack([np.zeros(2), np.zeros(2), across])

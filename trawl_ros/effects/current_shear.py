@@ -1,4 +1,4 @@
-"""Water that moves the faster, the deeper it is."""
+"""Current shear along the ship's track."""
 
 from dataclasses import replace
 
@@ -15,10 +15,10 @@ DEEP = 2000.0
 
 
 class CurrentShear(Effect):
-    """A current linear in depth, nothing at the surface."""
+    """Current linear in depth, zero at the surface."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear in water that moves along the ship's track."""
+        """Gear model in a sheared current along the track."""
         bottom = values[0] * DEEP / PER * at.along
         water = model.water.with_more_current(
             np.array([0.0, DEEP]), np.stack([np.zeros(2), bottom])

@@ -1,4 +1,4 @@
-"""Depth sensors that are off."""
+"""Errors of the depth sensors."""
 
 import numpy as np
 
@@ -9,10 +9,10 @@ NET = 'net_depth'
 
 
 class DepthSensor(Effect):
-    """Offsets of doors and net, and a scale and a drift of all three sensors."""
+    """Offsets of doors and net, and scale and drift of all three depth sensors."""
 
     def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
-        """What the sensors show of the depths."""
+        """Readings with the errors of the depth sensors."""
         doors, net, scale, drift = values
         offsets = {**dict.fromkeys(DOORS, doors), NET: net}
         return readings | {

@@ -1,4 +1,4 @@
-"""What an effect is: physics, or an error of an instrument, that a gear may have beyond the model.
+"""Base class of effects: physics beyond the model, or an error of an instrument.
 
 Each effect is a small file of this folder. It acts in one or more of three places: on what the
 gear is towed with (`Effect.towed`), on the gear and its water (`Effect.gear`), and on what
@@ -14,23 +14,23 @@ import numpy as np
 from trawl_ros.model.gear_model import GearModel
 
 Readings = dict[str, float]
-"""What is seen of the gear, by the name of the observable, SI."""
+"""Readings by the name of the observable, SI."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that says how strong an effect is.
+    """Parameter of an effect: a value that says how strong it is.
 
     Attributes
     ----------
     name, unit
         Of the number; ``unit`` is empty where it has none.
     neutral
-        Its value where the effect is not there.
+        Value at which the effect vanishes.
     low, high
-        Between them it is taken to be possible; assumed.
+        Bounds of its possible values; assumed.
     std
-        How far from neutral it is commonly found, assumed; scales what is estimated.
+        Prior standard deviation about the neutral value, assumed; scales the estimate.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Situation:
-    """What an effect may depend on beside its values.
+    """Covariates that an effect may depend on beside its values.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Situation:
 
     @property
     def speed(self) -> float:
-        """Through the water as the log has it, m/s."""
+        """Speed through the water by the log, m/s."""
         return self.inputs[2]
 
 
@@ -86,19 +86,19 @@ class Effect:
     Attributes
     ----------
     name, sentence
-        What it is called, and what it is, in one sentence.
+        Name in the catalogue, and a description in one sentence.
     parameters
         Its numbers; values are given in their order.
     excited_by
-        What must vary in a trial to show it.
+        Inputs that must vary in a trial to make it observable.
     confused_with
         Effects that look much alike in common trials.
     dynamic
-        Whether it shows only while something changes, and never in steady tows.
+        True for an effect that shows only in transients, never in steady tows.
     direct
-        How it can be seen without any tow, in one sentence; empty where it cannot.
+        Direct check without any tow, in one sentence; empty where there is none.
     instrument
-        Whose error it is, where that may have others too; empty where it is no such error.
+        Instrument whose error it is, where that may have others too; empty for physics.
     """
 
     name: str
@@ -112,11 +112,11 @@ class Effect:
 
     @property
     def neutral(self) -> np.ndarray:
-        """Values (m,) with which it does nothing."""
+        """Values (m,) at which the effect vanishes."""
         return np.array([parameter.neutral for parameter in self.parameters])
 
     def starts(self, depths: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Values (m,) around which to look for it, where more than neutral ones are of use.
+        """Start values (m,) for a search, where more than neutral ones are of use.
 
         Parameters
         ----------
@@ -126,20 +126,20 @@ class Effect:
         return (self.neutral,)
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """Warp lengths and speed (3,) the gear is towed with where instruments show ``inputs``."""
+        """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         return inputs
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with the effect in it."""
+        """Gear model with the effect applied."""
         return model
 
     def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
-        """What sensors show where the gear is as ``readings`` have it."""
+        """Apply to sensors: readings with the effect's errors."""
         return readings
 
 
 def sense(heading: float | None) -> float:
-    """Which way a ship goes on her track: 1 within a quarter turn of east, else -1.
+    """Course sense on the track: 1 within a quarter turn of east, else -1.
 
     A current stays where it is when she turns round. Unknown headings are taken to be all the same.
     """

@@ -1,4 +1,4 @@
-"""Boards or clumps of another weight than stated."""
+"""Weight of boards and clumps beside the stated one."""
 
 from dataclasses import replace
 
@@ -9,10 +9,10 @@ from trawl_ros.model.gear_model import GearModel
 
 
 class GearWeight(Effect):
-    """More weight in water at each board and at each lower wing tip."""
+    """Additional weight in water at each board and at each lower wing tip."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with heavier boards and clumps; their volume stays."""
+        """Gear model with heavier boards and clumps; their volume stays."""
         board, clump = values / model.water.gravity
         mass = model.lump_mass.copy()
         foot = model.layout.footrope

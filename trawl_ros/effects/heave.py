@@ -1,4 +1,4 @@
-"""A gear that is pulled to and fro by the ship's motion in waves."""
+"""Mean drag increase by the ship's heave."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from trawl_ros.effects.effect import Effect, Parameter, Situation
 
 
 class Heave(Effect):
-    """More drag on average: that goes with the mean of the squared speed."""
+    """Increase of mean drag, which goes with the mean of the squared speed."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """The speed whose square is the mean of the squares."""
+        """Root-mean-square speed through the water beside both warp lengths."""
         port, starboard, speed = inputs
         return np.array([port, starboard, np.sqrt(speed**2 + values[0])])
 

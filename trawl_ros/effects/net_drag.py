@@ -1,4 +1,4 @@
-"""A net with more or less drag than its drawing has."""
+"""Net drag: factor and exponent of speed."""
 
 import numpy as np
 
@@ -13,10 +13,10 @@ SLOWEST = 0.1
 
 
 class NetDrag(Effect):
-    """A factor on the drag of netting and its ropes, and another power of speed than the square."""
+    """Factor on the drag of netting and its ropes, and an exponent of speed beside the square."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with so many times the drag of the net."""
+        """Gear model with scaled drag of the net."""
         factor, exponent = values
         return model.with_net(factor * (max(at.speed, SLOWEST) / USUAL_SPEED) ** exponent, 1.0)
 

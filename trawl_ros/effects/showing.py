@@ -1,7 +1,7 @@
-"""Samples as instruments with errors of a gear file's effects give them.
+"""Sensor effects on samples: readings with the errors of a gear file's effects.
 
-Truth stays what it is: counters and log show the numbers with which the effects say that the gear
-is towed as it is, and sensors what the effects make of what there is.
+Truth stays unchanged: counters and log show the numbers at which the effects return the true
+inputs, and sensors show the observables with the effects applied.
 """
 
 from dataclasses import replace
@@ -36,7 +36,7 @@ USUAL = np.array([500.0, 500.0, 2.0])
 
 
 class Showing:
-    """Turns samples of sound instruments into those of a gear with effects.
+    """Converter of error-free samples into those of a gear with effects.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Showing:
         self._first: int | None = None
 
     def __call__(self, sample: Sample) -> Sample:
-        """What is shown instead."""
+        """Return the sample with the effects applied."""
         if not self._acting:
             return sample
         if self._first is None or sample.stamp < self._first:
@@ -92,11 +92,11 @@ class Showing:
                 return sample
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
-        """What sensors show; each of one observable, so that others need not be known."""
+        """Readings of sensors; each depends on one observable, so that others need not be known."""
         return self._acting.shown({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
 
     def _instrument(self, true: np.ndarray, at: Situation) -> np.ndarray:
-        """What counters and log show where the gear is towed with ``true``."""
+        """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
         shown = true
         for _ in range(ROUNDS):
             shown = shown + true - self._acting.towed(shown, at)

@@ -1,4 +1,4 @@
-"""A log that shows another speed than that through the water."""
+"""Scale and bias of the speed log."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from trawl_ros.effects.effect import Effect, Parameter, Situation
 
 
 class SpeedLog(Effect):
-    """Shows (1 + scale) times the speed, and a bias."""
+    """Speed log that shows (1 + scale) times the speed, and a bias."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """The speed without scale and bias."""
+        """Speed without scale and bias, beside both warp lengths."""
         scale, bias = values
         port, starboard, speed = inputs
         return np.array([port, starboard, (speed - bias) / (1.0 + scale)])

@@ -1,4 +1,4 @@
-"""A spread sensor that is off."""
+"""Scale and offset of the spread sensor."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ SPREAD = 'door_spread'
 
 
 class SpreadSensor(Effect):
-    """Shows (1 + scale) times the spread, and an offset."""
+    """Spread sensor that shows (1 + scale) times the spread, and an offset."""
 
     def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
-        """What the sensor shows of the spread."""
+        """Readings with the error of the spread sensor."""
         scale, offset = values
         return readings | {SPREAD: (1.0 + scale) * readings[SPREAD] + offset}
 

@@ -1,4 +1,4 @@
-"""Tension cells that are off."""
+"""Scale and offset of the tension cells."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ CELLS = ('port_tension', 'starboard_tension')
 
 
 class TensionCell(Effect):
-    """Show (1 + scale) times the tension, and an offset, on both sides."""
+    """Tension cells that show (1 + scale) times the tension, and an offset, on both sides."""
 
     def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
-        """What the cells show of the tension."""
+        """Readings with the errors of the tension cells."""
         offset, scale = values
         return readings | {name: (1.0 + scale) * readings[name] + offset for name in CELLS}
 

@@ -1,4 +1,4 @@
-"""Boards whose lift changes as they lean."""
+"""Lift of the boards by their tilt."""
 
 from dataclasses import dataclass
 
@@ -11,24 +11,24 @@ from trawl_ros.model.hooks import LIFT
 
 @dataclass(frozen=True)
 class Tilted:
-    """Eq. 14 with lift that grows, linearly, as the outer face looks up."""
+    """Coefficient modifier: lift that grows, linearly, as the outer face looks up."""
 
     slope: float
 
     def __call__(
         self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
     ) -> np.ndarray:
-        """Multiply C_y^F."""
+        """Multiply C_y^F by the factor of the tilt."""
         bent = coefficients + 0.0 * lean[..., None]
         bent[..., LIFT] = bent[..., LIFT] * (1.0 + self.slope * lean)
         return bent
 
 
 class TiltLift(Effect):
-    """Lift by the board's lean."""
+    """Lift by the boards' tilt."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with boards that feel their lean."""
+        """Gear model with boards whose lift depends on their tilt."""
         return model.with_board(bend=Tilted(float(values[0])))
 
 

@@ -1,4 +1,4 @@
-"""Warps that are not equally long though their counters say so."""
+"""Asymmetry of the warps that the counters do not show."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from trawl_ros.effects.effect import Effect, Parameter, Situation
 
 
 class WarpAsymmetry(Effect):
-    """The port warp is longer than shown, and the starboard one shorter by as much."""
+    """Port warp longer than shown, and starboard warp shorter by as much."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """The warps that are out."""
+        """True warp lengths beside the speed."""
         return inputs + 0.5 * values[0] * np.array([1.0, -1.0, 0.0])
 
 

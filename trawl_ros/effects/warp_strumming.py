@@ -1,4 +1,4 @@
-"""Warps that vibrate in the flow, which meet more drag."""
+"""Warp strumming: vortex-induced vibration that raises the drag of the warps."""
 
 from dataclasses import replace
 
@@ -9,10 +9,10 @@ from trawl_ros.model.gear_model import GearModel
 
 
 class WarpStrumming(Effect):
-    """More drag across the warps."""
+    """Additional normal drag of the warps."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with warps of so many times the normal drag."""
+        """Gear model with scaled normal drag of the warps."""
         factor = np.where(model.warp_side >= 0, values[0], 1.0)
         bars = replace(model.bars, normal_drag=factor * model.bars.normal_drag)
         return replace(model, bars=bars)

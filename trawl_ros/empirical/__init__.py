@@ -1,1 +1,1 @@
-"""Terms for what no effect of the catalogue explains: empirical, and called so."""
+"""Empirical terms for residuals that no effect of the catalogue explains."""

@@ -1,4 +1,4 @@
-"""Terms of force on the boards: coefficients of one side against the other, and with time.
+"""Empirical terms of force on the boards: differences between the sides, and drifts.
 
 What is alike on both boards and does not change is theirs already: the twelve coefficients.
 """
@@ -20,7 +20,7 @@ BOTH = np.array([1.0, 1.0])
 
 @dataclass(frozen=True)
 class More:
-    """Adds to one force coefficient of both boards (2,), after whatever bends them already."""
+    """Coefficient modifier: adds to one force coefficient of both boards (2,), after any other."""
 
     place: int
     sizes: np.ndarray
@@ -29,7 +29,7 @@ class More:
     def __call__(
         self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
     ) -> np.ndarray:
-        """Add."""
+        """Return the coefficients with the addition."""
         bent = coefficients + 0.0 * attack[..., None]
         if self.before is not None:
             bent = self.before(bent, attack, slip, lean)
@@ -40,19 +40,19 @@ class More:
 
 @dataclass(frozen=True)
 class BoardForce(Term):
-    """So much of ½ρU²A on the boards: more on port than on starboard, or more with each hour."""
+    """Force on the boards as a share of ½ρU²A: difference of the sides, or drift per hour."""
 
     place: int = 0
     by_hours: bool = False
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with boards that feel it."""
+        """Gear model with the force on its boards."""
         sizes = values[0] * (at.hours * BOTH if self.by_hours else SIDES)
         return model.with_board(bend=More(self.place, sizes, model.board.bend))
 
 
 def board_terms() -> Iterator[Term]:
-    """All of them."""
+    """Yield all terms of force on the boards."""
     for place, direction in enumerate(DIRECTIONS):
         yield BoardForce(
             name=f'empirical_boards_{direction}_difference',

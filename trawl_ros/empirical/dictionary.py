@@ -1,4 +1,4 @@
-"""All empirical terms."""
+"""Dictionary of all empirical terms."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -13,6 +13,6 @@ from trawl_ros.empirical.term import Term
 
 @cache
 def dictionary() -> Mapping[str, Term]:
-    """Every term by its name."""
+    """All empirical terms by name."""
     terms = chain(board_terms(), rope_terms(), sensor_terms())
     return MappingProxyType({term.name: term for term in terms})

@@ -1,4 +1,4 @@
-"""Terms of force on warps, bridles and net, as parts of what they have."""
+"""Empirical terms of force on warps, bridles and net, as shares of the present forces."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -13,12 +13,12 @@ from trawl_ros.model.numerics import dot
 
 @dataclass(frozen=True)
 class BridleDrag(Term):
-    """More drag across the bridles of both sides, or of starboard against port."""
+    """Normal drag of the bridles of both sides, or of starboard against port."""
 
     difference: bool = False
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with other bridles."""
+        """Gear model with changed drag of the bridles."""
         port, starboard = (
             np.isin(model.ends, np.concatenate(pair)).any(axis=1)
             for pair in (model.layout.bridles[:2], model.layout.bridles[2:])
@@ -32,10 +32,10 @@ class BridleDrag(Term):
 
 @dataclass(frozen=True)
 class WarpFriction(Term):
-    """Drag along the warps."""
+    """Tangential drag of the warps."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with rougher warps."""
+        """Gear model with changed friction of the warps."""
         factor = np.where(model.warp_side >= 0, 1.0 + values[0], 1.0)
         bars = replace(model.bars, friction=factor * model.bars.friction)
         return replace(model, bars=bars)
@@ -46,19 +46,19 @@ class NetWeight(Term):
     """Weight of the net in water."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with a heavier net."""
+        """Gear model with changed weight of the net."""
         return model.with_net(1.0, 1.0 + values[0])
 
 
 @dataclass(frozen=True)
 class Lifted:
-    """A force upward on nodes that goes with the square of their speed, ½ρU² times an area."""
+    """Node force: lift that goes with the square of the speed, ½ρU² times an area."""
 
     nodes: np.ndarray
     factor: float
 
     def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-        """Lift."""
+        """Lift on the nodes (k, 3), N."""
         upward = np.array([0.0, 0.0, 1.0])
         return self.factor * dot(velocities, velocities)[..., None] * upward
 
@@ -68,7 +68,7 @@ class HeadropeLift(Term):
     """Lift on the middle of the headrope."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with more or less lift."""
+        """Gear model with changed lift of the headrope."""
         head = model.layout.headrope
         factor = 0.5 * model.water.density * values[0]
         lifted = Lifted(np.array([head[len(head) // 2]]), factor)
@@ -77,24 +77,24 @@ class HeadropeLift(Term):
 
 @dataclass(frozen=True)
 class TideAlong(Term):
-    """A current along the track that changes with time."""
+    """Tidal current along the track that changes with time."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """Another speed through the water."""
+        """Warp lengths, and the speed through the water with the tide."""
         return inputs + np.array([0.0, 0.0, values[0] * at.hours])
 
 
 @dataclass(frozen=True)
 class WarpWithTime(Term):
-    """Warp that is out beside what counters show, more with each hour."""
+    """Drift of both counters per hour: warp out beside the length shown."""
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """Other lengths."""
+        """Warp lengths with the drift, and the speed."""
         return inputs + np.array([1.0, 1.0, 0.0]) * values[0] * at.hours
 
 
 def rope_terms() -> Iterator[Term]:
-    """All of them."""
+    """Yield all terms of force on ropes and net."""
     yield BridleDrag(
         name='empirical_bridles_drag',
         sentence='Drag across all bridles, as a part of what they have.',

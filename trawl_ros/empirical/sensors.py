@@ -1,4 +1,4 @@
-"""Terms of a single sensor: throughout, by its value, or by time."""
+"""Empirical error terms of single sensors: constant, by value, or by time."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ EXCITED_BY = {'offset': 'any tow', 'scale': 'what changes the channel', 'hours':
 
 @dataclass(frozen=True)
 class SensorError(Term):
-    """What one channel shows beside what there is."""
+    """Error of one channel: its reading beside the observable."""
 
     channel: str = ''
     by: str = ''
 
     def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
-        """The readings with that channel off."""
+        """Readings with the channel's error."""
         (value,), there = values, readings[self.channel]
         error = {
             'offset': value,
@@ -37,7 +37,7 @@ class SensorError(Term):
 
 
 def sensor_terms() -> Iterator[Term]:
-    """All of them: three of each channel."""
+    """Yield all sensor terms: three of each channel."""
     for name in MEASURED:
         channel = CHANNELS[name]
         usual = 0.05 if channel.unit == 'rad' else 0.02 * _typical(name)
@@ -56,7 +56,7 @@ def sensor_terms() -> Iterator[Term]:
 
 
 def _typical(name: str) -> float:
-    """About how large a channel is, SI."""
+    """Typical size of a channel, SI."""
     if name.endswith('tension'):
         return 80e3
     return 50.0 if name in ('door_spread', 'vertical_opening') else 150.0

@@ -1,4 +1,4 @@
-"""What an empirical term is: an effect without physics of its own."""
+"""Base class of empirical terms: effects without physics of their own."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from trawl_ros.effects.effect import Effect, Parameter
 
 @dataclass(frozen=True)
 class Term(Effect):
-    """A force, or an error of a sensor, of a form that is dimensionally sound and no more.
+    """Empirical term: a force or sensor error of a form that is dimensionally sound and no more.
 
     Attributes
     ----------
@@ -19,7 +19,7 @@ class Term(Effect):
 
 
 def size(unit: str, std: float, bound: float) -> tuple[Parameter, ...]:
-    """The one parameter of a term: 0 where it is not there, possible to both sides.
+    """Parameters of a term: one number, 0 where the term is absent, of either sign.
 
     ``std`` and ``bound`` are assumed: they scale the search and end it.
     """

@@ -1,4 +1,4 @@
-"""The gear file as records: every key carries its unit, every value is checked on load."""
+"""Records of the gear file: every key carries its unit, every value is checked on load."""
 
 from itertools import pairwise
 from typing import Annotated, Literal
@@ -14,7 +14,7 @@ Vector = tuple[float, float, float]
 
 
 class CurrentAt(Record):
-    """Current at one depth, to the east and the north."""
+    """Current at a depth, to the east and the north."""
 
     depth_m: NotNegative
     east_m_s: Annotated[float, Field(ge=-3, le=3)]
@@ -22,7 +22,7 @@ class CurrentAt(Record):
 
 
 class TemperatureAt(Record):
-    """Temperature of the water at one depth."""
+    """Temperature of the water at a depth."""
 
     depth_m: NotNegative
     temperature_deg_c: Annotated[float, Field(ge=-2, le=35)]
@@ -53,7 +53,7 @@ class WaterRecord(Record):
 
 
 class ShipRecord(Record):
-    """Where the warps leave the ship, and how fast she changes speed and course."""
+    """Ship: spacing of the towing blocks, and limits of acceleration and turning."""
 
     block_spacing_m: Annotated[float, Field(gt=0, le=50)]
     max_acceleration_m_s2: Annotated[float, Field(gt=0, le=1)]
@@ -61,14 +61,14 @@ class ShipRecord(Record):
 
 
 class WinchRecord(Record):
-    """How fast a winch can pay out and haul."""
+    """Limits of a winch's speed and acceleration."""
 
     max_speed_m_s: Annotated[float, Field(gt=0, le=5)]
     max_acceleration_m_s2: Annotated[float, Field(gt=0, le=5)]
 
 
 class RopeRecord(Record):
-    """A rope of one make. ``segments`` is how many numerical bars it is cut into."""
+    """Rope of one make; ``segments`` is the number of numerical bars it is cut into."""
 
     diameter_m: Annotated[float, Field(gt=0, le=0.5)]
     weight_in_water_n_m: float
@@ -81,7 +81,7 @@ class RopeRecord(Record):
 
 
 class WarpRecord(RopeRecord):
-    """A warp: its length is the winch's affair."""
+    """Warp; its length is commanded to the winch."""
 
     segments: Annotated[int, Field(ge=2, le=500)]
 
@@ -100,7 +100,7 @@ class FrameRopeRecord(RopeRecord):
 
 
 class StartRecord(Record):
-    """Where identification starts: values, spread and bounds in the order of eq. 36."""
+    """Prior of the coefficients: start values, spread and bounds in the order of eq. 36."""
 
     start: tuple[Annotated[float, Field(ge=-10, le=10)], ...]
     std: tuple[Positive, ...]
@@ -257,14 +257,14 @@ class FloatRecord(Record):
 
 
 class SourceRecord(Record):
-    """A bag that an effect was found in, and the SHA-256 of its recordings."""
+    """Source bag of an effect, with the SHA-256 of its recordings."""
 
     bag: str
     sha256: str
 
 
 class ProvenanceRecord(Record):
-    """Where an effect comes from: bags, the program's version, and what spoke for it."""
+    """Provenance of an effect: bags, the program's version, and the evidence for it."""
 
     found_by: str
     bags: tuple[SourceRecord, ...] = ()
@@ -280,7 +280,7 @@ class EffectRecord(Record):
 
 
 class GearRecord(Record):
-    """A whole gear, as its YAML file has it."""
+    """Gear: the records of a whole gear file."""
 
     name: str
     water: WaterRecord
@@ -301,7 +301,7 @@ class GearRecord(Record):
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False
     ) -> 'GearRecord':
-        """The same gear, cut finer; the net as nearly as a multiple of 12 meshes allows, and
+        """Copy of the gear cut finer; the net as nearly as a multiple of 12 meshes allows, and
         with ``unjoined`` as many meshes around its end as around its mouth.
         """
         halved_at = () if unjoined else self.netting.halved_at_circumference_m

@@ -1,4 +1,4 @@
-"""Messages to bytes and back: CDR as every ROS 2 middleware understands it.
+"""Encoding of messages as CDR, as every ROS 2 middleware understands it, and decoding.
 
 Nodes publish these bytes as they are and bags store them, so there is one encoder.
 """
@@ -47,11 +47,11 @@ def deserialize(data: bytes, type_name: str) -> Any:
 
 
 def type_hash(type_name: str) -> str:
-    """Give the hash (RIHS01) by which ROS 2 tells whether two definitions are the same."""
+    """Return the type hash (RIHS01) by which ROS 2 compares two definitions."""
     return STORE.hash_rihs01(type_name)
 
 
 def definition(type_name: str) -> str:
-    """Give the definition with those of all nested types, as bags carry it (ros2msg)."""
+    """Return the definition with those of all nested types, as bags carry it (ros2msg)."""
     text, _ = STORE.generate_msgdef(type_name, ros_version=2)
     return text

@@ -1,4 +1,4 @@
-"""What nodes listen to: wanted warp lengths, the ship's speed and rate of turn, and faults."""
+"""Command messages to nodes: wanted warp lengths, the ship's speed and rate of turn, faults."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ FAULT_COMMAND = 'command/fault'
 
 
 def winch_command(stamp: int, port: float, starboard: float) -> TopicMessage:
-    """Ask for warp lengths (m); NaN leaves that winch as it is."""
+    """Message of wanted warp lengths (m); NaN leaves that winch as it is."""
     wanted = zip(WINCH_NAMES, (port, starboard), strict=True)
     lengths = {name: float(length) for name, length in wanted if not math.isnan(length)}
     return WINCH_COMMAND, ros.sensor_msgs__msg__JointState(
@@ -31,7 +31,7 @@ def winch_command(stamp: int, port: float, starboard: float) -> TopicMessage:
 
 
 def vessel_command(stamp: int, speed: float, yaw_rate: float) -> TopicMessage:
-    """Ask for a speed through water (m/s) and a rate of turn (rad/s, positive to port)."""
+    """Message of a wanted speed through water (m/s) and rate of turn (rad/s, positive to port)."""
     return VESSEL_COMMAND, ros.geometry_msgs__msg__TwistStamped(
         header(stamp, TOPICS[VESSEL_COMMAND].frame),
         ros.geometry_msgs__msg__Twist(
@@ -42,12 +42,12 @@ def vessel_command(stamp: int, speed: float, yaw_rate: float) -> TopicMessage:
 
 
 def fault_command(where: str, what: str) -> TopicMessage:
-    """Ask for a fault at an instrument's topic or topic/quantity; 'none' ends all there."""
+    """Message of a fault at an instrument's topic or topic/quantity; 'none' ends all there."""
     return FAULT_COMMAND, ros.diagnostic_msgs__msg__KeyValue(where, what)
 
 
 def read_fault_command(message: Any) -> tuple[str, str]:
-    """Read where a fault is to sit and what it is; they are checked by who has the instrument."""
+    """Read the place and kind of a fault; the node that has the instrument checks them."""
     return message.key.strip().removeprefix('/'), message.value.strip()
 
 

@@ -1,4 +1,4 @@
-"""Diagnostic arrays: what nodes report of themselves, and findings of the identification."""
+"""Diagnostic arrays: status of nodes, and findings of the identification."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ STALE = ros.diagnostic_msgs__msg__DiagnosticStatus.STALE
 
 @dataclass(frozen=True)
 class Status:
-    """One status: a name, a level (`OK` to `STALE`), a short message, and values by key."""
+    """Diagnostic status: a name, a level (`OK` to `STALE`), a short message, and values by key."""
 
     name: str
     level: int
@@ -28,7 +28,7 @@ class Status:
 def diagnostic_array(
     stamp: int, statuses: Sequence[Status]
 ) -> ros.diagnostic_msgs__msg__DiagnosticArray:
-    """Put statuses into one message with a stamp in ns."""
+    """Pack statuses into one message with a stamp in ns."""
     return ros.diagnostic_msgs__msg__DiagnosticArray(
         header(stamp, ''), [_to_message(status) for status in statuses]
     )

@@ -1,4 +1,4 @@
-"""What the identification publishes: coefficients, their covariance, and innovations."""
+"""Messages of the identification: coefficients, their covariance, and innovations."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ INNOVATION = 'identification/innovation'
 
 @dataclass(frozen=True)
 class Innovation:
-    """One channel: measured minus predicted, its standard deviation, and the test ratio.
+    """Innovation of a channel: measured minus predicted, its standard deviation, and test ratio.
 
     ``innovation`` and ``std`` are in the channel's unit; a ratio below 0.5 is normal, above
     1 the measurement is rejected.

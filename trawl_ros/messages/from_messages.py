@@ -1,4 +1,4 @@
-"""Messages in, samples and pieces of truth out: the reverse of `to_messages`.
+"""Decoding of messages into samples and pieces of truth: the reverse of `to_messages`.
 
 Messages may come from bags of others, decoded with the definitions they carry, so only
 attributes are relied on. Readings that say they are missing become NaN; content that
@@ -60,7 +60,7 @@ def to_sample(topic: str, message: Any) -> Sample:
 def door_truth(
     topic: str, odometry: Any, angles: Any | None = None, wrench: Any | None = None
 ) -> DoorTruth:
-    """Put a door together from its odometry and, where given, its angles and wrench.
+    """Assemble a door from its odometry and, where given, its angles and wrench.
 
     What was not given is NaN: a pressure sensor needs no more than the pose. ``topic`` is
     the odometry's, for error messages.
@@ -91,7 +91,7 @@ def winch_truth(topic: str, joint_state: Any) -> tuple[WinchTruth, WinchTruth]:
 def net_truth(
     opening: Any, sonar_pose: Any, mouth: Any | None = None, section: Any | None = None
 ) -> NetTruth:
-    """Put the net together from its opening, the sonar's pose and, where given, mouth and section.
+    """Assemble the net from its opening, the sonar's pose and, where given, mouth and section.
 
     Without them their points have shape (0, 3).
     """
@@ -124,7 +124,7 @@ def seabed_truth(depths: Any) -> SeabedTruth:
 
 
 def vessel_truth(odometry: Any, velocity_water: Any) -> VesselTruth:
-    """Put the ship together from its odometry and its velocity through the water."""
+    """Assemble the ship from its odometry and its velocity through the water."""
     pose, twist = odometry.pose.pose, odometry.twist.twist
     _, _, heading = _angles('truth/vessel/odom', pose.orientation)
     return VesselTruth(
@@ -192,7 +192,7 @@ def _heading(topic: str, message: Any) -> HeadingSample:
 
 
 def _imu(topic: str, message: Any, entry: int) -> tuple[float, float, float, float]:
-    """Give roll, pitch, yaw and the deviation in one diagonal entry of the covariance."""
+    """Roll, pitch, yaw, and the standard deviation in one diagonal entry of the covariance."""
     if message.orientation_covariance[0] == ABSENT:
         return math.nan, math.nan, math.nan, math.nan
     std = _deviation(topic, message.orientation_covariance[entry])

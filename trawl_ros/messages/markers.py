@@ -1,4 +1,4 @@
-"""Gear and ship as markers, for RViz and Foxglove: ropes coloured by tension, doors as plates.
+"""Markers of gear and ship for RViz and Foxglove: ropes coloured by tension, doors as plates.
 
 Namespace and id of a marker stay the same from picture to picture, so that viewers replace
 the old one instead of piling them up.
@@ -94,7 +94,7 @@ def _line(stamp: int, line: Polyline) -> Any:
 
 
 def _lines(stamp: int, name: str, lines: Sequence[Polyline]) -> Any:
-    """Several lines as pairs of points, each pair with a colour at either end."""
+    """Line-list marker of several lines; each pair of points has a colour at either end."""
     sizes = np.array([len(line.points) for line in lines])
     every = np.concatenate([line.points for line in lines])
     # Each point but the last of a line begins a pair.
@@ -144,7 +144,7 @@ def _school(stamp: int, number: int, school: SchoolTruth) -> Any:
 
 
 def _hull(stamp: int, named: Mapping[str, Sequence[Polyline]]) -> list[Any]:
-    """The waterline; nothing where there are not both warps, whose ends say where the ship is."""
+    """Waterline of the ship; empty without both warps, whose ends give the ship's position."""
     if not all(name in named for name in WINCH_NAMES):
         return []
     port, starboard = (named[name][0].points[0] for name in WINCH_NAMES)

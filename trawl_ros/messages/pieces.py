@@ -1,4 +1,4 @@
-"""What messages of truth and of samples are put together from.
+"""Parts shared by messages of truth and of samples: headers, vectors, poses, covariances.
 
 Covariances carry the *stated* noise. `UNKNOWN_VARIANCE` marks a part of an orientation or
 position that the sensor does not measure, `ABSENT` a whole quantity it does not have.
@@ -43,24 +43,24 @@ def pose(position: Any, orientation: Any) -> ros.geometry_msgs__msg__Pose:
 
 
 def with_covariance(pose: Any) -> ros.geometry_msgs__msg__PoseWithCovariance:
-    """Give a pose that says nothing of its covariance."""
+    """Return a pose without covariance."""
     return ros.geometry_msgs__msg__PoseWithCovariance(pose, np.zeros(36))
 
 
 def twist(linear: Any, angular: Any) -> ros.geometry_msgs__msg__Twist:
-    """Give a Twist."""
+    """Return a Twist of linear (m/s) and angular (rad/s) velocity."""
     return ros.geometry_msgs__msg__Twist(vector(linear), vector(angular))
 
 
 def twist_with_covariance(linear: Any, angular: Any) -> ros.geometry_msgs__msg__TwistWithCovariance:
-    """Give a twist that says nothing of its covariance."""
+    """Return a twist without covariance."""
     return ros.geometry_msgs__msg__TwistWithCovariance(twist(linear, angular), np.zeros(36))
 
 
 def joint_state(
     stamp: int, topic: str, positions: Any, velocities: Any, efforts: Any
 ) -> ros.sensor_msgs__msg__JointState:
-    """Give the state of both winches, port first."""
+    """Return the joint state of both winches, port first."""
     columns = (np.array(column, dtype=float) for column in (positions, velocities, efforts))
     return ros.sensor_msgs__msg__JointState(topic_header(stamp, topic), list(WINCH_NAMES), *columns)
 
@@ -71,7 +71,7 @@ def imu(
     angles: tuple[float, float, float],
     variances: tuple[float, float, float],
 ) -> ros.sensor_msgs__msg__Imu:
-    """Give an Imu that has an orientation only: roll, pitch, yaw (rad) and their variances."""
+    """Return an Imu with orientation only: roll, pitch, yaw (rad) and their variances."""
     absent = np.zeros(9)
     absent[0] = ABSENT
     return ros.sensor_msgs__msg__Imu(

@@ -1,4 +1,4 @@
-"""Between quaternions (x, y, z, w) and roll, pitch, yaw about x forward, y port, z up.
+"""Conversion of quaternions (x, y, z, w) and roll, pitch, yaw (x forward, y port, z up).
 
 The order is Rz(yaw) Ry(pitch) Rx(roll): with y to port a positive pitch puts the nose down,
 and a positive roll leans the top to starboard.
@@ -50,6 +50,6 @@ def to_angles(quaternion: Sequence[float]) -> tuple[float, float, float]:
 
 
 def about_z(angle: float) -> np.ndarray:
-    """Give the matrix (3, 3) that turns components in a yawed frame into fixed ones."""
+    """Return the matrix (3, 3) that turns components in a yawed frame into fixed ones."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -1,4 +1,4 @@
-"""Samples in, messages out: each as (relative topic name, message)."""
+"""Conversion of samples into messages, each as (relative topic name, message)."""
 
 import math
 from typing import Any
@@ -38,7 +38,7 @@ door sensor, 15° for a sounder on the headrope, 7° for a ship's, 1° for a tra
 
 
 def sample_message(sample: Sample) -> TopicMessage:
-    """Turn what an instrument reports into the message of its topic."""
+    """Convert a sample into the message of its topic."""
     match sample:
         case WinchSample():
             return _winch_sample(sample)

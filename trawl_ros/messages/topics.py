@@ -1,4 +1,4 @@
-"""The topics of the project as one table: name, type, frame, rate, and what is in them.
+"""Topic table of the project: name, type, frame, rate and content of each topic.
 
 Names are relative; a node in namespace ``trawl`` turns ``truth/winch`` into
 ``/trawl/truth/winch``. ``/clock`` and ``/diagnostics`` are absolute by ROS convention.
@@ -21,7 +21,7 @@ WINCH_NAMES = tuple(f'{side}_warp' for side in SIDES)
 
 @dataclass(frozen=True)
 class Topic:
-    """One row of the table.
+    """Topic: a row of the table.
 
     ``frame`` is ``header.frame_id`` ('' where the type has no header), ``rate`` the usual
     rate in Hz (None: on an event), ``latched`` says that a late subscriber gets the last one.
@@ -381,7 +381,7 @@ TOPICS = {
 
 
 def absolute(name: str, namespace: str = NAMESPACE) -> str:
-    """Give the full name of a topic, e.g. ``/trawl/truth/winch`` for ``truth/winch``."""
+    """Return the full name of a topic, e.g. ``/trawl/truth/winch`` for ``truth/winch``."""
     if name.startswith('/'):
         return name
     return _prefix(namespace) + name

@@ -1,4 +1,4 @@
-"""Frames of ship, doors and sonar in ``map`` as transforms, for tools that look for a tree."""
+"""Transforms of ship, doors and sonar to ``map``, for tools that read a frame tree."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from trawl_ros.simulation.truth import SIDES, Truth
 
 
 def transforms_message(truth: Truth) -> TopicMessage:
-    """Give the poses of all frames in ``map`` at one instant."""
+    """Return the poses of all frames in ``map`` at one instant."""
     poses: dict[str, tuple[np.ndarray, Any]] = {
         VESSEL: (truth.vessel.position, to_quaternion(0.0, 0.0, truth.vessel.heading)),
         SONAR: (truth.net.sonar_position, truth.net.sonar_orientation),

@@ -1,4 +1,4 @@
-"""Truth in, messages out: each as (relative topic name, message)."""
+"""Conversion of truth into messages, each as (relative topic name, message)."""
 
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
@@ -25,12 +25,12 @@ SCHOOL_FIELDS = ('x', 'y', 'z', 'length', 'width', 'height', 'density')
 
 
 def clock_message(stamp: int) -> TopicMessage:
-    """Turn a stamp (ns) into simulated time on ``/clock``."""
+    """Convert a stamp (ns) into simulated time on ``/clock``."""
     return '/clock', ros.rosgraph_msgs__msg__Clock(to_time(stamp))
 
 
 def truth_messages(truth: Truth) -> list[TopicMessage]:
-    """Give every truth topic but the markers for one instant."""
+    """Convert the truth of one instant into all truth topics but the markers."""
     messages: list[TopicMessage] = []
     for side, door in zip(SIDES, truth.doors, strict=True):
         messages += _door(truth.stamp, side, door)

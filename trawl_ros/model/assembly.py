@@ -47,7 +47,7 @@ class Points:
 
 
 def points_of(model: GearModel, state: State, tow: Tow) -> Points:
-    """All points that bars can end at."""
+    """Positions and velocities of all points at which bars can end."""
     arms = np.einsum('sij,spj->spi', state.board_rotations, fastening(model))
     positions = state.board_positions[:, None] + arms
     velocities = state.board_velocities[:, None] + cross(state.board_rates[:, None], arms)
@@ -61,7 +61,7 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
 def motion_of(
     model: GearModel, points: Points, tow: Tow, chosen: np.ndarray | slice = slice(None)
 ) -> BarMotion:
-    """How all bars, or the ``chosen`` ones, lie and move."""
+    """Motion of all bars, or of the ``chosen`` ones."""
     rest, rate = rest_lengths(model, tow)
     ends = model.ends[chosen]
     x, v = alike(points.positions, points.velocities)
@@ -94,7 +94,7 @@ def _motion(
 def _gathered(
     ends: np.ndarray, at_start: np.ndarray, at_end: np.ndarray, total: np.ndarray
 ) -> None:
-    """Add what bars do at their two ends to the points there."""
+    """Add the forces at both ends of the bars to the points there."""
     for n in range(len(ends)):
         for i in range(3):
             total[ends[n, 0], i] += at_start[n, i]

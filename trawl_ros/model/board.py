@@ -36,7 +36,7 @@ ROUNDING = np.radians(4.0)
 
 @dataclass(frozen=True)
 class Board:
-    """What a board is.
+    """Properties of an otter board.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Board:
     added_mass : (3,) array
         Added mass along the board's axes, kg; zero as in eq. 15, or by the gear file.
     bend : Bend or None
-        What makes another law of eq. 14; None leaves it as it is.
+        Modifier of the coefficients of eq. 14; None leaves them as they are.
     """
 
     mass: float
@@ -102,7 +102,7 @@ class Board:
 
 
 def _settled(value: np.ndarray, low: float, high: float) -> np.ndarray:
-    """The angle itself inside [low, high], coming smoothly to rest outside."""
+    """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
     over = np.real(value) - high
     under = low - np.real(value)
     if (over <= 0).all() and (under <= 0).all():
@@ -117,7 +117,7 @@ def _settled(value: np.ndarray, low: float, high: float) -> np.ndarray:
 
 
 def _fading(attack: np.ndarray) -> np.ndarray:
-    """1 inside the range of the law, falling smoothly to 0 at `LAW_END`."""
+    """Fade factor of the law: 1 inside its range, falling smoothly to 0 at `LAW_END`."""
     if ((np.real(attack) >= LAW_RANGE[0]) & (np.real(attack) <= LAW_RANGE[1])).all():
         return np.ones_like(attack)
     up = (attack - LAW_RANGE[1]) / (LAW_END[1] - LAW_RANGE[1])
@@ -137,7 +137,7 @@ def _folded(attack: np.ndarray) -> np.ndarray:
 
 
 def _across(flow: np.ndarray) -> np.ndarray:
-    """1 unless the flow runs along the span, where α means nothing; there smoothly to 0."""
+    """Fade factor of α: 1, but smoothly 0 where the flow runs along the span and α is undefined."""
     part = dot(flow[..., :2], flow[..., :2]) / (dot(flow, flow) + 1e-18) / LEAST_ACROSS
     return np.where(np.real(part) < 1.0, part * (2.0 - part), 1.0)
 

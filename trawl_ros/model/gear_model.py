@@ -25,7 +25,7 @@ OUTWARD = np.array([1.0, -1.0])
 
 @dataclass(frozen=True)
 class Layout:
-    """Which node is what.
+    """Node numbering: the nodes of warps, bridles, net, headrope, footrope and kite.
 
     ``warps`` and ``bridles`` are tuples of node arrays (warps from block to board, port and
     starboard; bridles from board to wing tip: port upper, port lower, starboard upper,
@@ -113,7 +113,7 @@ class GearModel:
 
 
 class _Builder:
-    """Collects nodes and bars; numbering of fastening points and blocks is shifted at the end."""
+    """Builder of nodes and bars; fastening points and blocks are renumbered at the end."""
 
     FASTENING = -100
     BLOCK = -200

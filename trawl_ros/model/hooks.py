@@ -1,4 +1,4 @@
-"""Where more physics may enter than the paper's: at boards and at nodes.
+"""Extension points for physics beyond the paper: coefficient modifiers and node forces.
 
 Water enters as a profile of currents, ropes and netting through the arrays of `BarProperties`;
 these two are for what neither can say. Both are called with complex numbers as well, for their
@@ -14,12 +14,12 @@ LIFT = 1
 
 
 class Bend(Protocol):
-    """Changes the law of the boards (eq. 14)."""
+    """Coefficient modifier: changes the law of the boards (eq. 14)."""
 
     def __call__(
         self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
     ) -> np.ndarray:
-        """Give other force and moment coefficients.
+        """Return the modified force and moment coefficients (..., 6).
 
         Parameters
         ----------

@@ -10,7 +10,7 @@ from trawl_ros.model.water import Water
 
 @dataclass(frozen=True)
 class Kite:
-    """What the kite is: area (m²), mass (kg), volume (m³), setting angle against its two
+    """Properties of a kite: area (m²), mass (kg), volume (m³), setting angle against its two
     carrying nodes (rad), and the constants of its lift and drag law.
     """
 
@@ -25,7 +25,7 @@ class Kite:
 
 @dataclass(frozen=True)
 class KiteNodes:
-    """The nodes that hold the kite: ``nodes`` (3,) numbers, one of which may be there twice,
+    """Carrying nodes of the kite: ``nodes`` (3,) numbers, one of which may be there twice,
     and ``weights`` (2, 3) that make its front and rear carrying points of them.
     """
 

@@ -51,7 +51,7 @@ class BarProperties:
 
 @dataclass(frozen=True)
 class BarMotion:
-    """Where bars are: vector from end i to end j (n, 3), both ends' relative velocity
+    """Motion of bars: vector from end i to end j (n, 3), both ends' relative velocity
     ``stretching`` = v_j - v_i, mean velocity and mean height of the two ends, unstretched
     length ``rest`` (n,) and its rate of change ``rest_rate``.
     """

@@ -170,8 +170,10 @@ def _angle_index(row: int, j: int) -> int:
 
 
 def _in_wing(row: int, j: int, n: int, wing_rows: int) -> bool:
-    """Whether a node ahead of the mouth belongs to a wing: all bars cut, so that each row is
-    narrower by half a pitch at either edge; the base spans 30° about the side, in 12ths.
+    """Return True for a node ahead of the mouth that belongs to a wing.
+
+    All bars are cut, so each row is narrower by half a pitch at either edge; the base spans
+    30° about the side, in 12ths.
     """
     half = _angle_index(row, j) % (2 * n)
     reach = 2 * wing_rows + row
@@ -179,7 +181,7 @@ def _in_wing(row: int, j: int, n: int, wing_rows: int) -> bool:
 
 
 def _on_edge(row: int, j: int, other: int, n: int, wing_rows: int) -> bool:
-    """Whether the bar from (row, j) to (row + 1, other) lies along the cut edge of a wing."""
+    """True if the bar from (row, j) to (row + 1, other) lies along the cut edge of a wing."""
     if row >= 0:
         return False
     half, next_half = _angle_index(row, j) % (2 * n), _angle_index(row + 1, other) % (2 * n)

@@ -1,4 +1,4 @@
-"""Netting along its length: what the real one has, and the rows of bars that stand for it."""
+"""Netting along its length: the profile of the real one, and the rows of bars grouped from it."""
 
 from dataclasses import dataclass
 
@@ -27,12 +27,12 @@ class Row:
 
     @property
     def rest(self) -> float:
-        """Unstretched length of its bars, m."""
+        """Unstretched length of the bars, m."""
         return self.back - self.front
 
     @property
     def columns(self) -> int:
-        """Meshes around, of two bars each, that its bars stand for."""
+        """Number of real meshes around, of two bars each, that the row's bars stand for."""
         return self.around // 2 if self.joins else self.around
 
 
@@ -45,11 +45,11 @@ class Profile:
 
     @property
     def length(self) -> float:
-        """Of the netting, m."""
+        """Stretched length of the netting, m."""
         return float(self.edges[-1])
 
     def behind(self, x: float) -> tuple[SectionRecord, ...]:
-        """What is left of the sections behind ``x``."""
+        """Sections behind ``x``, the first one cut there."""
         left = []
         for section, front, back in zip(self.sections, self.edges, self.edges[1:], strict=False):
             if back > x:
@@ -73,7 +73,7 @@ class Profile:
     def per_mesh_column(self, front: float, back: float, around: int) -> dict[str, float]:
         """Sums over [front, back] per bar, for two bars in each of ``around`` meshes.
 
-        What lies ahead of the mouth is netting like that at the mouth.
+        Netting ahead of the mouth is taken to be like that at the mouth.
         """
         total = dict.fromkeys(('area', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'), 0.0)
         dx = (back - front) / SLICES

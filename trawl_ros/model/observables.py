@@ -1,4 +1,4 @@
-"""What can be seen of a gear: the numbers that people and instruments look at."""
+"""Observables of a gear: depths, spreads, openings, warp tensions and board angles."""
 
 from dataclasses import dataclass, fields
 
@@ -13,7 +13,7 @@ from trawl_ros.model.state import State, Tow
 
 @dataclass(frozen=True)
 class Observables:
-    """One look at the gear; lengths in m, tensions in N, angles in rad.
+    """Observables of one state; lengths in m, tensions in N, angles in rad.
 
     ``net_depth`` is that of the headrope's centre; ``vertical_opening`` is headrope above
     footrope at the centre, ``horizontal_opening`` the distance between the upper wing tips.
@@ -46,7 +46,7 @@ class Observables:
     starboard_inclination: float
 
     def array(self) -> np.ndarray:
-        """All values in the order of `OBSERVABLES`."""
+        """All observables (n_observables,) in the order of `OBSERVABLES`."""
         return np.array([getattr(self, name) for name in OBSERVABLES])
 
     @property
@@ -65,7 +65,7 @@ OBSERVABLES = tuple(field.name for field in fields(Observables))
 
 
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:
-    """Read the observables off a state; complex states give complex values."""
+    """Compute the observables of a state; complex states give complex values."""
     port, starboard = state.board_positions
     flow = flow_at(
         model.board,

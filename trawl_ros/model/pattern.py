@@ -10,7 +10,7 @@ from trawl_ros.model.compiled import compiled
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """Where the blocks of bars, boards, nodes and kite go in a (dof, dof) matrix.
+    """Sparsity pattern: slots of the blocks of bars, boards, nodes and kite in a (dof, dof) matrix.
 
     ``plain``, ``hung`` and ``rigged`` are the numbers of the bars between two nodes, from a
     towing block to a node, and from a fastening point to a node; ``rig_board`` and
@@ -28,17 +28,17 @@ class Pattern:
     indptr: np.ndarray
 
     def matrix(self, data: np.ndarray) -> sp.csc_matrix:
-        """A matrix of data on this pattern."""
+        """Sparse matrix of ``data`` on this pattern."""
         return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.dof, self.dof))
 
     def held(self, data: np.ndarray, free: np.ndarray) -> np.ndarray:
-        """Data with the rows and columns of what is not ``free`` (dof,) made the identity's."""
+        """Data with the rows and columns of all but ``free`` (dof,) made the identity's."""
         columns = np.repeat(np.arange(self.dof), np.diff(self.indptr))
         kept = np.where(free[self.indices] & free[columns], data, 0.0)
         return np.where((self.indices == columns) & ~free[columns], 1.0, kept)
 
     def gather(self, blocks: list[np.ndarray]) -> np.ndarray:
-        """Sum the blocks of plain, hung and rigged bars, boards, nodes and kite, in this
+        """Assemble the blocks of plain, hung and rigged bars, boards, nodes and kite, in this
         order, into data on the pattern.
         """
         data = np.zeros(len(self.indices))

@@ -1,4 +1,4 @@
-"""Where every part of the gear is and how it moves."""
+"""State of the gear, positions and velocities, and the towing boundary imposed on it."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from trawl_ros.model.numerics import rotation, rotation_vector
 
 @dataclass(frozen=True)
 class Tow:
-    """What ship and winches impose at one instant.
+    """Towing boundary: motion of the blocks and warp lengths at one instant.
 
     ``blocks`` (2, 3) positions and ``block_velocities`` (2, 3) of the towing blocks, port and
     starboard, in ``map`` axes (m, m/s); ``lengths`` (2,) unstretched warp lengths (m) and
@@ -52,7 +52,7 @@ class State:
         )
 
     def with_velocity(self, velocity: np.ndarray) -> 'State':
-        """The state with generalised velocity ``velocity`` (dof,)."""
+        """Copy of the state with generalised velocity ``velocity`` (dof,)."""
         n = len(self.nodes)
         board = velocity[3 * n :].reshape(2, 6)
         return State(

@@ -11,7 +11,7 @@ ATMOSPHERE = 101_325.0
 
 @dataclass(frozen=True)
 class Water:
-    """Density and current.
+    """Density and current of the water.
 
     Parameters
     ----------
@@ -43,12 +43,12 @@ class Water:
             object.__setattr__(self, '_profile', (profile, profile.derivative()))
 
     def with_more_current(self, depths: np.ndarray, currents: np.ndarray) -> 'Water':
-        """The same sea with another current on top of its own.
+        """Return the same sea with another current added to its own.
 
         Parameters
         ----------
         depths
-            Where it is given (n,), m, rising; it stays constant above and below.
+            Depths of the added current (n,), m, rising; it stays constant above and below.
         currents
             To the east and north there (n, 2), m/s; between them as `Water` has it.
         """

@@ -1,4 +1,4 @@
-"""The bridge of a trial: autopilot and autotrawl, with the instruments that they go by."""
+"""Bridge of a trial: autopilot and autotrawl, with the instruments they rely on."""
 
 import math
 from dataclasses import replace
@@ -24,7 +24,7 @@ from trawl_ros.simulation.truth import Truth
 
 
 class Bridge:
-    """Turns the commands that a scenario plans into those that ship and winches are given.
+    """Bridge: turns the planned commands of a scenario into those of its controllers.
 
     Its instruments draw as those of the instrument nodes do, so it goes by the very readings
     that these publish, faults and all.
@@ -53,7 +53,7 @@ class Bridge:
         self._turn_rate = 0.0
 
     def observe(self, truth: Truth) -> None:
-        """Let the instruments look at an instant, and the controllers at what they say."""
+        """Observe the truth by the instruments, and pass their samples to the controllers."""
         self._plan.follow(truth.stamp)
         if self._scenario.steered:
             self._observe_ship(truth)
@@ -61,7 +61,7 @@ class Bridge:
             self._observe_winches(truth)
 
     def command(self, time: float) -> Command:
-        """Give what ship and winches are asked for at a time (s since the start)."""
+        """Return the command to ship and winches at a time (s since the start)."""
         planned = self._scenario.commands_at(time)
         driving = self._scenario.driving_at(time)
         if driving.steer is not self._steer:

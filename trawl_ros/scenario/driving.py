@@ -1,4 +1,4 @@
-"""Who drives ship and winches in a step of a trial: what the file may say of it."""
+"""Records of the controllers in a scenario step: autopilot and autotrawl."""
 
 import math
 from itertools import pairwise
@@ -30,7 +30,7 @@ _TRAWL = AutotrawlSettings()
 
 
 class SteerRecord(Record):
-    """What the autopilot steers: one of the first five.
+    """Target and settings of the autopilot; one of the first five keys is given.
 
     ``heading_deg`` by compass and ``course_deg`` over ground are ENU yaw (0 = east, to port
     positive), as everywhere. A track makes for its first waypoint and follows the legs to the
@@ -72,7 +72,7 @@ class SteerRecord(Record):
         return self
 
     def target(self, datum: Datum) -> Target:
-        """Give what the autopilot is told; ``datum`` is the origin of ``map``."""
+        """Return the autopilot's target; ``datum`` is the origin of ``map``."""
         if self.heading_deg is not None:
             return HoldHeading(math.radians(self.heading_deg))
         if self.course_deg is not None:
@@ -85,7 +85,7 @@ class SteerRecord(Record):
         return ToSchool()
 
     def settings(self, turn_acceleration: float) -> AutopilotSettings:
-        """Give how it steers; ``turn_acceleration`` is the ship's, rad/s²."""
+        """Return the autopilot's settings; ``turn_acceleration`` is the ship's, rad/s²."""
         return AutopilotSettings(
             max_turn=math.radians(self.max_turn_deg_s),
             turn_acceleration=turn_acceleration,
@@ -94,7 +94,7 @@ class SteerRecord(Record):
 
 
 class AutotrawlRecord(Record):
-    """How the autotrawl works the winches; ``off`` leaves them to the lengths of the steps.
+    """Settings of the autotrawl; ``off`` leaves the winches to the lengths of the steps.
 
     ``lengths`` holds the steps' warp lengths by the counters. ``tension`` holds both warps at
     equal tension and gives way to peaks above ``tension_kn`` (left out: above the mean of the
@@ -118,7 +118,7 @@ class AutotrawlRecord(Record):
         return self
 
     def settings(self, max_speed: float, max_acceleration: float) -> AutotrawlSettings | None:
-        """Give how it works with winches of this speed (m/s) and acceleration; None for off."""
+        """Settings with the winches' speed (m/s) and acceleration (m/s²); None for off."""
         if self.mode == 'off':
             return None
         return AutotrawlSettings(

@@ -1,4 +1,4 @@
-"""Faults of instruments that a trial brings, as its file has them."""
+"""Record of an instrument's fault in a scenario file."""
 
 from typing import Annotated
 
@@ -36,7 +36,7 @@ class FaultRecord(Record):
         return what
 
     def planned(self) -> PlannedFault:
-        """Give the same as instruments take it."""
+        """Return the planned fault for the instruments."""
         begin = MINUTE * self.at_min
         end = None if self.for_min is None else begin + MINUTE * self.for_min
         return PlannedFault(begin, end, self.where, self.what)

@@ -1,4 +1,4 @@
-"""The scenario file as records: every key carries its unit, every value is checked on load."""
+"""Records of the scenario file: every key carries its unit, every value is checked on load."""
 
 from typing import Annotated, Any, Literal
 
@@ -52,7 +52,7 @@ class StartRecord(Record):
 
 
 class StepRecord(Record):
-    """A stage of a trial: for so many minutes, with new targets for what is named.
+    """Step of a trial: its minutes, and new targets for what is named.
 
     What is not named stays as it was, the rate of turn too; a rate of turn that is named ends
     what was steered before.
@@ -81,7 +81,7 @@ class StepRecord(Record):
 
 
 class RefineRecord(Record):
-    """By which factors the plant is cut finer than the gear file says.
+    """Mesh refinement of the plant against the gear file.
 
     The net as nearly as a multiple of 12 meshes around its mouth allows; ``unjoined`` keeps
     all of them to its end.
@@ -94,7 +94,7 @@ class RefineRecord(Record):
 
 
 class WaterOverrides(Record):
-    """What differs from the gear file's water."""
+    """Overrides of the gear file's water."""
 
     density_kg_m3: Annotated[float, Field(ge=990, le=1060)] | None = None
     density_gradient_kg_m4: Annotated[float, Field(ge=0, le=0.1)] | None = None
@@ -106,7 +106,7 @@ class WaterOverrides(Record):
 
 
 class CoefficientOverrides(Record):
-    """What differs from the gear file's board coefficients (eq. 14)."""
+    """Overrides of the gear file's board coefficients (eq. 14)."""
 
     a1: float | None = None
     c1: float | None = None
@@ -123,7 +123,7 @@ class CoefficientOverrides(Record):
 
 
 class ScenarioRecord(Record):
-    """A trial, as its YAML file has it.
+    """Scenario: the records of a trial's YAML file.
 
     ``effects`` are those that the plant has beside the gear file's. ``record`` says which topics go
     into the bag: ``pictures`` are the sonar's image, scan and points, ``instruments`` all else that

@@ -1,4 +1,4 @@
-"""A trial as it is towed: the scenario's commands at their times, truth at its rate.
+"""Run of a trial: the scenario's commands at their times, truth at its rate.
 
 Node and command line share this, so the same scenario gives the same data in both.
 """
@@ -27,12 +27,12 @@ twice as far, then gives how much the warps' tension varies within 3 % of a conv
 
 
 def periods_per_truth(truth_rate_hz: float, shortest_wave_s: float = math.inf) -> int:
-    """Into how many periods of the simulation that between two truths is cut.
+    """Number of simulation periods into which that between two truths is divided.
 
     Parameters
     ----------
     truth_rate_hz
-        How often truth is asked for.
+        Rate of the truth, Hz.
     shortest_wave_s
         Shortest period of the ship's heave.
     """
@@ -43,7 +43,7 @@ def periods_per_truth(truth_rate_hz: float, shortest_wave_s: float = math.inf) -
 
 
 class Trial:
-    """One run of a scenario, from its start in equilibrium to its last step's end.
+    """Run of a scenario, from its start in equilibrium to its last step's end.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Trial:
         The tow. Its command is what the scenario plans or, where autopilot and autotrawl drive,
         what they make of it; it is set anew at each time step.
     duration_s : float
-        How long the trial takes, s.
+        Duration of the trial, s.
 
     Raises
     ------
@@ -105,13 +105,13 @@ class Trial:
         return (self.simulation.now.stamp - self._first_stamp) / NANOSECONDS
 
     def reset(self) -> None:
-        """Back to the start: the same truth comes again."""
+        """Return to the start; the same truth is repeated."""
         self.simulation.reset()
         self._given = 0
         self._bridge = Bridge(self.scenario)
 
     def step(self) -> Truth | None:
-        """Tow on for one period of the truth.
+        """Advance by one period of the truth.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""A trial: which gear is towed, what ship and winches do, and what is recorded."""
+"""Scenario: gear, commands of ship and winches, instruments and recording of a trial."""
 
 import math
 from bisect import bisect_right
@@ -34,9 +34,7 @@ from trawl_ros.simulation.simulation import Command
 
 @dataclass(frozen=True)
 class Driving:
-    """Who drives beside the plain commands: what is steered, if anything is, and how the winches
-    are worked.
-    """
+    """Controllers beside the plain commands: the autopilot's target, and the autotrawl."""
 
     steer: SteerRecord | None = None
     autotrawl: AutotrawlRecord = NOBODY
@@ -44,7 +42,7 @@ class Driving:
 
 @dataclass(frozen=True)
 class Scenario:
-    """A scenario file together with the files it names.
+    """Scenario with the files it names.
 
     ``path`` is the file, ``gear`` what it says of the gear as it stands in the gear file,
     ``plant`` that gear with the scenario's refinement, coefficients and water: the truth.
@@ -63,7 +61,7 @@ class Scenario:
 
     @cached_property
     def commands(self) -> tuple[tuple[float, Command], ...]:
-        """When (s since the start) each step begins, and what it asks for."""
+        """Command of each step with its begin (s since the start)."""
         command = self.start
         begin = 0.0
         listed = []
@@ -75,7 +73,7 @@ class Scenario:
 
     @cached_property
     def drivings(self) -> tuple[Driving, ...]:
-        """Who drives in each step."""
+        """Controllers of each step."""
         driving = Driving()
         listed = []
         for step in self.record.steps:
@@ -86,17 +84,17 @@ class Scenario:
 
     @property
     def steered(self) -> bool:
-        """Whether an autopilot steers at any time."""
+        """True if an autopilot steers at any time."""
         return any(driving.steer is not None for driving in self.drivings)
 
     @property
     def autotrawled(self) -> bool:
-        """Whether an autotrawl works the winches at any time."""
+        """True if an autotrawl works the winches at any time."""
         return any(driving.autotrawl.mode != 'off' for driving in self.drivings)
 
     @property
     def start(self) -> Command:
-        """The steady tow before the first step."""
+        """Command of the steady tow before the first step."""
         first = self.record.start
         port, starboard = _lengths(first)
         if port is None or starboard is None:
@@ -105,18 +103,18 @@ class Scenario:
 
     @property
     def duration_s(self) -> float:
-        """How long the trial takes, s."""
+        """Duration of the trial, s."""
         return sum(60 * step.minutes for step in self.record.steps)
 
     @property
     def state_changes_s(self) -> tuple[float, ...]:
-        """When something new is asked for (s since the start), after the start itself."""
+        """Times (s) of changes of commands or controllers, after the start itself."""
         steps = [(*step, who) for step, who in zip(self.commands, self.drivings, strict=True)]
         return tuple(after[0] for before, after in pairwise(steps) if after[1:] != before[1:])
 
     @property
     def draws(self) -> Draws:
-        """Seed and changes of state, as instruments want them."""
+        """Seed plan of the instruments: the seed, and the times of changes."""
         return Draws(self.record.seed, self.state_changes_s)
 
     @cached_property
@@ -126,28 +124,28 @@ class Scenario:
 
     @cached_property
     def acting(self) -> Acting:
-        """Effects that the plant has beyond the model."""
+        """Effect set of the plant beyond the model."""
         return acting(self.plant)
 
     def showing(self) -> Showing:
-        """What makes samples of a plant with these effects."""
+        """Return the converter of samples for a plant with these effects."""
         return Showing(self.acting, build_water(self.plant))
 
     @property
     def faults(self) -> tuple[PlannedFault, ...]:
-        """Faults of instruments that come and go."""
+        """Planned faults of instruments."""
         return tuple(record.planned() for record in self.record.faults)
 
     def step_at(self, time: float) -> StepRecord:
-        """Give the step that is under way at a time (s since the start)."""
+        """Return the step that is under way at a time (s since the start)."""
         return self.record.steps[self._number(time)]
 
     def commands_at(self, time: float) -> Command:
-        """Give what is asked for at a time (s since the start); after the end, the last."""
+        """Return the command at a time (s since the start); after the end, the last."""
         return self.commands[self._number(time)][1]
 
     def driving_at(self, time: float) -> Driving:
-        """Tell who drives at a time (s since the start); after the end, as at last."""
+        """Return the controllers at a time (s since the start); after the end, the last."""
         return self.drivings[self._number(time)]
 
     def _number(self, time: float) -> int:
@@ -185,7 +183,7 @@ def load_scenario(path: str | Path) -> Scenario:
 
 
 def _check_faults(scenario: Scenario) -> None:
-    """Ask the instruments whether each fault can sit where it is to sit."""
+    """Check with the instruments that each fault is possible at its place."""
     panel = InstrumentSuite(
         scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
     ).panel

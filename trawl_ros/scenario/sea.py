@@ -1,4 +1,4 @@
-"""The sea of a trial as a file has it: heave, seabed and schools of fish."""
+"""Records of a trial's sea: heave, seabed and schools of fish."""
 
 import math
 import zlib
@@ -21,7 +21,7 @@ Swimming = Annotated[float, Field(ge=-3, le=3)]
 
 
 class HeaveRecord(Record):
-    """How the weather moves the ship up and down.
+    """Heave of the ship by the weather.
 
     For ``irregular``, ``height_m`` is the significant height of the heave (not of the waves) and
     ``period_s`` that of the spectrum's peak; for ``regular``, height from trough to crest and
@@ -43,7 +43,7 @@ class DepthRecord(Record):
 
 
 class SeabedRecord(Record):
-    """Depths along a direction of ``map`` (ENU yaw); across it the seabed is level.
+    """Profile of the seabed along a direction of ``map`` (ENU yaw); across it the seabed is level.
 
     One depth makes it flat; between two it is straight, beyond the last it stays level.
     """
@@ -60,7 +60,7 @@ class SeabedRecord(Record):
 
 
 class SchoolRecord(Record):
-    """A school of fish, an ellipsoid, where its middle is when the trial starts.
+    """School of fish, an ellipsoid, at its middle's position when the trial starts.
 
     It drifts with the current at its depth and swims through the water besides.
     """
@@ -86,7 +86,7 @@ class SchoolRecord(Record):
 
 
 class SeaRecord(Record):
-    """What is around the ship; by default a calm, bottomless and empty sea."""
+    """Surroundings of the ship; by default a calm, bottomless and empty sea."""
 
     heave: HeaveRecord | None = None
     seabed: SeabedRecord | None = None
@@ -94,7 +94,7 @@ class SeaRecord(Record):
 
 
 def build_sea(record: SeaRecord, water: Water, seed: int) -> Sea:
-    """Turn what the file says into a sea.
+    """Build the sea of a record.
 
     Parameters
     ----------

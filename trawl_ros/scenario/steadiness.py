@@ -1,4 +1,4 @@
-"""Whether a gear can be towed as a scenario asks, found out before hours are spent on it."""
+"""Check of a scenario for steady states, made before hours are spent on it."""
 
 import math
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ Found = dict[tuple[Command, float], SteadyState]
 
 
 def require_steady_states(scenario: Scenario, model: GearModel) -> None:
-    """Check that the gear can be towed as a scenario asks.
+    """Check that the gear has a steady state at each command of a scenario.
 
     A step that turns at a constant rate is left out: a turning ship has no steady state in
     ``map``. Where an autopilot steers, the state is checked that is towed once she is on course:
@@ -49,7 +49,7 @@ def require_steady_states(scenario: Scenario, model: GearModel) -> None:
 
 
 def _states(scenario: Scenario, model: GearModel) -> Iterator[tuple[str, Command, float]]:
-    """Each state of the trial that can be steady: its name, command and heading."""
+    """Steady states that a trial asks for: name, command and heading of each."""
     still = not np.any(model.water.currents)
     yield 'start', scenario.start, scenario.heading
     heading: float | None = scenario.heading
@@ -73,7 +73,7 @@ def _states(scenario: Scenario, model: GearModel) -> Iterator[tuple[str, Command
 
 
 def _settled(steer: SteerRecord, scenario: Scenario, speed: float, model: GearModel) -> list[float]:
-    """The headings on which a ship comes to rest that is steered so, as far as they are known."""
+    """Final headings of a ship under this target, as far as they are known."""
     vessel = scenario.instruments.vessel
     target = steer.target(Datum(vessel.datum_lat_deg, vessel.datum_lon_deg))
     way = Way(speed, model.water.current(np.array(0.0))[:2], math.radians(steer.max_turn_deg_s))

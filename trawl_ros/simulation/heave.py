@@ -1,4 +1,4 @@
-"""How the ship moves up and down in waves, as a sum of sines."""
+"""Heave of the ship in waves, as a sum of sines."""
 
 import math
 from dataclasses import dataclass, field
@@ -32,11 +32,11 @@ class Heave:
 
     @property
     def shortest_period(self) -> float:
-        """Of its sines, s; infinite in a calm sea."""
+        """Shortest period of its sines, s; infinite in a calm sea."""
         return 2 * math.pi / float(self.frequencies.max()) if len(self.frequencies) else math.inf
 
     def at(self, time: float) -> tuple[float, float]:
-        """Height (m) and its rate (m/s) at a time (s since the start of the trial)."""
+        """Height (m) and vertical velocity (m/s) at a time (s since the start of the trial)."""
         x = (time - self.begin) / self.growth
         if x <= 0.0 or not len(self.frequencies):
             return 0.0, 0.0
@@ -51,7 +51,7 @@ class Heave:
 
 
 def regular_heave(height: float, period: float, *, begin: float, growth: float) -> Heave:
-    """Give one sine of a ``height`` from trough to crest (m) and a ``period`` (s)."""
+    """Return one sine of a ``height`` from trough to crest (m) and a ``period`` (s)."""
     return Heave(
         np.array([0.5 * height]), np.array([2 * math.pi / period]), np.zeros(1), begin, growth
     )
@@ -73,7 +73,7 @@ def irregular_heave(
     period
         At the spectrum's peak, as it is felt on board (s).
     draws
-        Where frequencies and phases are drawn from.
+        Generator of frequencies and phases.
     begin, growth
         As in `Heave`.
     """

@@ -1,4 +1,4 @@
-"""Reads a state as `Truth`: the seam between the model and everything that looks at it."""
+"""Ground truth of a state: the seam between the model and everything that observes it."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -58,7 +58,7 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
 def read_truth(
     model: GearModel, stamp: int, ship: Ship, winches: tuple[Winch, Winch], state: State, tow: Tow
 ) -> Truth:
-    """Everything instruments may look at."""
+    """Read the truth of a state for the instruments."""
     seen = observe(model, state, tow)
     head, foot = model.layout.headrope, model.layout.footrope
     sonar = sonar_axes(model, state)
@@ -89,7 +89,7 @@ def read_truth(
 
 
 def _means(values: np.ndarray, groups: list[np.ndarray]) -> list[float]:
-    """Means of ``values`` over index groups, all in one go as there are a thousand of them."""
+    """Means of ``values`` over index groups, vectorised as there are a thousand of them."""
     sizes = np.array([len(group) for group in groups])
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
     sums = np.add.reduceat(values[np.concatenate(groups)], starts)
@@ -97,7 +97,7 @@ def _means(values: np.ndarray, groups: list[np.ndarray]) -> list[float]:
 
 
 def read_picture(model: GearModel, stamp: int, state: State, tow: Tow) -> GearPicture:
-    """Every rope and bar with its tension, for drawing."""
+    """Picture of the gear for drawing: every rope and bar with its tension."""
     points = points_of(model, state, tow).positions
     tensions = _means(bar_tensions(model, state, tow), [bars for *_, bars in model.layout.lines])
     return GearPicture(

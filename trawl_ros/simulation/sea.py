@@ -1,4 +1,4 @@
-"""The sea around ship and gear: what lifts her, what lies below, and what swims in it."""
+"""The sea around ship and gear: heave, seabed and schools of fish."""
 
 from dataclasses import dataclass, field
 
@@ -11,7 +11,7 @@ from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth, single
 
 @dataclass(frozen=True)
 class School:
-    """A school of fish that moves evenly.
+    """School of fish in uniform motion.
 
     ``position`` (3,) of its middle at the start of the trial (m, ``map``), ``velocity`` (3,) over
     ground (m/s); ``size`` and ``density`` as in `SchoolTruth`.
@@ -23,7 +23,7 @@ class School:
     velocity: np.ndarray
 
     def at(self, time: float) -> SchoolTruth:
-        """Where it is at a time (s since the start of the trial)."""
+        """Truth of the school at a time (s since the start of the trial)."""
         position = self.position + self.velocity * time
         return SchoolTruth(single(position), single(self.size), float(np.float32(self.density)))
 

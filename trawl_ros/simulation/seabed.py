@@ -1,4 +1,4 @@
-"""The bottom of the sea: how deep it is, and where the gear would touch it."""
+"""Seabed: its depth, and the check for contact with the gear."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from trawl_ros.simulation.truth import SIDES
 
 
 class SeabedTouched(ScenarioError):
-    """The gear came to the bottom of the sea, with which the model has no contact."""
+    """Contact of the gear with the seabed, for which the model has no forces."""
 
 
 @dataclass(frozen=True)

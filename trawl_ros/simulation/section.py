@@ -1,4 +1,4 @@
-"""The sonar's plane: where it lies in a state of the gear, and what passes through it."""
+"""Section of the gear in the sonar's plane, and the axes of that plane."""
 
 import numpy as np
 
@@ -21,7 +21,7 @@ def sonar_axes(model: GearModel, state: State) -> np.ndarray:
 
 
 def section_of(model: GearModel, state: State, axes: np.ndarray) -> np.ndarray:
-    """Where ropes and twine pass through the plane z = 0 of frame ``sonar``.
+    """Section: intersections of ropes and twine with the plane z = 0 of frame ``sonar``.
 
     A numerical bar that stands for several real ones passes once, with the diameter of one. The
     sonar's own node is left out.

@@ -1,4 +1,4 @@
-"""Ship and winches: what moves the gear, within what they can do."""
+"""Kinematics of ship and winches within their limits of speed and acceleration."""
 
 from dataclasses import dataclass, replace
 
@@ -34,14 +34,14 @@ class Ship:
         return self.speed * self.ahead + np.array([0.0, 0.0, self.heave_rate])
 
     def heaved(self, height: float, rate: float) -> 'Ship':
-        """The ship at a ``height`` (m) above the mean surface that changes at a ``rate`` (m/s)."""
+        """Copy of the ship at a ``height`` (m) above the mean surface, rising at ``rate`` (m/s)."""
         position = np.array([self.position[0], self.position[1], height])
         return replace(self, position=position, heave_rate=rate)
 
     def advanced(
         self, limits: ShipRecord, speed: float, yaw_rate: float, current: np.ndarray, dt: float
     ) -> 'Ship':
-        """After ``dt`` seconds of approaching a wanted speed and rate of turn in a current.
+        """Ship after ``dt`` seconds of approaching a wanted speed and rate of turn in a current.
 
         Her height stays as it was: that is for `heaved`.
         """
@@ -63,13 +63,13 @@ class Ship:
 
 @dataclass(frozen=True)
 class Winch:
-    """One winch: warp length out (m) and pay-out speed (m/s)."""
+    """Winch: warp length out (m) and pay-out speed (m/s)."""
 
     length: float
     speed: float
 
     def advanced(self, limits: WinchRecord, length: float, dt: float) -> 'Winch':
-        """After ``dt`` seconds of paying out or hauling towards a wanted length."""
+        """Winch after ``dt`` seconds of paying out or hauling towards a wanted length."""
         left = length - self.length
         most = limits.max_acceleration_m_s2
         if abs(left) <= most * dt**2 and abs(self.speed) <= most * dt:

@@ -1,4 +1,4 @@
-"""The tow in time: ship, winches and gear, from an equilibrium onward."""
+"""Simulation of a tow in time: ship, winches and gear, from an equilibrium onward."""
 
 from dataclasses import dataclass, replace
 
@@ -26,7 +26,7 @@ HALVINGS = 6
 
 @dataclass(frozen=True)
 class Command:
-    """What ship and winches are asked for: warp lengths (m), speed through the water (m/s),
+    """Command to ship and winches: warp lengths (m), speed through the water (m/s),
     rate of turn (rad/s, to port positive).
     """
 
@@ -38,7 +38,7 @@ class Command:
 
 @dataclass(frozen=True)
 class Instant:
-    """Everything that moves, at one time (ns)."""
+    """State of ship, winches and gear at one time (ns)."""
 
     stamp: int
     ship: Ship
@@ -47,7 +47,7 @@ class Instant:
 
 
 def tow_of(model: GearModel, ship: Ship, winches: tuple[Winch, Winch]) -> Tow:
-    """What ship and winches impose on the gear at one instant."""
+    """Towing boundary that ship and winches impose on the gear at one instant."""
     offsets = block_offsets(model, ship.heading)
     velocity = ship.velocity + model.water.current(np.array(0.0))
     spin = np.array([0.0, 0.0, ship.yaw_rate])
@@ -60,14 +60,14 @@ def tow_of(model: GearModel, ship: Ship, winches: tuple[Winch, Winch]) -> Tow:
 
 
 class Simulation:
-    """A gear under tow. It starts in equilibrium at the first command.
+    """Simulation of a gear under tow, from equilibrium at the first command.
 
     Parameters
     ----------
     model
         From `build_model`.
     command
-        Where it starts.
+        Operating point of the start.
     heading
         First heading, ENU yaw, rad.
     stamp
@@ -76,7 +76,7 @@ class Simulation:
         Time between two instants, s. The solver takes steps of twice the period; the instant
         between lies on the cubic through both ends.
     sea
-        What lifts the ship, what lies below, and what swims around.
+        Heave, seabed and schools of fish.
     acting
         Effects beyond the model. Winches and ship are commanded by what counters and log show.
 
@@ -128,14 +128,14 @@ class Simulation:
         )
 
     def reset(self) -> None:
-        """Back to the start: the same tow comes again, to the last digit."""
+        """Return to the start; the same tow is repeated to the last digit."""
         self.command, self.now = self._start
         self.model = self._gear_at(self.now.stamp, self.command, self.now.ship.heading)
         self._stepper = Stepper(self.model)
         self._reached = None
 
     def advance(self) -> Instant:
-        """One period on. A command takes effect with the next step of the solver.
+        """Advance by one period. A command takes effect with the next step of the solver.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class Simulation:
         )
 
     def _boundary(self, now: Instant, dt: float) -> tuple[Ship, tuple[Winch, Winch]]:
-        """Ship and winches ``dt`` seconds on, under the present command."""
+        """Ship and winches after ``dt`` seconds under the present command."""
         gear, wanted = self.model.gear, self._towed(self.command)
         surface = self.model.water.current(np.array(0.0))
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
@@ -199,7 +199,7 @@ class Simulation:
         return Instant(now.stamp + span, ship, winches, motion)
 
     def _towed(self, command: Command) -> Command:
-        """What ship and winches really do where counters and log show what is commanded."""
+        """True command where counters and log show the given one."""
         if not self._acting:
             return command
         shown = (command.port_length, command.starboard_length, command.speed)
@@ -207,17 +207,17 @@ class Simulation:
         return replace(command, port_length=port, starboard_length=starboard, speed=speed)
 
     def _gear_at(self, stamp: int, command: Command, heading: float) -> GearModel:
-        """The gear with the effects of this time."""
+        """Gear model with the effects in the situation at ``stamp``."""
         shown = (command.port_length, command.starboard_length, command.speed)
         hours = self._seconds(stamp) / 3600.0
         return self._acting.gear(self._plain, Situation(shown, heading, sense(heading), hours))
 
     def _seconds(self, stamp: int) -> float:
-        """Since the start."""
+        """Time since the start, s."""
         return (stamp - self._first_stamp) / NANOSECONDS
 
     def truth(self) -> Truth:
-        """The present instant as instruments see it."""
+        """Truth at the present instant, for the instruments."""
         now = self.now
         truth = read_truth(
             self.model,
@@ -234,7 +234,7 @@ class Simulation:
         )
 
     def picture(self) -> GearPicture:
-        """The present instant as it is drawn."""
+        """Picture of the present instant, for drawing."""
         now = self.now
         picture = read_picture(
             self.model, now.stamp, now.motion.state, tow_of(self.model, now.ship, now.winches)

@@ -1,4 +1,4 @@
-"""What the simulation knows at one instant: the record every instrument looks at.
+"""Ground truth: record of the simulation at one instant, which every instrument observes.
 
 All positions are in ``map`` (ENU, z = 0 at the mean surface, m), all angles in radians,
 all stamps in integer nanoseconds. Door frames are x forward, y port, z up on both sides.
@@ -15,7 +15,7 @@ SIDES = ('port', 'starboard')
 
 
 def single(values: ArrayLike) -> np.ndarray:
-    """Give values as exact as point clouds carry them, 32 bits.
+    """Round values to 32-bit floats, the precision of point clouds.
 
     What is published as a point cloud is no more exact from the beginning, so that instruments
     in the graph and in one process see the very same.
@@ -25,7 +25,7 @@ def single(values: ArrayLike) -> np.ndarray:
 
 @dataclass(frozen=True)
 class DoorTruth:
-    """One otter board as a rigid body.
+    """Truth of an otter board as a rigid body.
 
     ``velocity`` (m/s), ``angular_velocity`` (rad/s), ``force`` (N) and ``moment`` (N m, about
     the centre of gravity) are given in the door frame; ``attack``, ``slip`` and
@@ -45,7 +45,7 @@ class DoorTruth:
 
 @dataclass(frozen=True)
 class WinchTruth:
-    """One winch: warp length out (m), pay-out speed (m/s, out positive), block tension (N)."""
+    """Truth of a winch: warp length (m), pay-out speed (m/s, out positive), block tension (N)."""
 
     length: float
     speed: float
@@ -54,7 +54,7 @@ class WinchTruth:
 
 @dataclass(frozen=True)
 class NetTruth:
-    """The net's mouth.
+    """Truth of the net's mouth.
 
     ``mouth`` holds N points of the headrope from port to starboard, then N of the footrope
     back, shape (2 N, 3); openings and ``headrope_depth`` are in m, depth positive down.
@@ -78,13 +78,13 @@ class NetTruth:
 
     @property
     def section_height(self) -> float:
-        """How far the lowest rope in the sonar's plane lies below the sonar, m; NaN if none."""
+        """Depth of the lowest rope in the sonar's plane below the sonar, m; NaN if none."""
         return float(self.section[:, 0].max()) if len(self.section) else float('nan')
 
 
 @dataclass(frozen=True)
 class VesselTruth:
-    """The ship: position midway between the blocks, heading as ENU yaw, yaw rate (rad/s).
+    """Truth of the ship: position midway between the blocks, heading (ENU yaw), yaw rate (rad/s).
 
     ``velocity_ground`` is in ``map``, ``velocity_water`` relative to the water at the
     surface in frame ``vessel`` (x forward, y port, z up), m/s.
@@ -99,7 +99,7 @@ class VesselTruth:
 
 @dataclass(frozen=True)
 class SchoolTruth:
-    """A school of fish: an ellipsoid with axes along those of ``map``.
+    """Truth of a school of fish: an ellipsoid with axes along those of ``map``.
 
     ``position`` (3,) of its middle and ``size`` (3,), its extent along each axis, in m;
     ``density`` in fish per m³.
@@ -112,7 +112,7 @@ class SchoolTruth:
 
 @dataclass(frozen=True)
 class SeabedTruth:
-    """Depth of the seabed below the mean surface (m, infinite where there is none)."""
+    """Truth of the seabed: depth below the mean surface (m, infinite where there is none)."""
 
     under_ship: float = math.inf
     under_headrope: float = math.inf
@@ -120,7 +120,7 @@ class SeabedTruth:
 
 @dataclass(frozen=True)
 class Truth:
-    """One instant of the tow. ``doors`` and ``winches`` are in the order of `SIDES`."""
+    """Truth at one instant. ``doors`` and ``winches`` are in the order of `SIDES`."""
 
     stamp: int
     doors: tuple[DoorTruth, DoorTruth]
@@ -133,7 +133,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Polyline:
-    """A rope or a row of netting to be drawn: points (n, 3) in ``map``, tension (N)."""
+    """Polyline of a rope or a row of netting: points (n, 3) in ``map``, tension (N)."""
 
     name: str
     points: np.ndarray
@@ -142,7 +142,7 @@ class Polyline:
 
 @dataclass(frozen=True)
 class GearPicture:
-    """All that is to be drawn of the gear at ``stamp``, and the schools of fish around it."""
+    """Picture of the gear at ``stamp``, with the schools of fish around it."""
 
     stamp: int
     lines: tuple[Polyline, ...]

@@ -1,4 +1,4 @@
-"""Steady shapes from nothing: a coarse net first, then finer ones from it."""
+"""Cold start: steady shapes without a known neighbour, by refining coarser nets."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -26,7 +26,7 @@ SOFT_LIMIT, LIMIT = 200, 300
 """Iterations after which a rough shape is given up, with softer ropes and with the real ones."""
 
 LONGER, HAULS = 1.5, 6
-"""How much more warp, and in how many steps it is hauled, where a fine net does not settle."""
+"""Factor on the warp length, and number of hauling steps, where a fine net does not settle."""
 
 
 def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, float]:
@@ -90,7 +90,7 @@ def _settled(model: GearModel, state: State, tow: Tow) -> tuple[State, int, floa
 def _hauled(
     model: GearModel, coarse: GearModel, heading: float, tow: Tow
 ) -> tuple[State, int, float]:
-    """From the shape at `LONGER` times the warp length, hauled in a few steps."""
+    """Steady shape hauled in, in a few steps, from `LONGER` times the warp length."""
     lengths = tow.lengths[0] * np.geomspace(LONGER, 1.0, HAULS + 1)
     steps = [replace(tow, lengths=np.full(2, length)) for length in lengths]
     state, spent, residual = cold_start(coarse, heading, steps[0])

@@ -1,7 +1,7 @@
-"""Derivatives of what is seen by how strong an effect is.
+"""Derivatives of sensor readings by the values of effects.
 
-What an effect does to forces is differenced at the steady state and carried through the solver as
-all sensitivities are; what it does to inputs and readings follows by the chain rule.
+The change of forces by an effect is differenced at the steady state and carried through the
+solver as all sensitivities are; its change of inputs and readings follows by the chain rule.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ INPUT_STEP = 1e-4
 
 
 def shown_values(acting: Acting, values: np.ndarray, at: Situation) -> np.ndarray:
-    """What sensors show (n_observables,) of observables."""
+    """Sensor readings (n_observables,) of observables: sensor effects applied."""
     if not acting:
         return values
     readings = acting.shown(dict(zip(OBSERVABLES, map(float, values), strict=True)), at)
@@ -41,7 +41,7 @@ def chained(
     inputs: np.ndarray,
     at: Situation,
 ) -> np.ndarray:
-    """Derivatives of what is shown by coefficients and shown inputs.
+    """Derivatives of sensor readings by coefficients and indicated inputs.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def by_effects(
     inputs: np.ndarray,
     at: Situation,
 ) -> np.ndarray:
-    """Derivatives of what is shown by the values of effects.
+    """Derivatives of sensor readings by the values of effects.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def _slopes(
     size: float,
     both: Sequence[tuple[Acting, np.ndarray, Situation]],
 ) -> tuple[np.ndarray, ...]:
-    """Slopes of forces (dof,), observables, true inputs (3,) and of what sensors show, between two
+    """Slopes of forces (dof,), observables, true inputs (3,) and sensor readings, between two
     cases that are ``size`` apart, at a gear that stays where it is.
     """
     cases = []
@@ -145,7 +145,7 @@ def _carried(
     rows: Sequence[tuple[np.ndarray, ...]],
     at: Situation,
 ) -> np.ndarray:
-    """What is shown (n_observables, n) of such slopes once the gear has come to rest."""
+    """Change of the readings (n_observables, n) by such slopes, once the gear has come to rest."""
     pushes, direct, towed, shown = (np.column_stack(part) for part in zip(*rows, strict=True))
     gear = acting.gear(model, at)
     along = np.zeros(direct.shape)
@@ -163,7 +163,7 @@ def _carried(
 
 
 def sensor_slopes(acting: Acting, found: Equilibrium, at: Situation) -> np.ndarray:
-    """By how much each sensor's reading grows with the observable it shows (n_observables,)."""
+    """Gain (n_observables,) of each sensor: slope of its reading over the observable."""
     values = found.observables.array()
     if not acting:
         return np.ones(len(values))

@@ -1,4 +1,4 @@
-"""Quasi-steady states: usable roots of the forces, and why there is none."""
+"""Quasi-steady states: usable roots of the forces, and the reasons why there is none."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ takes half the time, and where the one way fails, the other still is quicker tha
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A root of the forces.
+    """Equilibrium: a root of the forces.
 
     ``state`` is in ``map`` axes with the ship at the origin; ``outside_law`` says that a board
     works outside the range of eq. 14; ``highest`` is the height (m) of the gear's highest
@@ -55,7 +55,7 @@ class Equilibrium:
 
     @property
     def surfaced(self) -> bool:
-        """Whether gear breaks the surface."""
+        """True if gear breaks the surface."""
         return self.highest > 0.0
 
 
@@ -125,14 +125,14 @@ def find_equilibrium(
 
 @dataclass(frozen=True)
 class SteadyState:
-    """An equilibrium that was found usable: stable, under water, within the board's law."""
+    """Steady state: an equilibrium that is stable, under water and within the board's law."""
 
     equilibrium: Equilibrium
     stability: Stability
 
     @property
     def observables(self) -> Observables:
-        """What can be seen of it."""
+        """Observables of the state."""
         return self.equilibrium.observables
 
 
@@ -175,7 +175,7 @@ def steady_state(
 
 
 def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
-    """Check an equilibrium for what `steady_state` promises."""
+    """Return the steady state of an equilibrium that meets the conditions of `steady_state`."""
     where = _where(found.point)
     if found.surfaced:
         raise NoSteadyState(

@@ -10,14 +10,14 @@ from scipy.sparse.linalg import SuperLU, splu
 from trawl_ros.model.pattern import Pattern
 
 PIVOT_THRESHOLD = 0.01
-"""How much smaller than the largest of its column a diagonal pivot may be and be kept. The
+"""Least ratio of a diagonal pivot to the largest of its column with which it is kept. The
 matrices are symmetric in pattern and strong on their diagonal; keeping the order of minimum
 degree cuts the time to a fifth on a net of two thousand unknowns."""
 
 
 @dataclass(frozen=True)
 class Factor:
-    """LU factors of a matrix whose rows and columns were put in another order first."""
+    """LU factors of a matrix whose rows and columns were permuted first."""
 
     lu: SuperLU
     order: np.ndarray
@@ -31,13 +31,13 @@ class Factor:
 
     @property
     def fill(self) -> int:
-        """Numbers stored in both factors."""
+        """Number of non-zeros stored in both factors."""
         return int(self.lu.nnz)
 
 
 @dataclass(frozen=True)
 class _Elimination:
-    """The order in which a pattern's unknowns are best eliminated, and the pattern in it."""
+    """Fill-reducing ordering of a pattern's unknowns, and the pattern in this order."""
 
     order: np.ndarray
     slots: np.ndarray
@@ -47,7 +47,7 @@ class _Elimination:
 
 @lru_cache(maxsize=16)
 def _elimination(pattern: Pattern) -> _Elimination:
-    """Minimum degree; it depends on the pattern alone, so it is found once for a gear."""
+    """Minimum-degree ordering; it depends on the pattern alone, so it is found once for a gear."""
     columns = np.repeat(np.arange(pattern.dof), np.diff(pattern.indptr))
     diagonal = pattern.indices == columns
     dominant = pattern.matrix(np.where(diagonal, 1.0, 1e-3 / pattern.dof))

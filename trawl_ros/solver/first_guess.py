@@ -1,4 +1,4 @@
-"""A first guess of the gear's shape, and shifting a known shape to other warp lengths."""
+"""First guess of the gear's shape, and shifting of a known shape to other warp lengths."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -29,7 +29,7 @@ SOFTNESS = 0.3
 
 
 def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
-    """Straight warps, boards at a usual attitude, the net as it was built behind them."""
+    """First guess: straight warps, boards at a usual attitude, the net as built behind them."""
     lengths = tow.lengths
     half = 0.5 * model.gear.ship.block_spacing_m
     depth = DEPTH_SHARE * lengths

@@ -1,4 +1,4 @@
-"""What is asked of a steady state: warp lengths, speed through the water, heading."""
+"""Operating point of a steady state: warp lengths, speed through the water, heading."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from trawl_ros.model.state import Tow
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """Warp lengths (m), speed through the surface water (m/s), heading (ENU yaw, rad)."""
+    """Operating point: warp lengths (m), speed through the surface water (m/s), heading (rad)."""
 
     port_length: float
     starboard_length: float
@@ -26,7 +26,7 @@ def block_offsets(model: GearModel, heading: float) -> np.ndarray:
 
 
 def steady_tow(model: GearModel, point: OperatingPoint) -> Tow:
-    """What ship and winches impose when nothing changes; the ship is at the origin."""
+    """Towing boundary of a steady tow at an operating point; the ship is at the origin."""
     ahead = np.array([np.cos(point.heading), np.sin(point.heading), 0.0])
     velocity = point.speed * ahead + model.water.current(np.array(0.0))
     return Tow(

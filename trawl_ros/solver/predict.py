@@ -1,4 +1,4 @@
-"""Predictions of what a tow shows, with their derivatives: what identification asks for.
+"""Predictions of sensor readings in steady towing, with their derivatives, for identification.
 
 The gear may have effects beyond the model, whose strengths may be asked for along with the board.
 """
@@ -24,7 +24,9 @@ ANYWHERE = Situation((0.0, 0.0, 0.0))
 
 @dataclass(frozen=True)
 class Prediction:
-    """``values`` (n_observables,) as they are shown and ``jacobian`` (n_observables, 15 + m) by
+    """Predicted readings of a window with their derivatives.
+
+    ``values`` (n_observables,) as sensors show them and ``jacobian`` (n_observables, 15 + m) by
     `PARAMETERS`, the m values of free effects standing behind the coefficients; ``slow``
     (n_observables,) is how the gear comes to rest, per metre of net depth; ``state`` is what the
     next prediction nearby may start from.
@@ -37,7 +39,7 @@ class Prediction:
 
 
 class Towed(Protocol):
-    """What of a stretch of towing effects may depend on."""
+    """Covariates of a towing window that effects may depend on."""
 
     @property
     def tow(self) -> int:
@@ -46,12 +48,12 @@ class Towed(Protocol):
 
     @property
     def hours(self) -> float:
-        """Since it began."""
+        """Time since the tow began, h."""
         ...
 
     @property
     def sense(self) -> float:
-        """Which way the ship goes on her track, as `trawl_ros.effects.effect.sense` has it."""
+        """Course sense on the ship's track, as `trawl_ros.effects.effect.sense` has it."""
         ...
 
 
@@ -74,7 +76,7 @@ class Predictor:
     new
         Names of fixed effects that are not there in these tows either.
     absent
-        Whether it predicts for one of these.
+        True in the predictor of one of these tows.
     """
 
     model: GearModel
@@ -89,7 +91,7 @@ class Predictor:
     )
 
     def acting(self, coefficients: np.ndarray) -> Acting:
-        """The effects with the values behind the coefficients."""
+        """Effect set with the values behind the coefficients."""
         there = self.fixed.without(self.new) if self.absent else self.fixed
         place = len(COEFFICIENTS)
         for effect in self.free:
@@ -100,21 +102,21 @@ class Predictor:
         return there
 
     def in_window(self, window: Towed) -> 'Predictor':
-        """The predictor for a stretch of steady towing; itself where no effect could tell."""
+        """Predictor for a window of steady towing; itself where no effect depends on the window."""
         return self.situated(window) if self.fixed or self.free else self
 
     def situated(self, window: Towed) -> 'Predictor':
-        """The predictor in the situation of a stretch of steady towing."""
+        """Predictor in the situation of a window of steady towing."""
         at = Situation((0.0, 0.0, 0.0), sense=window.sense, hours=window.hours)
         return replace(self, at=at, absent=window.tow in self.without)
 
     def gear(self, coefficients: np.ndarray, inputs: np.ndarray) -> GearModel:
-        """The gear with its effects, where counters and log show ``inputs`` (3,)."""
+        """Gear model with its effects, where counters and log show ``inputs`` (3,)."""
         board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
         return self.acting(coefficients).gear(board, self._situation(inputs))
 
     def with_net(self, drag: float, weight: float) -> 'Predictor':
-        """The predictor of a gear whose net has this many times the drag and weight in water."""
+        """Predictor of a gear whose net has this many times the drag and weight in water."""
         return replace(self, model=self.model.with_net(drag, weight))
 
     def by_net(
@@ -143,7 +145,7 @@ class Predictor:
         speed: float,
         start: Equilibrium | None = None,
     ) -> Prediction:
-        """What instruments show in a steady state, and its derivatives.
+        """Predict the readings of a steady state, with their derivatives.
 
         Parameters
         ----------
@@ -194,7 +196,7 @@ class Predictor:
         found: Equilibrium,
         wanted: Sequence[Active],
     ) -> np.ndarray:
-        """What effects would change (n_observables, m) in a state that was predicted, per unit.
+        """Signatures of effects: changes of the readings (n_observables, m) per unit.
 
         Parameters
         ----------

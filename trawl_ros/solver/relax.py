@@ -107,7 +107,7 @@ def relax(
 
 
 def without_attitude(model: GearModel) -> np.ndarray:
-    """Mask (dof,) of everything but the boards' attitudes."""
+    """Mask (dof,) of all degrees of freedom but the boards' attitudes."""
     free = np.ones(model.dof, bool)
     free[3 * model.nodes :].reshape(2, 6)[:, 3:] = False
     return free

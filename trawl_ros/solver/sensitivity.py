@@ -19,11 +19,11 @@ from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
 
 PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
-"""What observables are differentiated by: per unit coefficient, per m, per m, per m/s."""
+"""Parameters of the derivatives: per unit coefficient, per m, per m, per m/s."""
 
 
 def _perturbed(model: GearModel, found: Equilibrium, index: int) -> tuple[GearModel, State, Tow]:
-    """Model, state and tow with parameter ``index`` moved by an imaginary step."""
+    """Model, state and tow with parameter ``index`` perturbed by an imaginary step."""
     state, tow = found.state, found.tow
     if index < len(COEFFICIENTS):
         values = model.coefficients.astype(complex)

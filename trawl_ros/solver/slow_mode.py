@@ -1,4 +1,4 @@
-"""How a gear comes to rest: the slowest of its motions, seen by the observables.
+"""Slowest mode of the gear: its decay time and its shape in the observables.
 
 After a change of warp length or speed the gear sinks or rises for minutes, doors and net alike,
 while tension and spread have long settled. What is still to come of that in a window is one
@@ -31,7 +31,7 @@ warp length and speed."""
 
 @dataclass(frozen=True)
 class SlowMode:
-    """Its decay time (s) to 1/e and what each observable shows per metre of net depth (SI).
+    """Slow mode: decay time (s) to 1/e and shape in the observables per metre of net depth.
 
     Where a gear has none that moves the net, the time is 0 and so is the shape.
     """

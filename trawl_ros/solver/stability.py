@@ -1,4 +1,4 @@
-"""Stability of a steady state: does the linearised motion die out?"""
+"""Stability of a steady state by the eigenvalues of its linearised motion."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """Whether every motion found dies out."""
+        """True if every motion found dies out."""
         return self.growth < 0.0
 
     @property

@@ -1,4 +1,4 @@
-"""Motion in time: the generalised-α method on rotations and translations.
+"""Time integration: the generalised-α method on rotations and translations.
 
 Second order, implicit, with numerical damping of the fastest axial vibrations of the ropes,
 whose stiffness forbids explicit steps. Rotations advance by exponentials of rotation vectors
@@ -47,13 +47,13 @@ class Motion:
 
 
 def at_rest(state: State) -> Motion:
-    """A state that does not accelerate, such as an equilibrium."""
+    """Motion of a state without accelerations, such as an equilibrium."""
     zero = np.zeros_like(state.velocity)
     return Motion(state, zero, zero)
 
 
 class Stepper:
-    """Advances one gear; holds the factorised iteration matrix between steps."""
+    """Time stepper of one gear; holds the factorised iteration matrix between steps."""
 
     def __init__(self, model: GearModel) -> None:
         rho = SPECTRAL_RADIUS

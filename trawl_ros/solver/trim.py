@@ -32,8 +32,10 @@ SETTLED = 1e-7
 
 @dataclass(frozen=True)
 class Trim:
-    """Fastening points (3, 3) of warp, upper and lower bridle in the outward frame, and the
-    steady state that the released gear has with them.
+    """Result of a trim: fastening points and steady state.
+
+    ``points`` (3, 3) are those of warp, upper and lower bridle in the outward frame; ``steady`` is
+    the steady state that the released gear has with them.
     """
 
     points: np.ndarray
@@ -70,7 +72,7 @@ def trim(
     pitch
         Wanted pitch of the boards, nose down, rad.
     warp_length, speed
-        Where the angles are wanted, m and m/s.
+        Operating point of the wanted angles, m and m/s.
 
     Raises
     ------
@@ -105,7 +107,7 @@ def trim(
 
 
 class _Search:
-    """Balances boards at one attitude after another, always from the rigging given first:
+    """Search for fastening points, one attitude after another, always from the rigging given first:
     the smallest change depends on where it starts, not on the attitudes tried before.
     """
 
@@ -155,7 +157,7 @@ class _Search:
 
 
 def _by_points(model: GearModel, state: State, tow: Tow) -> np.ndarray:
-    """Derivative (dof, 9) of the forces by the coordinates of the points of both boards."""
+    """Derivatives (dof, 9) of the forces by the coordinates of both boards' fastening points."""
     columns = []
     for index in range(9):
         points = model.board.points.astype(complex)
