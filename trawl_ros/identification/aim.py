@@ -1,4 +1,4 @@
-"""Where the estimate would rest if the model were linear: found without solving it again.
+"""Gauss–Newton step of the linearised fit, iterated with weights and noise scales.
 
 Weights of a robust loss, noise found from residuals and coefficients depend on each other, and
 come to rest together in some ten rounds. On the linearised windows a round costs next to nothing.
@@ -21,7 +21,7 @@ are the end."""
 
 
 def aim(fit: Fit, low: np.ndarray, high: np.ndarray) -> Fit:
-    """The fit of least cost within a box, to first order around its windows.
+    """Gauss–Newton step: the fit of least cost within bounds, to first order around its windows.
 
     Parameters
     ----------

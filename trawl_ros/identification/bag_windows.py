@@ -1,4 +1,4 @@
-"""The steady windows of one bag."""
+"""Steady windows of one bag."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from trawl_ros.messages.stamps import SECOND
 
 @dataclass(frozen=True)
 class BagTask:
-    """A bag, the gear whose water turns pressure into depth, and where its topics are."""
+    """Task of reading a bag: its path, topics, and the gear whose water gives depths."""
 
     path: Path
     gear: GearRecord

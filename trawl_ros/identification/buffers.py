@@ -1,4 +1,4 @@
-"""Readings waiting for their window: screened, sorted by stamp, bounded in memory."""
+"""Buffers of readings that wait for their window: checked, sorted by stamp, bounded in memory."""
 
 import math
 from bisect import bisect_left
@@ -15,7 +15,7 @@ CAPACITY = 50_000
 
 
 class ChannelBuffer:
-    """The readings of one channel, in order of their stamps.
+    """Buffer of one channel's readings, in order of their stamps.
 
     Parameters
     ----------
@@ -49,11 +49,11 @@ class ChannelBuffer:
 
     @property
     def newest(self) -> int | None:
-        """Newest stamp (ns) that can be believed, None before any."""
+        """Newest accepted stamp (ns), None before any."""
         return self.order.newest
 
     def add(self, reading: Reading) -> int:
-        """Take a reading; return how many were accepted with it, for some wait for others.
+        """Add a reading; return how many were accepted with it, for some wait for others.
 
         Each one refused is counted by its reason.
         """
@@ -104,7 +104,7 @@ class ChannelBuffer:
         )
 
     def heard(self, end_ns: int) -> bool:
-        """Whether the channel had spoken before a window's end (ns).
+        """True if the channel had reported before a window's end (ns).
 
         By stamps, not by what has arrived: the verdict must not depend on arrival.
         """
@@ -116,7 +116,7 @@ class ChannelBuffer:
         return np.array([value for stamp, value in self._outside if start_ns <= stamp < end_ns])
 
     def decide(self, end_ns: int, needed_ns: int) -> None:
-        """Windows are decided up to ``end_ns``; none will begin before ``needed_ns``."""
+        """Note that windows are decided up to ``end_ns``; none will begin before ``needed_ns``."""
         self._decided = end_ns - self.delay
         self._drop_before(needed_ns - self.delay)
 

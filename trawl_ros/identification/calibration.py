@@ -1,4 +1,4 @@
-"""What a fit finds the instruments of each tow, and the net, to be wrong by."""
+"""Calibration errors of each tow's instruments, and factors on drag and weight of the net."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from trawl_ros.identification.marginal import calibration_root, joint_root
 
 
 def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
-    """Give the errors of calibration by tow and channel, inputs included."""
+    """Return the calibration errors by tow and channel, inputs included."""
     share = fit.scheme.tow_share
     joint = joint_root(fit.marginal, fit.knowledge.root)
     found = []
@@ -43,7 +43,7 @@ def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
 
 
 def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
-    """Give drag and weight of the net, if they are estimated along."""
+    """Return the factors on drag and weight of the net, if they are estimated along."""
     if fit.net is None:
         return ()
     std = fit.scheme.net_std

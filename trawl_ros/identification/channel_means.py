@@ -1,4 +1,4 @@
-"""One channel in one window: its readings, or why it has none that can be used."""
+"""Mean of one channel in one window, or the reason why it has none that can be used."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class ChannelMean:
 def channel_mean(
     buffer: ChannelBuffer, start_ns: int, end_ns: int, options: WindowOptions
 ) -> ChannelMean | Unheld:
-    """Judge a channel's readings in a window and average them."""
+    """Check a channel's readings in a window and average them."""
     channel = buffer.channel
     where = f'{channel.name} ({channel.topic})'
     stamps, values, stds = buffer.window(start_ns, end_ns)

@@ -1,4 +1,4 @@
-"""Which sample feeds which channel, and what each channel may plausibly say."""
+"""Channel table: the sample of each channel, its plausible range, noise and bias."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -18,7 +18,7 @@ from trawl_ros.instruments.samples import (
 
 @dataclass(frozen=True)
 class Channel:
-    """One measured quantity.
+    """Channel: one measured quantity.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Channel:
 
     @property
     def longest_gap(self) -> float:
-        """Longest silence (s) that is still ordinary: four periods, at least 10 s."""
+        """Longest ordinary silence (s): four periods, at least 10 s."""
         return max(10.0, 4.0 / self.min_rate)
 
     def bias_std(self, mean: float) -> float:
@@ -75,7 +75,7 @@ class Channel:
 
 
 def _pair(both: Channel) -> list[Channel]:
-    """One channel per side, of what is the same for both but name and topic."""
+    """Channels of both sides that are the same but for name and topic."""
     return [
         replace(both, name=f'{side}_{both.name}', topic=both.topic.format(side=side))
         for side in ('port', 'starboard')
@@ -167,7 +167,7 @@ MEASURED = tuple(name for name in CHANNELS if name not in INPUTS and name not in
 
 @dataclass(frozen=True)
 class Reading:
-    """One value (SI) of one channel with the std its sensor states, 0 where it states none.
+    """Reading: one value (SI) of one channel with its stated std, 0 where none is stated.
 
     ``low`` and ``high`` are the sensor's own limits where it has any.
     """
@@ -186,7 +186,7 @@ behind the wing tips between which the model's horizontal opening is measured.""
 
 
 def readings(sample: Sample, pressure_to_depth: Callable[[float], float]) -> Iterator[Reading]:
-    """Split one sample into channel readings; samples of no use here give none.
+    """Split one sample into channel readings; samples without any give none.
 
     Parameters
     ----------

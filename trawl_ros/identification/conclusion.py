@@ -1,4 +1,4 @@
-"""What a fit comes to: its estimate, and what a window says before it is used."""
+"""Posterior of a fit: its estimate, and the innovations of a window before it is used."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ GATE = 3.0
 
 
 def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
-    """What a window shows that was not expected.
+    """Innovations of a window.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
 def conclude(
     fit: Fit, revision: int, innovation: Innovation | None, converged: bool, reason: str
 ) -> Estimate:
-    """Sum up a fit; the arguments beside it go into the estimate as they are.
+    """Posterior estimate of a fit; the arguments beside it go into the estimate as they are.
 
     A model that the data contradict knows less than it says: standard deviations are as many times
     larger as the misfit is (Birge 1932).

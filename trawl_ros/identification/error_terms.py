@@ -1,4 +1,4 @@
-"""What can be wrong with the readings of a tow, and how each error goes over its windows.
+"""Error budget of the readings of a tow: error terms and their course over its windows.
 
 Four kinds of error stand between a reading and the model: those of the single reading (scatter,
 and what changes from one steady state to the next), those of the window's measured warp
@@ -17,7 +17,7 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 
 def group_of(channel: str) -> str:
-    """Give the name of the quantity, which is the same for both sides."""
+    """Return the name of the quantity, which is the same for both sides."""
     return channel.removeprefix('port_').removeprefix('starboard_')
 
 
@@ -40,7 +40,7 @@ so with every factor."""
 
 @dataclass(frozen=True)
 class Scheme:
-    """How errors are divided.
+    """Error scheme: division of errors among readings, steady states, tows and model.
 
     Attributes
     ----------
@@ -67,18 +67,18 @@ class Scheme:
 
     @property
     def net_std(self) -> np.ndarray:
-        """Of both factors (2,)."""
+        """Prior std of the net's factors (2,) on drag and weight."""
         return np.array([self.net_drag, self.net_weight])
 
     @property
     def tow_share(self) -> float:
-        """Part in std that stays through the tow."""
+        """Part of a bias in std that stays through the tow."""
         return float(np.sqrt(1.0 - self.state_share**2))
 
 
 @dataclass(frozen=True)
 class Term:
-    """An error of calibration: the channel or input it belongs to, and its std there.
+    """Calibration error: the channel or input it belongs to, and its std there.
 
     ``relative`` errors are parts of the value, others are in the channel's unit.
     """
@@ -99,7 +99,7 @@ TERMS = tuple(
 
 @dataclass(frozen=True)
 class TowErrors:
-    """Windows of one tow: n windows by k channels (in the order of `MEASURED`).
+    """Errors of one tow: n windows by k channels (in the order of `MEASURED`).
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class TowErrors:
 
 
 def spread(part: Linearised, values: np.ndarray) -> np.ndarray:
-    """Rows of a window's channels set among all channels, 0 for those it has not.
+    """Rows of a window's channels scattered among all channels, 0 for those it has not.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def _of_one_tow(
 
 
 def _usual_noise(windows: Sequence[SteadyWindow]) -> dict[str, float]:
-    """The median of what windows find of each quantity's noise."""
+    """Median over windows of each quantity's noise."""
     found: dict[str, list[float]] = {}
     for window in windows:
         for name, noise in window.noise.items():

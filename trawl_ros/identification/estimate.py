@@ -1,4 +1,4 @@
-"""The estimate after a window: values, what they are worth, and what the data leave open."""
+"""Posterior estimate after a window: values, covariance, and undetermined combinations."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ NAMED_SHARE = 0.4
 
 @dataclass(frozen=True)
 class Combination:
-    """A direction among the coefficients that the data do not determine.
+    """Combination of coefficients that the data do not determine.
 
     ``names`` have the largest part in it; ``weights`` (12,) is its unit vector in units of
     the prior's std, and ``std`` what the data alone know of it in these units (1 = as much
@@ -33,7 +33,7 @@ class Combination:
 
 @dataclass(frozen=True)
 class Innovation:
-    """Measured minus predicted before the window was used, per channel (SI).
+    """Innovations: measured minus predicted before the window was used, per channel (SI).
 
     ``std`` counts the reading, the inputs and the coefficients as they were known;
     ``test_ratio`` is innovation² over (3 std)²: below 0.5 is ordinary, above 1 is beyond
@@ -48,7 +48,7 @@ class Innovation:
 
 @dataclass(frozen=True)
 class TowBias:
-    """How much a channel reads too high through one tow.
+    """Calibration error of a channel through one tow; positive where it reads too high.
 
     ``value``, its ``std`` after the fit and what was ``known`` before (std), in the channel's
     ``unit``, at the channel's mean over the tow.
@@ -64,8 +64,9 @@ class TowBias:
 
 @dataclass(frozen=True)
 class NetFactor:
-    """How many times the gear file's drag, or weight in water, the net has: ``value``, its ``std``
-    after the fit and what was ``known`` before (std).
+    """Factor on the gear file's drag, or weight in water, of the net.
+
+    ``value`` with its ``std`` after the fit, and its prior std ``known``.
     """
 
     what: str
@@ -76,7 +77,7 @@ class NetFactor:
 
 @dataclass(frozen=True)
 class Knowledge:
-    """What prior and data together say about the coefficients, from whitened rows.
+    """Posterior of the coefficients from prior and data, by whitened rows.
 
     ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
     by the prior's std, in descending order; ``root`` (12, 12) times its transpose is the
@@ -90,7 +91,7 @@ class Knowledge:
 
     @property
     def condition_number(self) -> float:
-        """Largest over smallest singular value, infinite where something is not seen at all."""
+        """Condition number: largest over smallest singular value, infinite where one is zero."""
         smallest = self.singular[-1]
         if smallest <= 1e-12 * self.singular[0]:
             return float('inf')
@@ -99,7 +100,7 @@ class Knowledge:
 
 @dataclass(frozen=True)
 class Estimate:
-    """The coefficients (12,), in the order of eq. 36, after ``windows`` windows.
+    """Posterior estimate of the coefficients (12,), in the order of eq. 36.
 
     Attributes
     ----------
@@ -170,12 +171,12 @@ class Estimate:
 
     @property
     def noise_scale(self) -> float:
-        """Root mean square of the factors on the stated noise of all groups."""
+        """Root mean square of the noise scales of all groups."""
         return float(np.sqrt(np.mean(np.square(list(self.noise_scales.values())))))
 
 
 def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowledge:
-    """Covariance and singular directions.
+    """Posterior covariance and singular directions.
 
     Parameters
     ----------
@@ -204,7 +205,7 @@ def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowle
 def undetermined(
     knowledge: Knowledge, names: Sequence[str] = COEFFICIENTS
 ) -> tuple[Combination, ...]:
-    """Directions the data know less well than the prior, turned to few coefficients each."""
+    """Directions that the data know less well than the prior, rotated by varimax."""
     weak = knowledge.singular < 1.0
     if not np.any(weak):
         return ()
@@ -239,20 +240,20 @@ def _varimax(basis: np.ndarray) -> np.ndarray:
 
 
 def is_determined(values: np.ndarray, std: np.ndarray, prior: BoardPrior) -> tuple[bool, ...]:
-    """Whether the data determine each coefficient; the rule stands at `Estimate`."""
+    """Flags of the coefficients that the data determine; the rule stands at `Estimate`."""
     scale = np.maximum(np.abs(values), prior.std)
     well = (std <= DETERMINED_FRACTION * scale) & (std <= DETERMINED_SHRINK * prior.std)
     return tuple(bool(flag) for flag in well)
 
 
 def on_bound(values: np.ndarray, prior: BoardPrior) -> tuple[np.ndarray, np.ndarray]:
-    """Which of the values rest on their lower, and which on their upper bound, bool each."""
+    """Flags of the values that rest on their lower, and on their upper bound."""
     near = 1e-9 * (prior.high - prior.low)
     return values <= prior.low + near, values >= prior.high - near
 
 
 def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
-    """The bounds that the values rest on, by name."""
+    """Names of the active bounds."""
     at_low, at_high = on_bound(values, prior)
     found = []
     for i, name in enumerate(prior.names):

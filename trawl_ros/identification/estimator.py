@@ -43,7 +43,7 @@ NEGLIGIBLE_GAIN = 1e-3
 
 @dataclass(frozen=True)
 class Progress:
-    """One accepted step: ``windows`` in the fit, its cost, and the objective of eq. 35."""
+    """Record of an accepted step: ``windows`` in the fit, its cost, and the objective of eq. 35."""
 
     windows: int
     cost: float
@@ -52,7 +52,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Step:
-    """``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken,
+    """Step: ``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken,
     ``needless`` that there was nothing to be taken.
     """
 
@@ -63,7 +63,7 @@ class _Step:
 
 
 class Estimator:
-    """Fits the twelve coefficients to steady windows.
+    """Estimator of the twelve coefficients from steady windows.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Estimator:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all windows."""
+        """Reset to no windows."""
         self.estimate: Estimate | None = None
         self.history: list[Progress] = []
         self._fit = Fit((), np.array(self.prior.start), AS_STATED, self.prior, self.options)
@@ -107,26 +107,26 @@ class Estimator:
 
     @property
     def windows(self) -> tuple[SteadyWindow, ...]:
-        """The windows in the fit."""
+        """Windows in the fit."""
         return tuple(part.window for part in self._fit.windows)
 
     @property
     def coefficients(self) -> np.ndarray:
-        """The present coefficients (12,)."""
+        """Present coefficients (12,)."""
         return self._fit.coefficients
 
     @property
     def fit(self) -> Fit:
-        """The windows beside the model at the present coefficients."""
+        """Fit of the windows at the present coefficients."""
         return self._fit
 
     @property
     def without_steady_state(self) -> int:
-        """How many windows the model has no steady state for; `finish` tries them again."""
+        """Number of windows for which the model has no steady state; `finish` tries them again."""
         return len(self._without)
 
     def add(self, window: SteadyWindow, near: Any = None) -> Estimate | None:
-        """Use one more window; None when the model has no steady state there.
+        """Add one window; None when the model has no steady state there.
 
         ``near`` is a steady state to start from, beside those of other windows.
         """
@@ -145,7 +145,7 @@ class Estimator:
         return self._publish(innovation, False, step.obstacle or said)
 
     def finish(self) -> Estimate | None:
-        """Solve all windows anew until the estimate rests; None when no window can be used."""
+        """Iterate over all windows to convergence; None when no window can be used."""
         self._solve_all()
         if self._without and not self._fit.windows:
             # First order has led the estimate where the gear has no steady state at all.
@@ -170,11 +170,11 @@ class Estimator:
         self._fit = replace(self._fit, windows=tuple(parts), coefficients=np.array(coefficients))
 
     def take(self, windows: Sequence[SteadyWindow]) -> None:
-        """Take windows without looking at them; `finish` solves all of them at once."""
+        """Take windows unsolved; `finish` solves all of them at once."""
         self._without += windows
 
     def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
-        """An estimator with the windows of some states only, starting from this estimate."""
+        """Return an estimator with the windows of some states only, starting from this estimate."""
         part = Estimator(self.predictor, self.prior, self.observables, options or self.options)
         chosen = tuple(fit for fit in self._fit.windows if fit.window.state in states)
         part._fit = replace(self._fit, windows=chosen, options=part.options)
@@ -183,7 +183,7 @@ class Estimator:
     def predictions(
         self, coefficients: np.ndarray, windows: Sequence[SteadyWindow] | None = None
     ) -> np.ndarray:
-        """The four channels of eq. 35, solved at each window's inputs.
+        """Predict the four channels of eq. 35 at each window's inputs.
 
         Returns
         -------
@@ -200,7 +200,7 @@ class Estimator:
         return stack(rows)
 
     def _inputs_of(self, window: SteadyWindow) -> np.ndarray:
-        """Warp lengths and speed of a window without the errors found in them.
+        """Warp lengths and speed of a window, corrected for their estimated errors.
 
         One that is new is taken to share those of the last window of its tow.
         """
@@ -222,7 +222,7 @@ class Estimator:
         start: Any = None,
         near: Sequence[Linearised] = (),
     ) -> Linearised:
-        """Solve a window, starting from a state, or from the one of the most similar window."""
+        """Linearise the model at a window, from a given state or that of the nearest window."""
 
         def distance(part: Linearised) -> float:
             return sum(
@@ -239,12 +239,12 @@ class Estimator:
         )
 
     def _from_start(self) -> None:
-        """Solve all windows at the prior's start, as if none had been seen."""
+        """Linearise all windows at the prior's start, as if none had been seen."""
         self._fit = replace(self._fit, coefficients=np.array(self.prior.start), scales=AS_STATED)
         self._solve_all()
 
     def _rest_with_all(self) -> tuple[bool, str]:
-        """Come to rest, with what had no steady state on the way but has one there."""
+        """Converge with the windows that had no steady state on the way but have one there."""
         converged, reason = self._rest()
         if self._without and self._fit.windows:
             number = len(self._fit.windows)
@@ -254,7 +254,7 @@ class Estimator:
         return converged, reason
 
     def _solve_all(self) -> None:
-        """Solve what is not at the present coefficients; set aside what has no state there."""
+        """Linearise all windows at the present coefficients; set aside those without a state."""
         solved = {part.window.index: part for part in self._fit.windows}
         windows = sorted((*self.windows, *self._without), key=lambda window: window.index)
         self._without = []
@@ -272,7 +272,7 @@ class Estimator:
         self._fit = replace(self._fit, windows=tuple(parts))
 
     def _rest(self) -> tuple[bool, str]:
-        """Iterate to the end; whether it converged and how one knows."""
+        """Iterate to convergence; return its success and reason."""
         if not self._fit.windows:
             return False, 'no window has a steady state in the model'
         limit = self.options.iterations_final
@@ -335,7 +335,7 @@ class Estimator:
         return step
 
     def _spares(self) -> tuple[int, ...]:
-        """How many windows a step may set aside: none, or else as many as are left to be."""
+        """Numbers of windows a step may set aside: none, or else as many as are left to be."""
         number = len(self._fit.windows) + len(self._without)
         left = int(self.options.set_aside * number) - len(self._without)
         return (0, left) if left > 0 else (0,)
@@ -351,5 +351,5 @@ class Estimator:
 
 
 def _likelier(fit: Fit, other: Fit) -> bool:
-    """Whether a fit explains more windows than another, or as many of them better."""
+    """True if a fit explains more windows than another, or as many with higher likelihood."""
     return (-len(fit.windows), fit.surprise) < (-len(other.windows), other.surprise)

@@ -1,4 +1,4 @@
-"""How the estimate is found."""
+"""Options of the estimator."""
 
 from dataclasses import dataclass, fields
 
@@ -12,7 +12,7 @@ MAY_BE_ZERO = (
 
 @dataclass(frozen=True)
 class EstimatorOptions:
-    """Settings of the estimator.
+    """Options of the estimator.
 
     Attributes
     ----------

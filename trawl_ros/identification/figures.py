@@ -1,4 +1,4 @@
-"""The report as figures."""
+"""Figures of the identification report."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +23,7 @@ COURSE = 'How it got there'
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure, the file it goes into, the heading it stands under and what to see in it."""
+    """Drawing: a figure, its file, the heading it stands under and its caption."""
 
     file: str
     section: str
@@ -32,7 +32,7 @@ class Drawing:
 
 
 def drawings(report: Report) -> list[Drawing]:
-    """All figures that the report has the numbers for."""
+    """Return all figures for which the report has the numbers."""
     return [
         Drawing(
             'held_out.png', FIT,

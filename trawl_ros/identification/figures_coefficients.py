@@ -1,4 +1,4 @@
-"""Figures of the coefficients, and of what is known of them."""
+"""Figures of the coefficients and their posterior."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -92,7 +92,7 @@ def _draw_line(axes: Axes, report: Report, names: tuple[str, str], colour: str, 
 
 
 def spectrum_figure(report: Report) -> Figure:
-    """Singular values of the data's sensitivities, and what their directions are made of."""
+    """Singular values of the data's sensitivities, and the coefficients in their directions."""
     figure = Figure(figsize=(11.0, 5.0), layout='constrained')
     bars, made_of = figure.subplots(1, 2, width_ratios=(1.0, 1.25))
     found = report.spectrum

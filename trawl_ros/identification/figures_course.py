@@ -1,4 +1,4 @@
-"""Figures of the way to the estimate."""
+"""Figures of the convergence of the estimate."""
 
 import numpy as np
 from matplotlib.figure import Figure

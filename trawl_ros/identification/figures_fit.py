@@ -1,4 +1,4 @@
-"""Figures of the fit beside its data."""
+"""Figures of the fit and its data."""
 
 from collections.abc import Sequence
 
@@ -72,7 +72,7 @@ def channels_figure(report: Report) -> Figure:
 
 
 def _by_length(length: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Means of values of like warp length, in rising order, so that a line can join them."""
+    """Means of values of similar warp length, in rising order, so that a line can join them."""
     like = np.round(length / ALIKE_M) * ALIKE_M
     groups = [like == at for at in np.unique(like)]
     return (

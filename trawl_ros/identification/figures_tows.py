@@ -1,4 +1,4 @@
-"""Figures of tows beside each other."""
+"""Figures that compare tows."""
 
 import matplotlib
 import numpy as np
@@ -13,7 +13,7 @@ NAMED = 8
 
 
 def held_out_figure(report: Report) -> Figure:
-    """Errors per channel: fitted, left out, tow by tow, and those of the paper."""
+    """Hold-out errors per channel: fitted, left out, tow by tow, and those of the paper."""
     figure = Figure(figsize=(9.0, 4.5), layout='constrained')
     axes = figure.subplots()
     place = np.arange(len(PAPER_CHANNELS))
@@ -44,7 +44,7 @@ def held_out_figure(report: Report) -> Figure:
 
 
 def tow_biases_figure(report: Report) -> Figure:
-    """What the instruments of each tow read too high by, in units of what was known before."""
+    """Calibration errors of each tow's instruments, in units of their prior std."""
     figure = Figure(figsize=(11.0, 4.5), layout='constrained')
     axes = figure.subplots()
     biases = report.estimate.tow_biases

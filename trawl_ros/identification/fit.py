@@ -1,4 +1,4 @@
-"""All windows beside the model at one set of coefficients: cost, rows, what is known."""
+"""Fit of all windows at one set of coefficients: cost, square-root information, posterior."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -60,7 +60,7 @@ class Fit:
 
     @property
     def errors(self) -> tuple[TowErrors, ...]:
-        """What can be wrong with the readings, tow by tow."""
+        """Errors of the readings, tow by tow."""
         known = self.known
         if known is None or known[0] is not self.windows or known[1] is not self.options:
             known = (self.windows, self.options, tow_errors(self.windows, self.scheme))
@@ -69,7 +69,7 @@ class Fit:
 
     @property
     def scheme(self) -> Scheme:
-        """How errors are divided."""
+        """Error scheme of the options."""
         options = self.options
         return Scheme(
             options.state_share,
@@ -93,7 +93,7 @@ class Fit:
 
     @cached_property
     def residual(self) -> np.ndarray:
-        """Measured minus predicted (windows, k), to first order; 0 where nothing is measured."""
+        """Residuals (windows, k), measured minus predicted, to first order; 0 where unmeasured."""
         rows = [
             spread(part, part.measured - part.predicted(self.coefficients)) for part in self.windows
         ]
@@ -101,7 +101,7 @@ class Fit:
 
     @cached_property
     def inputs(self) -> np.ndarray:
-        """Most likely warp lengths and speed (windows, 3), without the errors found in them."""
+        """Most likely warp lengths and speed (windows, 3), corrected for their estimated errors."""
         found = np.array([measured_inputs(part.window) for part in self.windows]).reshape(-1, 3)
         for part in self.marginal.tows:
             own = np.clip(part.inputs[:, :3], -FARTHEST, FARTHEST)
@@ -118,7 +118,7 @@ class Fit:
 
     @cached_property
     def marginal(self) -> Marginal:
-        """What is left for the coefficients once all other errors are eliminated."""
+        """Square-root information after elimination of all nuisance parameters."""
         return self._marginal(self.errors, self.jacobian)
 
     def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> Marginal:
@@ -132,7 +132,7 @@ class Fit:
         return self.marginal.cost + self._prior_cost
 
     def cost_beside(self, other: 'Fit') -> float:
-        """The cost with what errors do taken from another fit of the same windows.
+        """Cost with the nuisance parameters' effect taken from another fit of the same windows.
 
         A step is judged with that held still, as the step itself was found.
         """
@@ -159,7 +159,7 @@ class Fit:
 
     @cached_property
     def knowledge(self) -> Knowledge:
-        """Covariance and singular directions."""
+        """Posterior covariance and singular directions."""
         return know(self.marginal.triangle, self.prior.std, self.options.prior_weight)
 
     @property
@@ -169,17 +169,17 @@ class Fit:
 
     @cached_property
     def own_shares(self) -> np.ndarray:
-        """Part (windows, k) of each reading's variance that its fitted own error keeps."""
+        """Redundancy numbers (windows, k) of the readings, for their own errors."""
         return own_shares(self.marginal, self.jacobian, self.knowledge.root)
 
     @property
     def freedom(self) -> float:
-        """Readings less all that they settle: what the noise is known by."""
+        """Degrees of freedom: readings less all that they determine."""
         return float((self.own_shares * self._numbers).sum())
 
     @property
     def misfit(self) -> float:
-        """Root mean square of what the fit leaves, in what all errors together explain; at least 1.
+        """Birge ratio: root mean square of the residuals over their expected spread; at least 1.
 
         The least cost is half a χ² with as many degrees of freedom as there are readings. Noise is
         found, so a misfit is of what is not: inputs, calibration, the model's own error.
@@ -191,7 +191,7 @@ class Fit:
 
     @property
     def surprise(self) -> float:
-        """Minus the logarithm of the likelihood, but for a constant of the windows alone.
+        """Negative log-likelihood, up to a constant of the windows alone.
 
         Unlike costs, these compare between fits that have found different noise.
         """
@@ -218,7 +218,7 @@ class Fit:
         return objective(stack(predicted), stack(measured))
 
     def rescaled(self) -> 'Fit':
-        """The same fit with the noise of each group that its residuals tell.
+        """Copy of the fit with each group's noise scale estimated from its residuals.
 
         Clipped squares beside what they would be on normal noise (Huber's proposal 2), per
         degree of freedom (restricted maximum likelihood). What all groups have in common is

@@ -1,4 +1,4 @@
-"""The estimator for a gear: its model, and start values and bounds from its file."""
+"""Construction of predictor, window finder and estimator for a gear, with its file's prior."""
 
 import numpy as np
 
@@ -18,15 +18,16 @@ NET_STD = 0.2
 
 
 def estimator_options(*, prior: bool = True, net: bool = False) -> EstimatorOptions:
-    """What node and command line let one choose: whether the prior takes part, and whether drag and
-    weight of the net are estimated along.
+    """Return the estimator options that node and command line share.
+
+    ``prior`` is False without the prior; ``net`` estimates drag and weight of the net along.
     """
     std = NET_STD if net else 0.0
     return EstimatorOptions(prior_weight=float(prior), net_drag=std, net_weight=std)
 
 
 def board_prior(gear: GearRecord) -> BoardPrior:
-    """What a gear file knows of its board before any tow."""
+    """Prior of the board's coefficients in a gear file."""
     known = gear.identification
     return BoardPrior(
         start=np.array(known.start),
@@ -37,12 +38,12 @@ def board_prior(gear: GearRecord) -> BoardPrior:
 
 
 def predictor_for(gear: GearRecord) -> Predictor:
-    """The model of a gear as the estimator asks it, with the effects its file switches on."""
+    """Predictor of a gear with the effects its file switches on."""
     return Predictor(build_model(gear), acting(gear))
 
 
 def finder_for(gear: GearRecord, options: WindowOptions | None = None) -> SteadyWindowFinder:
-    """The finder of steady windows for a gear, whose water turns pressure into depth."""
+    """Finder of steady windows for a gear, whose water turns pressure into depth."""
     return SteadyWindowFinder(build_water(gear).depth, options or WindowOptions())
 
 
@@ -52,7 +53,7 @@ def identification_for(
     window_options: WindowOptions | None = None,
     estimator_options: EstimatorOptions | None = None,
 ) -> Identification:
-    """Build the one estimator that node and command line share.
+    """Build the identification that node and command line share.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Windows on their way to the estimate: what no single channel can tell is judged here."""
+"""Window gate: checks of a window by all channels and its tow, before it reaches the estimate."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,7 @@ from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow
 
 @dataclass(frozen=True)
 class Guarded:
-    """A window to be used, or None and why not.
+    """Verdict of the gate: a window to be used, or None and the reason.
 
     ``near`` is a steady state to start from. ``withdraw``: what was found holds for the whole tow,
     also for its windows in the estimate.
@@ -26,7 +26,7 @@ class Guarded:
 
 
 class Guard:
-    """Judges windows by all of their channels and by their tow.
+    """Window gate: judges windows by all of their channels and by their tow.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Guard:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all windows."""
+        """Reset to no windows."""
         self.rejections = Rejections()
         self._over_ground = OverGround()
         self._screening.reset()

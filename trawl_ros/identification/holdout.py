@@ -1,4 +1,4 @@
-"""Errors on whole tows, or whole steady states, that were left out of the fit."""
+"""Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ STEPS = 3
 
 @dataclass(frozen=True)
 class HeldOut:
-    """What was left out at a time, and what the rest predicts of it.
+    """Hold-out predictions of the windows left out.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ def hold_out(
     seed: int = 0,
     begun: Callable[[int, int], None] | None = None,
 ) -> HeldOut:
-    """Predict each window by a fit that has seen no window of its tow.
+    """Predict each window by a fit without any window of its tow.
 
     With a single tow it is the window's steady state that the fit has not seen: less of a
     test, since errors of calibration are the same throughout a tow.

@@ -1,6 +1,4 @@
-"""The six laws of eq. 14 as an engineer asks for them: how much at the angle she works at, and how
-much more when that angle grows.
-"""
+"""The six laws of eq. 14 at the working angles: value and slope of each."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -20,7 +18,7 @@ WELL_KNOWN = 0.2
 
 @dataclass(frozen=True)
 class Law:
-    """One straight line of eq. 14: what it gives, its symbol, coefficients and angle."""
+    """Linear law of eq. 14: its quantity, its symbol, coefficients and angle."""
 
     name: str
     symbol: str
@@ -30,7 +28,7 @@ class Law:
 
     @property
     def columns(self) -> list[int]:
-        """Where slope and constant stand among the coefficients."""
+        """Indices of slope and constant among the coefficients."""
         return [COEFFICIENTS.index(self.slope), COEFFICIENTS.index(self.constant)]
 
 
@@ -73,13 +71,13 @@ class LawQuantities:
 
     @property
     def ratio(self) -> np.ndarray:
-        """Standard deviation as a part of the span (12,), infinite for a law without slope."""
+        """Standard deviation over span (12,), infinite for a law without slope."""
         with np.errstate(divide='ignore'):
             return self.sd / self.span
 
     @property
     def well_known(self) -> np.ndarray:
-        """Which (12,) have a standard deviation below a fifth of the span."""
+        """Flags (12,) of a standard deviation below a fifth of the span."""
         return self.ratio < WELL_KNOWN
 
 
@@ -108,7 +106,7 @@ def working_angles(seen: Iterable[Observables], slip_sign: int) -> WorkingAngles
 
 
 def law_rows(angles: WorkingAngles) -> np.ndarray:
-    """The twelve quantities as linear functions of the coefficients, (12, 12)."""
+    """Linear map (12, 12) from the coefficients to the twelve quantities."""
     values, slopes = np.zeros((2, len(LAWS), len(COEFFICIENTS)))
     for row, law in enumerate(LAWS):
         angle = angles.attack if law.angle == 'attack' else angles.slip
@@ -118,7 +116,7 @@ def law_rows(angles: WorkingAngles) -> np.ndarray:
 
 
 def law_spans(coefficients: np.ndarray, std: np.ndarray | None = None) -> np.ndarray:
-    """What each quantity's law spans over 15° of its angle, (12,).
+    """Span (12,) of each quantity's law over 15° of its angle.
 
     Parameters
     ----------
@@ -140,7 +138,7 @@ def law_quantities(
     angles: WorkingAngles,
     span: np.ndarray | None = None,
 ) -> LawQuantities:
-    """Value and slope of each law, and how well they are known.
+    """Value and slope of each law, and their std.
 
     Parameters
     ----------

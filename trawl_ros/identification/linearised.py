@@ -1,4 +1,4 @@
-"""One window beside the model: what was predicted, and how it changes."""
+"""Linearised window: its predictions and their derivatives."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 @dataclass(frozen=True)
 class Linearised:
-    """The model around coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,), where it was
+    """Linearisation at coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,), where it was
     solved; the last are factors on drag and weight in water of the net.
 
     ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
@@ -40,12 +40,12 @@ class Linearised:
     state: Any
 
     def predicted(self, coefficients: np.ndarray) -> np.ndarray:
-        """Values (n,) at other coefficients, to first order."""
+        """Predictions (n,) at other coefficients, to first order."""
         return self.values + self.by_coefficients @ (coefficients - self.at)
 
     @property
     def solved(self) -> np.ndarray:
-        """Values (n,) with the net as it was when they were solved."""
+        """Predictions (n,) with the net as it was when they were solved."""
         return self.values + self.by_net @ (self.net - 1.0)
 
     def std(self, windows_in_state: int) -> np.ndarray:
@@ -64,7 +64,7 @@ def linearise(
     *,
     even: bool = True,
 ) -> Linearised:
-    """Solve the model at one window.
+    """Linearise the model at one window.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The coefficients' square-root information, with every other error taken out of the way.
+"""Nuisance elimination: square-root information of the coefficients alone.
 
 A reading's residual is r = ε + G δ + U ν + M μ + J Δ: the reading's own error ε of variance D,
 errors δ of the window's inputs and what it lacks of rest, calibration ν of the tow, the model's
@@ -27,7 +27,7 @@ ALIKE = 1e-5
 
 @dataclass(frozen=True)
 class TowPart:
-    """What one tow contributes; n windows by k channels, p errors of calibration.
+    """Contribution of one tow; n windows by k channels, p errors of calibration.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class TowPart:
 
 @dataclass(frozen=True)
 class Marginal:
-    """All tows together.
+    """Result of the nuisance elimination over all tows.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ def marginalise(
     huber: float,
     weights: Sequence[np.ndarray] | None = None,
 ) -> Marginal:
-    """Eliminate all but the coefficients, robustly.
+    """Eliminate all nuisance parameters, robustly.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def _eliminated(rows: np.ndarray, number: int) -> np.ndarray:
 
 
 def triangular(rows: np.ndarray) -> np.ndarray:
-    """The triangle of a QR decomposition, whose squares are those of the rows."""
+    """Triangular factor R of a QR decomposition of the rows."""
     return np.asarray(np.linalg.qr(rows, mode='r'))
 
 
@@ -235,7 +235,7 @@ def _explained(
 
 
 def own_shares(marginal: Marginal, jacobian: np.ndarray, root: np.ndarray) -> np.ndarray:
-    """What part of each reading's variance its fitted own error keeps on average, (windows, k).
+    """Redundancy numbers (windows, k): share of each reading's variance kept by its own error.
 
     The rest goes into inputs, calibration, the model's errors and the coefficients: diagonal of
     D P with P = V⁻¹ - V⁻¹ X C Xᵀ V⁻¹, where C is the posterior covariance of all those.
@@ -267,7 +267,7 @@ def own_shares(marginal: Marginal, jacobian: np.ndarray, root: np.ndarray) -> np
 
 
 def joint_root(marginal: Marginal, root: np.ndarray) -> np.ndarray:
-    """A root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
+    """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
 
     ``root`` (q, q) is that of the coefficients alone.
     """
@@ -281,7 +281,7 @@ def joint_root(marginal: Marginal, root: np.ndarray) -> np.ndarray:
 
 
 def calibration_root(part: TowPart, joint: np.ndarray) -> np.ndarray:
-    """A root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
+    """Root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
 
     ``joint`` is from `joint_root`.
     """

@@ -1,4 +1,4 @@
-"""The objective of eq. 35 and the errors in its four channels."""
+"""Objective of eq. 35 and the errors in its four channels."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class PaperChannel:
-    """One of the four quantities of eq. 35: the mean of its ``observables``, in ``unit``.
+    """Channel of eq. 35: the mean of its ``observables``, in ``unit``.
 
     ``paper`` is the mean normalised absolute error that the paper has on the points it fitted.
     """
@@ -20,7 +20,7 @@ class PaperChannel:
 
     @property
     def words(self) -> str:
-        """The name as people write it."""
+        """Name for texts."""
         return self.name.replace('_', ' ')
 
 
@@ -33,12 +33,12 @@ PAPER_CHANNELS = (
 
 
 def paper_values(values: Mapping[str, float]) -> np.ndarray:
-    """The four quantities (4,) from observables or means by name."""
+    """Quantities (4,) of eq. 35 from observables or means by name."""
     return np.array([np.mean([values[name] for name in row.observables]) for row in PAPER_CHANNELS])
 
 
 def mnae(predicted: np.ndarray, measured: np.ndarray) -> np.ndarray:
-    """Mean absolute error over mean measured value, per channel.
+    """Mean normalised absolute error: mean absolute error over mean measured value, per channel.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def mnae(predicted: np.ndarray, measured: np.ndarray) -> np.ndarray:
 
 
 def weights(measured: np.ndarray) -> np.ndarray:
-    """The λ (4,) of eq. 35: 1/(n · mean measured value), so every channel counts alike."""
+    """Weights λ (4,) of eq. 35: 1/(n · mean measured value), so every channel counts alike."""
     return 1.0 / (len(measured) * np.abs(measured).mean(axis=0))
 
 

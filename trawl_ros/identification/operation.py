@@ -1,4 +1,4 @@
-"""How the gear is driven, block by block: has the ship held it still for long enough?"""
+"""Operation of the gear, block by block: check for inputs held long enough."""
 
 import math
 from collections import deque
@@ -16,7 +16,7 @@ SLOWEST = 0.5
 
 @dataclass(frozen=True)
 class Block:
-    """Medians over one block of the grid; None where a channel said nothing.
+    """Block of the grid: medians; None where a channel has no readings.
 
     ``inputs`` are port and starboard warp length (m) and speed (m/s); ``heading`` rad,
     ``yaw_rate`` rad/s.
@@ -30,14 +30,14 @@ class Block:
 
 @dataclass(frozen=True)
 class Unheld:
-    """Why the operation is not held: a reason of `REASONS` and what was found."""
+    """Reason why the operation is not held: a key of `REASONS` and a description."""
 
     reason: str
     detail: str
 
 
 class Operation:
-    """The blocks of the last settling time and window, and the verdict on them."""
+    """Blocks of the last settling time and window, with the check that they are held."""
 
     def __init__(self, options: WindowOptions) -> None:
         self._options = options
@@ -54,7 +54,7 @@ class Operation:
 
     @property
     def settle_blocks(self) -> int:
-        """Blocks the gear is given to settle at the warp lengths and speed of the window."""
+        """Number of blocks of settling at the warp lengths and speed of the window."""
         options = self._options
         settle = options.settle_s
         window = [block.inputs for block in list(self._blocks)[-self.window_blocks :]]
@@ -68,7 +68,7 @@ class Operation:
 
     @property
     def full(self) -> bool:
-        """Whether settling time and window are both covered."""
+        """True if settling time and window are both covered."""
         return len(self._blocks) >= self.settle_blocks + self.window_blocks
 
     def inputs(self) -> np.ndarray:
@@ -77,7 +77,7 @@ class Operation:
         return np.mean(np.array([block.inputs for block in window], dtype=float), axis=0)
 
     def unheld(self) -> Unheld | None:
-        """Why inputs or heading were not held over settling time and window, or None."""
+        """Reason why inputs or heading were not held over settling time and window, or None."""
         blocks = list(self._blocks)[-(self.settle_blocks + self.window_blocks) :]
         for i, name in enumerate(INPUTS):
             silent = sum(block.inputs[i] is None for block in blocks)

@@ -1,4 +1,4 @@
-"""Are a channel's stamps to be believed? Late, doubled and leaping ones are told apart.
+"""Timestamp check of a channel: late, duplicate and leaping stamps are told apart.
 
 The verdict on a reading depends on the readings of its own channel alone, so it is the same
 however channels interleave.
@@ -22,7 +22,7 @@ STEP_S = 60.0
 
 
 class Order:
-    """Judges the stamps of one channel.
+    """Timestamp check of one channel.
 
     A reading that leaps ahead of the last by more than the channel's longest gap waits until
     `CONFIRM` readings agree on the new time: one false stamp must neither close windows early
@@ -70,7 +70,7 @@ class Order:
         self._waiting: list[Reading] = []
 
     def judge(self, reading: Reading) -> list[Reading]:
-        """Give the readings that are accepted now, this one or those that waited for it."""
+        """Return the readings that are accepted now, this one or those that waited for it."""
         if self.newest is None or reading.stamp > self.newest + self._leap:
             return self._wait(reading)
         self.give_up()
@@ -83,7 +83,7 @@ class Order:
         return []
 
     def give_up(self) -> None:
-        """Refuse what waits: nothing has come to confirm it."""
+        """Reject the waiting readings: nothing has come to confirm them."""
         if not self._waiting:
             return
         leap = f'{self._where} is stamped far from its other readings, and only for a moment'

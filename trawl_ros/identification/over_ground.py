@@ -1,4 +1,4 @@
-"""Is the speed log one? Logs that give speed over ground, told by compass and GPS.
+"""Check of the speed log against compass and GPS: logs that give speed over ground.
 
 Over ground a ship moves as she does through the water and as the water does. What a true log
 leaves of the velocity over ground is the current, the same on every heading. What a log over
@@ -36,7 +36,7 @@ first is the GPS: two instruments have errors of their own."""
 
 @dataclass(frozen=True)
 class GroundTrack:
-    """What is left of the velocity over ground without the log's speed, in one window.
+    """Residual velocity over ground after subtraction of the log's speed, in one window.
 
     ``heading`` (ENU, rad); ``along`` it and ``across`` to port, m/s; ``copied``: whether the log
     follows the GPS speed reading by reading.
@@ -49,7 +49,7 @@ class GroundTrack:
 
     @property
     def current(self) -> np.ndarray:
-        """East and north (2,), m/s."""
+        """Current (2,), east and north, m/s."""
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return np.array(
             [self.along * cos - self.across * sin, self.along * sin + self.across * cos]
@@ -83,7 +83,7 @@ def ground_track(log: Series, east: Series, north: Series, heading: Series) -> G
 
 
 class OverGround:
-    """Collects ground tracks tow by tow, until they tell what the log is."""
+    """Collector of ground tracks tow by tow, until they decide whether the log is over ground."""
 
     def __init__(self) -> None:
         self._tow: int | None = None
@@ -92,7 +92,7 @@ class OverGround:
         self._found: str | None = None
 
     def judge(self, tow: int, track: GroundTrack | None) -> str | None:
-        """Take one window's track; a sentence when the tow's log is known to be over ground."""
+        """Add a window's track; return a sentence once the tow's log is known to be over ground."""
         if tow != self._tow:
             self._tow, self._blind, self._sees, self._found = tow, [], False, None
         if track is None:

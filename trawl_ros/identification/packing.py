@@ -1,4 +1,4 @@
-"""Objects of the identification as plain JSON and raw numbers, and back, bit by bit.
+"""Checkpoint format: objects of the identification as JSON and raw numbers, bit by bit.
 
 Classes change and a saved file must not decide what is built: only classes of the packages
 named here are, without running any of their code, and only with the attributes they have.
@@ -24,7 +24,7 @@ NUMBERS = ('<f8', '<i8', '|b1')
 
 
 class Packer:
-    """Turns objects into JSON and one string of bytes for the numbers of their arrays.
+    """Encoder of objects into JSON and one string of bytes for the numbers of their arrays.
 
     What is met twice is packed once, so objects that share a counter still do afterwards.
 
@@ -51,7 +51,7 @@ class Packer:
         self._met: dict[int, tuple[int, Any]] = {}
 
     def pack(self, value: Any, path: str = '') -> Any:
-        """Give a value as JSON.
+        """Encode a value as JSON.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class Packer:
 
 
 class Unpacker:
-    """Turns what a `Packer` gave back into objects.
+    """Decoder of the output of a `Packer`.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class Unpacker:
         self._made: dict[int, Any] = {}
 
     def unpack(self, tree: Any) -> Any:
-        """Give the value.
+        """Decode a value.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class Unpacker:
 
 
 def attribute_names(value: Any) -> list[str]:
-    """Names of what an object consists of; of a dataclass its fields, without what is cached."""
+    """Names of an object's attributes; of a dataclass its fields, without cached ones."""
     if is_dataclass(value):
         return [field.name for field in fields(value)]
     return list(vars(value))

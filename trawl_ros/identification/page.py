@@ -1,4 +1,4 @@
-"""The report as one page that needs nothing beside it."""
+"""HTML report as one self-contained page."""
 
 import base64
 import math
@@ -23,7 +23,7 @@ PAGE = 'report.html'
 
 @dataclass(frozen=True)
 class Embedded:
-    """A figure as text, and what to see in it."""
+    """Figure embedded as text, and its caption."""
 
     caption: str
     data: str
@@ -32,7 +32,7 @@ class Embedded:
 def page(
     report: Report, folder: Path, drawings: Sequence[Drawing], advice: Sequence[str] = ()
 ) -> str:
-    """Write the page as HTML.
+    """Render the page as HTML.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def _coefficients(report: Report) -> list[dict[str, Any]]:
 
 
 def _laws(report: Report) -> list[dict[str, Any]]:
-    """A row per law, none where nothing is known of them."""
+    """Rows of the laws, none where they are not known."""
     if report.laws is None:
         return []
     known, number = report.laws.quantities, len(LAWS)
@@ -138,5 +138,5 @@ def _tows(report: Report) -> list[dict[str, Any]]:
 
 
 def percent(value: float) -> str:
-    """A part as a percentage, or a dash where it is not known."""
+    """Format a share as a percentage, or a dash where it is not known."""
     return f'{100.0 * value:.1f} %' if math.isfinite(value) else '–'

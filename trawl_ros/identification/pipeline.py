@@ -1,4 +1,4 @@
-"""From samples to estimates: what the node and ``trawl identify`` both are inside."""
+"""Identification pipeline: from samples to estimates, shared by node and ``trawl identify``."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -28,7 +28,7 @@ ONE_CLOCK_S = 3600.0
 
 @dataclass(frozen=True)
 class WindowUsed:
-    """A steady window and the estimate after it."""
+    """Event: a steady window was used, with the estimate after it."""
 
     window: SteadyWindow
     estimate: Estimate
@@ -38,7 +38,7 @@ Event = WindowUsed | RejectedWindow
 
 
 class Identification:
-    """The whole estimator behind one method, `feed`.
+    """Identification pipeline behind one method, `feed`.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Identification:
         self.course: list[WindowUsed] = []
 
     def reset(self) -> None:
-        """Forget all: time has jumped back."""
+        """Reset to no data: time has jumped back."""
         self.finder.reset()
         self.estimator.reset()
         self.guard.reset()
@@ -82,27 +82,27 @@ class Identification:
         return self._use(self.finder.feed(sample))
 
     def finish(self) -> list[Event]:
-        """Decide the windows that are left and bring the estimate to rest."""
+        """Decide the remaining windows and bring the estimate to convergence."""
         events = self._use(self.finder.finish())
         self.estimator.finish()
         return events
 
     def next_tow(self) -> list[Event]:
-        """Decide the windows that are left of this tow; what follows belongs to another."""
+        """Decide the remaining windows of this tow; later samples belong to another."""
         return self._use(self.finder.next_tow())
 
     def take(self, found: Sequence[SteadyWindow]) -> list[Event]:
-        """Use windows that finders of their own have found, one after another."""
+        """Use windows from other finders, one after another."""
         return self._use(found)
 
     @property
     def estimate(self) -> Estimate | None:
-        """The newest estimate."""
+        """Newest estimate."""
         return self.estimator.estimate
 
     @property
     def rejected(self) -> dict[str, int]:
-        """Reason → count, without zeros, in the order of `REASONS`."""
+        """Counts of rejections by reason, without zeros, in the order of `REASONS`."""
         counts = Counter(self.finder.rejected)
         counts.update(self.guard.rejections.counts)
         counts['no steady state'] += self.estimator.without_steady_state
@@ -110,16 +110,16 @@ class Identification:
 
     @property
     def found(self) -> dict[str, str]:
-        """Reason → what was found last, in one sentence; in the order of `REASONS`."""
+        """Last finding by reason, in one sentence; in the order of `REASONS`."""
         sentences = self.finder.rejections.sentences | self.guard.rejections.sentences
         return {reason: sentences[reason] for reason in REASONS if reason in sentences}
 
     def missing_channels(self) -> tuple[str, ...]:
-        """Needed channels from which not one usable reading has come."""
+        """Required channels without any usable reading."""
         return tuple(name for name in REQUIRED if not self.finder.readings[name])
 
     def why_not(self) -> str | None:
-        """One sentence on why there is no estimate; None when there is one."""
+        """Reason in one sentence why there is no estimate; None when there is one."""
         if self.estimate is not None:
             return None
         if missing := self.missing_channels():
@@ -189,7 +189,7 @@ class Identification:
         return events
 
     def _withdraw(self, tow: int) -> None:
-        """Estimate anew without the windows of a tow."""
+        """Repeat the estimate without the windows of a tow."""
         if all(used.window.tow != tow for used in self.course):
             return
         kept = [used.window for used in self.course if used.window.tow != tow]

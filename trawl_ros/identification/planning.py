@@ -1,4 +1,4 @@
-"""A trial for a gear: the one that teaches most in a given time, beside the paper's sweep."""
+"""Trial planning: the most informative trial in a given time, beside the paper's sweep."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -40,8 +40,9 @@ LEAST_LEGS = 2
 
 @dataclass(frozen=True)
 class Gain:
-    """What a leg adds: how many quantities are well known after it, and the one it helps most,
-    with its std as a part of its law's span before and after.
+    """Gain of a leg: number of well-known quantities after it, and the one it improves most.
+
+    ``before`` and ``after`` are the std of ``quantity`` as a share of its law's span.
     """
 
     well_known: int
@@ -52,7 +53,7 @@ class Gain:
 
 @dataclass(frozen=True)
 class TrialPlan:
-    """A planned trial.
+    """Planned trial.
 
     Attributes
     ----------
@@ -96,7 +97,7 @@ def plan_trial(
     estimator: EstimatorOptions | None = None,
     progress: Progress = lambda what, done, number: None,
 ) -> TrialPlan:
-    """Plan a trial.
+    """Plan a trial: optimal experiment design over manoeuvres, within the given time.
 
     It is planned with the board as identification starts, for nothing more is known before. All
     its legs can be towed with that board and with the one that the gear file describes.
@@ -183,7 +184,7 @@ def plan_trial(
 
 
 def filed_coefficients(gear: GearRecord) -> np.ndarray:
-    """The board (12,) that a gear file describes, in the order of eq. 36."""
+    """Coefficients (12,) of the board in a gear file, in the order of eq. 36."""
     return np.array([getattr(gear.board.coefficients, name) for name in COEFFICIENTS])
 
 
@@ -234,7 +235,7 @@ def _gains(designer: Designer, manoeuvres: Sequence[Manoeuvre]) -> tuple[Gain, .
 
 
 def _as_filed(question: Question, candidates: Sequence[Candidate], gear: GearRecord) -> Question:
-    """The same question, asked of the board that the gear file describes."""
+    """The same design question with the board that the gear file describes."""
     coefficients = filed_coefficients(gear)
     return replace(
         question,

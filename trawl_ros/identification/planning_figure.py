@@ -1,4 +1,4 @@
-"""A plan as a picture: where it goes, and what is known after it."""
+"""Figure of a plan: its legs, and the std of the quantities after it."""
 
 from collections import Counter
 

@@ -1,5 +1,4 @@
-"""What windows of a tow would teach: information about the coefficients beside what the
-instruments and the model are wrong by.
+"""Information matrices of windows: of the coefficients, with shared errors as unknowns.
 
 Information of independent windows adds up when that which they share is counted among the
 unknowns: errors of calibration of the tow and of the model, in std, before the coefficients, in
@@ -33,7 +32,7 @@ def information_of(
     options: EstimatorOptions,
     scales: Sequence[float] = AS_STATED,
 ) -> np.ndarray:
-    """Information (`SHARED` + 12 squared) in windows of one steady state.
+    """Information matrix (`SHARED` + 12 squared) of windows in one steady state.
 
     Parameters
     ----------
@@ -57,14 +56,14 @@ def information_of(
 
 
 def information_before(options: EstimatorOptions) -> np.ndarray:
-    """Information before any window: of calibration, of the model's errors, and the prior."""
+    """Prior information matrix: of calibration, of the model's errors, and of the coefficients."""
     # As in `know`: where neither data nor prior say anything, a std of a million.
     weight = max(options.prior_weight, 1e-12)
     return np.diag(np.concatenate((np.ones(SHARED), np.full(12, weight))))
 
 
 def information_in(fit: Fit) -> np.ndarray:
-    """What a fit knows: of the calibration in its newest tow, of the model, and the coefficients.
+    """Information matrix of a fit: calibration of its newest tow, model errors, and coefficients.
 
     Parameters
     ----------
@@ -84,7 +83,7 @@ def information_in(fit: Fit) -> np.ndarray:
 
 
 def covariance_from(information: np.ndarray, prior: BoardPrior) -> np.ndarray:
-    """Covariance (12, 12) of the coefficients."""
+    """Covariance (12, 12) of the coefficients by an information matrix."""
     root = np.linalg.cholesky(information)
     # The lower right block of the inverse needs the lower right block of the factor alone.
     inverse = solve_triangular(root[-12:, -12:], np.eye(12), lower=True)
@@ -97,7 +96,7 @@ def fitted_covariance(
     prior: BoardPrior,
     options: EstimatorOptions,
 ) -> np.ndarray:
-    """What the estimator would say of the coefficients, (12, 12), had it these windows."""
+    """Posterior covariance (12, 12) that the estimator would give with these windows."""
     numbered = tuple(
         replace(part, window=replace(part.window, index=index)) for index, part in enumerate(parts)
     )

@@ -1,4 +1,4 @@
-"""What keeps a quantity from being well known after a trial."""
+"""Limits of knowledge after a trial: reasons why a quantity stays badly known."""
 
 from collections.abc import Mapping, Sequence
 
@@ -18,7 +18,7 @@ WITHOUT_END = 1e4
 def limits_of(
     designer: Designer, manoeuvres: Sequence[Manoeuvre], known: LawQuantities
 ) -> Mapping[str, str]:
-    """Name what limits each quantity that is not well known after a trial.
+    """Return the reason for each quantity that is not well known after a trial.
 
     ``noise`` where the same legs without end would do, ``calibration`` where instruments without
     bias would, ``model`` where a model without error would, several where all of these together
@@ -59,7 +59,7 @@ def limits_of(
 
 
 def _partner(designer: Designer, covariance: np.ndarray, index: int) -> str:
-    """The coefficient of another law whose knowledge would help a quantity most."""
+    """Name the coefficient of another law whose knowledge would improve a quantity most."""
     row = law_rows(designer.question.angles)[index]
     shared = (covariance @ row) ** 2 / np.diag(covariance)
     shared[LAWS[index % len(LAWS)].columns] = 0.0

@@ -1,4 +1,4 @@
-"""The next manoeuvre that would teach most, from where a fit stands."""
+"""Next manoeuvre: the most informative one from the present state of a fit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -44,7 +44,7 @@ which it is looked up anew."""
 
 @dataclass(frozen=True)
 class Advice:
-    """What to do next, and what it would teach.
+    """Advice: the next manoeuvre and its gain.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Advice:
 
     @property
     def helped(self) -> int:
-        """The quantity that it helps most, as an index into `QUANTITIES`."""
+        """Index into `QUANTITIES` of the quantity that improves most."""
         terms = [np.log1p((one.ratio / WELL_KNOWN) ** 2) for one in (self.before, self.after)]
         return int(np.argmax(terms[0] - terms[1]))
 
@@ -84,7 +84,7 @@ class Advice:
 
 
 class Adviser:
-    """Says what to do next.
+    """Adviser on the next manoeuvre.
 
     Looking a manoeuvre up takes seconds, advising a fraction of one. So whoever has time to spare
     calls `look_up` again and again, for one manoeuvre at a time, and `advise` after each window:
@@ -120,16 +120,16 @@ class Adviser:
 
     @property
     def known(self) -> Mapping[Manoeuvre, Candidate]:
-        """Manoeuvres that can be towed in, as far as they have been looked up."""
+        """Feasible manoeuvres among those solved so far."""
         return MappingProxyType(self._known)
 
     @property
     def looked_up(self) -> float:
-        """Part of all manoeuvres that have been looked up."""
+        """Share of all manoeuvres that have been solved."""
         return 0.0 if self._explorer is None else 1.0 - len(self._waiting) / len(self._explorer)
 
     def look_up(self, coefficients: np.ndarray) -> bool:
-        """Look one more manoeuvre up; False when there is none left to do.
+        """Solve one more manoeuvre; False when there is none left.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ class Adviser:
         return True
 
     def advise(self, fit: Fit) -> Advice | None:
-        """What to do after a fit's newest window; None before a window, or with nothing known.
+        """Advise after a fit's newest window; None before a window, or with nothing known.
 
         Of all manoeuvres that is chosen which gains most per minute, as a plan counts it.
         """
@@ -174,7 +174,7 @@ class Adviser:
         return None if best is None else self.promise(fit, best)
 
     def promise(self, fit: Fit, manoeuvre: Manoeuvre) -> Advice:
-        """What one of the `known` manoeuvres would teach, by the fit itself.
+        """Predict the gain of one of the `known` manoeuvres, by the fit itself.
 
         Parameters
         ----------
@@ -206,7 +206,7 @@ class Adviser:
 
 
 def expected_windows(fit: Fit, candidate: Candidate, number: int) -> tuple[Linearised, ...]:
-    """The windows that a manoeuvre would add to a fit, in its newest tow, at its noise."""
+    """Predicted windows of a manoeuvre in a fit's newest tow, at its noise."""
     newest = fit.windows[-1].window
     parts = imagined_windows(
         candidate,
@@ -224,7 +224,7 @@ def expected_windows(fit: Fit, candidate: Candidate, number: int) -> tuple[Linea
 
 
 def _noise_of(fit: Fit) -> Mapping[str, float]:
-    """Median standard error of each channel that is heard, by the windows of the newest tow."""
+    """Median standard error of each channel with readings, over the windows of the newest tow."""
     tow = fit.windows[-1].window.tow
     windows = [part.window for part in fit.windows if part.window.tow == tow]
     heard = {*INPUTS, *(name for part in fit.windows for name in part.channels)}
@@ -248,7 +248,7 @@ def _manoeuvre_of(fit: Fit) -> Manoeuvre:
 
 @dataclass(frozen=True)
 class _Question:
-    """The laws at the angles at which the fit's windows found the boards.
+    """Laws at the angles at which the fit's windows found the boards.
 
     They are measured by what they were expected to span before any tow: by the span of the
     estimate, a law that turns out to have no slope could never be known well.

@@ -1,4 +1,4 @@
-"""A plan as a scenario that ``trawl tow`` can run."""
+"""Scenario file of a plan, for ``trawl tow``."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from trawl_ros.identification.planning_sweep import Trial
 
 
 def scenario_of(trial: Trial, gear: str) -> dict[str, Any]:
-    """What the scenario file says, to be written as YAML.
+    """Return the content of the scenario file, to be written as YAML.
 
     Parameters
     ----------

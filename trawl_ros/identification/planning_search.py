@@ -1,4 +1,4 @@
-"""Which manoeuvres, in a given time, teach most about the six laws."""
+"""Search for the most informative manoeuvres within a given time."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -41,7 +41,7 @@ LEAST_GAIN = 1e-9
 
 
 def shortfall(quantities: LawQuantities) -> float:
-    """How far the twelve quantities are from being well known, to be made small.
+    """Shortfall: design criterion of the twelve quantities' std, to be minimised.
 
     Mean of log(1 + (ratio / 0.2)²) / 2: of a quantity that is hardly known the logarithm of its
     std counts, and little is won by knowing better what is well known.
@@ -51,7 +51,7 @@ def shortfall(quantities: LawQuantities) -> float:
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked of a trial: the laws of this board, in these units, in this time.
+    """Design question: the laws of this board, their spans, and the time for the trial.
 
     ``coefficients`` (12,) as they are believed to be, ``span`` (12,) from `law_spans`.
     """
@@ -66,7 +66,7 @@ class Question:
     minutes: float
 
     def quantities(self, covariance: np.ndarray) -> LawQuantities:
-        """The twelve quantities with a covariance (12, 12) of the coefficients."""
+        """Quantities of the laws with a covariance (12, 12) of the coefficients."""
         return law_quantities(self.coefficients, covariance, self.angles, self.span)
 
 
@@ -76,7 +76,7 @@ board as it is believed to be; a trial that rests on few states is as good as th
 
 
 class Designer:
-    """Builds trials from candidates.
+    """Builder of trials from candidates.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class Designer:
         ]
 
     def legs(self, manoeuvres: Sequence[Manoeuvre]) -> tuple[Leg, ...] | None:
-        """Put manoeuvres in order; None where that cannot be done in the time there is."""
+        """Order manoeuvres into legs; None where they do not fit into the time."""
         if max(Counter(manoeuvres).values(), default=0) > MOST_VISITS:
             return None
         ordered = arranged(manoeuvres)
@@ -127,16 +127,16 @@ class Designer:
         )
 
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> np.ndarray:
-        """Information after manoeuvres, each done so many times."""
+        """Information matrix after manoeuvres, each repeated ``times`` times."""
         taught = [self._taught[self._number[one]] for one in manoeuvres]
         return self._before + times * sum(taught)
 
     def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> np.ndarray:
-        """Covariance (12, 12) of the coefficients after manoeuvres."""
+        """Posterior covariance (12, 12) of the coefficients after manoeuvres."""
         return covariance_from(self.information(manoeuvres), self.question.prior)
 
     def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> np.ndarray:
-        """The same (12, 12), as the estimator itself gives it."""
+        """Posterior covariance (12, 12) as the estimator itself gives it."""
         question = self.question
         parts = [
             part
@@ -146,15 +146,15 @@ class Designer:
         return fitted_covariance(parts, question.coefficients, question.prior, question.estimator)
 
     def quantities(self, manoeuvres: Sequence[Manoeuvre]) -> LawQuantities:
-        """The twelve quantities after manoeuvres."""
+        """Quantities of the laws after manoeuvres."""
         return self.question.quantities(self.covariance(manoeuvres))
 
     def shortfall(self, manoeuvres: Sequence[Manoeuvre]) -> float:
-        """How far the quantities are from being well known after manoeuvres."""
+        """Shortfall of the quantities after manoeuvres."""
         return shortfall(self.quantities(manoeuvres))
 
     def best(self, progress: Callable[[float], None] = lambda minutes: None) -> tuple[Leg, ...]:
-        """The trial that leaves the least shortfall, as far as adding and exchanging finds it.
+        """Return the trial of least shortfall that greedy addition and exchange find.
 
         Manoeuvres are added by what they gain per minute until the time is up; then each is
         exchanged for whatever gains most, and what has become free is filled, until nothing
@@ -197,7 +197,7 @@ class Designer:
             progress(minutes_of(self.legs(chosen) or ()))
 
     def _exchanged(self, chosen: list[Manoeuvre]) -> list[Manoeuvre] | None:
-        """One round in which each manoeuvre may be exchanged; None where nothing was gained."""
+        """Return the result of one round of exchanges; None where nothing was gained."""
         changed = False
         for place in range(len(chosen)):
             rest = chosen[:place] + chosen[place + 1 :]

@@ -1,4 +1,4 @@
-"""What a ship could do to learn about her boards: steady states she can tow in, and what each
+"""Candidate steady states of a trial, and the predictions in each.
 would show.
 
 A turn is not among them: a gear that is towed around has no steady state in fixed axes. Nor is an
@@ -28,7 +28,7 @@ DEPTHS = tuple(name for name in PLANNED if name.endswith('depth'))
 
 @dataclass(frozen=True, order=True)
 class Manoeuvre:
-    """A steady state to tow in: warp lengths (m) and speed through the water (m/s)."""
+    """Manoeuvre: warp lengths (m) and speed through the water (m/s) of a steady state."""
 
     port_length: float
     starboard_length: float
@@ -36,12 +36,12 @@ class Manoeuvre:
 
     @property
     def length(self) -> float:
-        """The longer warp, m."""
+        """Length of the longer warp, m."""
         return max(self.port_length, self.starboard_length)
 
     @property
     def equal(self) -> bool:
-        """Whether both warps are equally long."""
+        """True if both warps are equally long."""
         return self.port_length == self.starboard_length
 
     def __str__(self) -> str:
@@ -53,7 +53,7 @@ class Manoeuvre:
 
 @dataclass(frozen=True)
 class Limits:
-    """Among which manoeuvres one may choose.
+    """Limits of the choice of manoeuvres.
 
     Attributes
     ----------
@@ -80,8 +80,8 @@ class Limits:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A manoeuvre the gear can be towed in, the model there, and how slowly (s, to 1/e) its
-    slowest motion comes to rest.
+    """Candidate: a feasible manoeuvre, the linearised model there, and the decay time (s, to 1/e)
+    of its slowest motion.
     """
 
     manoeuvre: Manoeuvre
@@ -91,7 +91,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Refused:
-    """A manoeuvre that is not to be had, and why."""
+    """Refused manoeuvre with the reason."""
 
     manoeuvre: Manoeuvre
     reason: str
@@ -99,13 +99,13 @@ class Refused:
 
 @dataclass(frozen=True)
 class Choice:
-    """What may be chosen from, and what not."""
+    """Choice: feasible and refused manoeuvres."""
 
     candidates: tuple[Candidate, ...]
     refused: tuple[Refused, ...]
 
     def without(self, lost: Mapping[Manoeuvre, Refused]) -> 'Choice':
-        """The choice without what turned out not to be had."""
+        """Copy of the choice without manoeuvres found infeasible."""
         left = tuple(one for one in self.candidates if one.manoeuvre not in lost)
         return Choice(left, (*self.refused, *lost.values()))
 
@@ -118,7 +118,7 @@ def deepest_point(model: GearModel, found: Equilibrium) -> float:
 
 
 class Explorer:
-    """Looks manoeuvres up one after the other, so that one may stop in between.
+    """Solver of manoeuvres one after the other, so that one may stop in between.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ class Explorer:
 
     @property
     def manoeuvres(self) -> tuple[Manoeuvre, ...]:
-        """All of them: lengths rising, and at each from the highest speed down."""
+        """All manoeuvres: lengths rising, and at each from the highest speed down."""
         limits = self.limits
         return tuple(
             Manoeuvre(length - shorter, length, speed)
@@ -156,7 +156,7 @@ class Explorer:
         )
 
     def __iter__(self) -> Iterator[Candidate | Refused]:
-        """Every manoeuvre once.
+        """Yield the solution of every manoeuvre once.
 
         At a length, nothing is sought at and below a speed at which a gear that could be towed
         faster cannot be towed any more: there the boards have lost their lift.
@@ -213,7 +213,7 @@ class Explorer:
 
 
 def explore(explorer: Explorer, progress: Callable[[int], None] = lambda done: None) -> Choice:
-    """Look all manoeuvres up.
+    """Solve all manoeuvres.
 
     Parameters
     ----------
@@ -246,12 +246,12 @@ def explore(explorer: Explorer, progress: Callable[[int], None] = lambda done: N
 
 
 def _faster(one: Manoeuvre, other: Manoeuvre) -> bool:
-    """Whether one is the other at a higher speed."""
+    """True if one is the other at a higher speed."""
     return one.speed > other.speed and replace(one, speed=other.speed) == other
 
 
 def _asked(manoeuvre: Manoeuvre) -> SteadyWindow:
-    """The window that asks the model for all planned channels."""
+    """Window that asks the model for all planned channels."""
     inputs = (manoeuvre.port_length, manoeuvre.starboard_length, manoeuvre.speed)
     means = dict.fromkeys(PLANNED, 0.0) | dict(zip(INPUTS, inputs, strict=True))
     nothing = dict.fromkeys(means, 0.0)

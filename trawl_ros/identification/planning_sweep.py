@@ -1,4 +1,4 @@
-"""The paper's trial: warp lengths out and back at one speed."""
+"""Sweep of the paper's trial: warp lengths out and back at one speed."""
 
 from dataclasses import dataclass
 from itertools import chain, count
@@ -14,7 +14,7 @@ from trawl_ros.identification.planning_windows import TABLE_NOISE
 
 @dataclass(frozen=True)
 class Trial:
-    """Legs and what they teach.
+    """Trial: its legs and the quantities known after them.
 
     ``known`` is that with the board as it is believed to be, ``by_data`` the same without what
     was known before, and ``as_filed`` that with the board as the gear file has it.
@@ -28,23 +28,23 @@ class Trial:
 
     @property
     def manoeuvres(self) -> tuple[Manoeuvre, ...]:
-        """What is done."""
+        """Manoeuvres of its legs."""
         return tuple(leg.manoeuvre for leg in self.legs)
 
     @property
     def minutes(self) -> float:
-        """How long it takes."""
+        """Duration, min."""
         return minutes_of(self.legs)
 
 
 def paper_noise() -> dict[str, float]:
-    """Standard errors of what the paper's trial measured, with the inputs'."""
+    """Standard errors of the measurements in the paper's trial, with the inputs'."""
     heard = {name for channel in PAPER_CHANNELS for name in channel.observables} | set(INPUTS)
     return {name: value for name, value in TABLE_NOISE.items() if name in heard}
 
 
 def best_sweep(designer: Designer) -> tuple[Leg, ...]:
-    """Sweep all lengths out and back, again and again until the time is up.
+    """Sweep over all lengths out and back, repeated until the time is up.
 
     Of all speeds, the one is taken at which this teaches most.
     """

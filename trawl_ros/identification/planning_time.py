@@ -1,4 +1,4 @@
-"""How long manoeuvres take, and in which order they are done.
+"""Duration of manoeuvres, and the order of a trial.
 
 Warp lengths rise through a trial, so that each metre is paid out once. While warp runs out, the
 gear goes through the water that much slower than the ship; so she first goes faster, lest the
@@ -28,7 +28,7 @@ STEP_MINUTES = 0.5
 
 @dataclass(frozen=True)
 class Ability:
-    """What ship and winches can do, and how fast the gear must be towed.
+    """Limits of ship and winches, and the range of towing speeds.
 
     ``winch_speed``, ``least_speed`` (m/s), ``winch_acceleration``, ``ship_acceleration`` (m/s²);
     ``least_speed`` is the lowest at which the gear keeps its steady state, ``most_speed`` the
@@ -43,12 +43,12 @@ class Ability:
 
     @property
     def veering_speed(self) -> float:
-        """Speed of the ship (m/s) while warp runs out."""
+        """Speed of the ship (m/s) while veering warp."""
         return min(self.least_speed + self.winch_speed, self.most_speed)
 
 
 def ability_of(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> Ability:
-    """What a gear file says of ship and winches, between the speeds of these manoeuvres."""
+    """Limits by a gear file, between the speeds of these manoeuvres."""
     speeds = [one.speed for one in manoeuvres]
     return Ability(
         gear.winch.max_speed_m_s,
@@ -61,7 +61,7 @@ def ability_of(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> Ability:
 
 @dataclass(frozen=True)
 class Leg:
-    """One manoeuvre of a trial.
+    """Leg: one manoeuvre of a trial.
 
     ``veering_minutes`` at ``veering_speed`` come first where warp runs out from a slower tow;
     then ``minutes`` to change, settle and take the windows.
@@ -74,12 +74,12 @@ class Leg:
 
     @property
     def total_minutes(self) -> float:
-        """Both together."""
+        """Minutes of veering and of the manoeuvre together."""
         return self.minutes + self.veering_minutes
 
 
 def winch_time(ability: Ability, metres: float) -> float:
-    """Time (s) to pay out or haul so many metres, from rest to rest."""
+    """Time (s) to veer or haul so many metres, from rest to rest."""
     most, speed = ability.winch_acceleration, ability.winch_speed
     if metres <= speed**2 / most:
         return 2.0 * math.sqrt(metres / most)
@@ -88,7 +88,7 @@ def winch_time(ability: Ability, metres: float) -> float:
 
 @dataclass(frozen=True)
 class Rest:
-    """How a gear comes to rest in a steady state.
+    """Settling of a gear in a steady state.
 
     Tension and spread settle soon; net and doors sink or rise together for minutes. ``net_depth``
     (m) of the net, ``decay`` (s) of its slowest motion to 1/e, and the ``drift`` (m) in one window
@@ -101,7 +101,7 @@ class Rest:
     window: float
 
     def left(self, change: float, moving: float, since: float = 0.0) -> float:
-        """How much (m) of a change of the net's depth is still to come.
+        """Remaining change of the net's depth, m.
 
         Parameters
         ----------
@@ -121,12 +121,12 @@ class Rest:
         return self.decay * math.log(max(first / self.drift, 1.0))
 
     def to_come(self, options: WindowOptions) -> float:
-        """What a window of that drift is taken to be away from rest, m of depth."""
+        """Assumed departure from rest of a window with that drift, m of depth."""
         return self.drift * options.slow_s / self.window
 
 
 def rest_of(candidate: Candidate, options: WindowOptions) -> Rest:
-    """How the gear comes to rest where a candidate is, by what windows ask of it."""
+    """Settling of the gear at a candidate, by the windows' criterion."""
     part = candidate.part
     depths = {
         name: float(value)
@@ -164,7 +164,7 @@ def holding_time(manoeuvre: Manoeuvre, options: WindowOptions, rest: float = 0.0
 
 
 def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
-    """Put manoeuvres in order: warp lengths rising, at each length speeds falling.
+    """Order manoeuvres: warp lengths rising, at each length speeds falling; None if impossible.
 
     What is done twice comes again after another manoeuvre of that length, for a state that goes
     on gives no more windows. None where nothing can come in between.
@@ -185,7 +185,7 @@ def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
 
 
 class Timetable:
-    """Says how long manoeuvres take one after the other.
+    """Timetable: durations of manoeuvres one after the other.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ class Timetable:
     def legs(
         self, manoeuvres: Sequence[Manoeuvre], first_depth: float | None = None
     ) -> tuple[Leg, ...]:
-        """Give the legs of manoeuvres in the order in which they stand.
+        """Return the legs of manoeuvres in the given order.
 
         Parameters
         ----------
@@ -262,18 +262,18 @@ class Timetable:
         return Leg(after, _rounded(slowing + hold), speed, running)
 
     def _depth_at(self, manoeuvre: Manoeuvre, speed: float, known: float) -> float:
-        """Depth (m) of the net at these lengths and as near to a speed as is known."""
+        """Depth (m) of the net at these lengths, at the nearest known speed."""
         depths = {one: rest.net_depth for one, rest in self._at(manoeuvre).items()}
         depths[manoeuvre.speed] = known
         return depths[min(depths, key=lambda one: abs(one - speed))]
 
     def _at(self, manoeuvre: Manoeuvre) -> Mapping[float, Rest]:
-        """What is known at these lengths, by speed."""
+        """Settling at these lengths, by speed."""
         return self._by_lengths.get((manoeuvre.port_length, manoeuvre.starboard_length), {})
 
 
 def minutes_of(legs: Sequence[Leg]) -> float:
-    """How long a trial takes, min."""
+    """Duration of a trial, min."""
     return sum(leg.total_minutes for leg in legs)
 
 

@@ -1,4 +1,4 @@
-"""The windows that a manoeuvre would give."""
+"""Predicted windows of a manoeuvre."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -34,7 +34,7 @@ def imagined_windows(
     noise: Mapping[str, float] = TABLE_NOISE,
     to_come: float = 0.0,
 ) -> tuple[Linearised, ...]:
-    """What windows in a steady state would show if all were as it is believed to be.
+    """Predict the windows in a steady state at the assumed coefficients.
 
     Parameters
     ----------

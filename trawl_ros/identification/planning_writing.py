@@ -1,4 +1,4 @@
-"""Writes a plan into a folder: as JSON, as a scenario, as a picture."""
+"""Files of a plan: JSON, scenario and figure."""
 
 import json
 import math
@@ -58,7 +58,7 @@ def write_plan(plan: TrialPlan, gear: str, folder: Path) -> None:
 
 
 def plan_record(plan: TrialPlan) -> dict[str, Any]:
-    """The plan as JSON has it; lengths in m, speeds in m/s, times in minutes."""
+    """Plan as JSON content; lengths in m, speeds in m/s, times in minutes."""
     return {
         'gear': plan.gear,
         'minutes': plan.trial.minutes,

@@ -1,4 +1,4 @@
-"""What the estimator asks of a model of the gear."""
+"""Protocols of predictors: the estimator's interface to a model of the gear."""
 
 from typing import Any, Protocol, runtime_checkable
 
@@ -8,31 +8,31 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 
 class Prediction(Protocol):
-    """A steady state."""
+    """Prediction of a steady state."""
 
     @property
     def values(self) -> np.ndarray:
-        """The observables (n,), SI."""
+        """Observables (n,), SI."""
         ...
 
     @property
     def jacobian(self) -> np.ndarray:
-        """Their derivatives (n, 15) by the coefficients, both warp lengths and speed."""
+        """Derivatives (n, 15) of the observables by coefficients, both warp lengths and speed."""
         ...
 
     @property
     def slow(self) -> np.ndarray:
-        """What each observable (n,) shows of the gear's coming to rest, per m of net depth."""
+        """Slow mode in each observable (n,), per m of net depth."""
         ...
 
     @property
     def state(self) -> Any:
-        """Where a near-by solution may start from."""
+        """Start value for a nearby solution."""
         ...
 
 
 class Predictor(Protocol):
-    """Finds the steady state of the gear."""
+    """Predictor of the gear's steady state."""
 
     def predict(
         self,
@@ -54,19 +54,19 @@ class Predictor(Protocol):
 
 @runtime_checkable
 class WindowPredictor(Predictor, Protocol):
-    """One whose predictions depend on more of a window than warp lengths and speed."""
+    """Predictor that depends on more of a window than warp lengths and speed."""
 
     def in_window(self, window: SteadyWindow) -> Predictor:
-        """The predictor for this window."""
+        """Return the predictor for this window."""
         ...
 
 
 @runtime_checkable
 class NetPredictor(Predictor, Protocol):
-    """One that knows what its net does."""
+    """Predictor with factors on drag and weight of the net."""
 
     def with_net(self, drag: float, weight: float) -> 'NetPredictor':
-        """The predictor of a gear whose net has this many times the drag and weight in water."""
+        """Return the predictor with these factors on the net's drag and weight in water."""
         ...
 
     def by_net(self, coefficients: np.ndarray, inputs: np.ndarray, found: Any) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What is known of the board before any tow: start values, their std, and bounds."""
+"""Prior of the board's coefficients: start values, their std, and bounds."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from trawl_ros.model.board import COEFFICIENTS
 
 @dataclass(frozen=True)
 class BoardPrior:
-    """Start, standard deviation and bounds of the coefficients, in the order of eq. 36.
+    """Prior of the coefficients: start, standard deviation and bounds, in the order of eq. 36.
 
     All four arrays have shape (12,) and no unit; ``low < high``, ``std > 0`` and the start
     lies within the bounds. ``std`` is also the scale against which sensitivities, shrink
@@ -56,12 +56,12 @@ class BoardPrior:
                 )
 
     def first(self, number: int) -> 'BoardPrior':
-        """The first values only."""
+        """Prior of the first values only."""
         start, std, low, high = (own[:number] for own in self._arrays)
         return BoardPrior(start, std, low, high, self.names[:number])
 
     def followed_by(self, other: 'BoardPrior') -> 'BoardPrior':
-        """With the values of another behind."""
+        """Prior with the values of another appended."""
         pairs = zip(self._arrays, other._arrays, strict=True)
         start, std, low, high = (np.concatenate(pair) for pair in pairs)
         return BoardPrior(start, std, low, high, (*self.names, *other.names))

@@ -1,10 +1,10 @@
-"""What was refused: counts by reason, and of each reason what exactly was found last."""
+"""Rejections: counts by reason, with the last finding of each."""
 
 from collections import Counter
 
 
 class Rejections:
-    """Counts and sentences by reason, a key of `REASONS`.
+    """Rejections: counts and sentences by reason, a key of `REASONS`.
 
     Attributes
     ----------

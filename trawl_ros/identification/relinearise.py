@@ -1,4 +1,4 @@
-"""Which windows are solved anew when the estimate moves, and the fit with those solved."""
+"""Relinearisation: choice of the windows to solve anew as the estimate moves, and their fit."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ def far(
     net: np.ndarray | None,
     threshold: float,
 ) -> bool:
-    """Whether a window is to be solved anew: readings move by so many std to first order.
+    """True if a window is to be relinearised: readings move by so many std to first order.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def moved(
     observables: tuple[str, ...],
     spare: int = 0,
 ) -> Fit:
-    """The fit at this share of the way to another, solved anew where first order would not do.
+    """Fit at this share of the way to another, relinearised where first order would not do.
 
     The newest window always is, lest many small steps walk out of the steady states. So many
     windows as there are to ``spare`` are left out where they have none.
@@ -81,7 +81,7 @@ def moved(
 
 
 def with_those_of(fit: Fit, other: Fit) -> tuple[Fit, list[SteadyWindow]]:
-    """A fit with the windows of another only, and the windows that it loses by that."""
+    """Fit with the windows of another only, and the windows that it loses by that."""
     kept = {part.window.index for part in other.windows}
     lost = [part.window for part in fit.windows if part.window.index not in kept]
     if not lost:
@@ -90,7 +90,7 @@ def with_those_of(fit: Fit, other: Fit) -> tuple[Fit, list[SteadyWindow]]:
 
 
 def comparable(fit: Fit, other: Fit) -> bool:
-    """Whether the windows that another fit solved anew were well known before, and so the cost."""
+    """True if the costs compare: windows relinearised in another fit were well predicted before."""
     return not any(
         part is not old and far(old, fit.coefficients, inputs, fit.net, WELL_KNOWN)
         for part, old, inputs in zip(other.windows, fit.windows, fit.inputs, strict=True)

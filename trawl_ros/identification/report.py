@@ -1,4 +1,4 @@
-"""All that is said about one identification, worked out once for JSON, figures and page."""
+"""Report of an identification, computed once for JSON, figures and page."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 @dataclass(frozen=True)
 class TowOutcome:
-    """One tow: its number and name, how many windows and steady states it gave, and the errors
+    """Outcome of a tow: its number, name, counts of windows and steady states, and the errors
     (4,) in the channels of eq. 35 with which they were predicted when ``held_out``.
     """
 
@@ -48,7 +48,7 @@ class TowOutcome:
 
 @dataclass(frozen=True)
 class KnownLaws:
-    """The boards' laws where they worked.
+    """Laws of the boards at their working angles.
 
     ``attack`` has the least and largest mean α (rad) of both boards in the windows' states,
     ``angles`` the means over them, and ``quantities`` values and slopes there.
@@ -61,7 +61,7 @@ class KnownLaws:
 
 @dataclass(frozen=True)
 class Report:
-    """One identification beside its data.
+    """Report of an identification with its data.
 
     Attributes
     ----------
@@ -125,12 +125,12 @@ class Report:
 
     @property
     def tow_of(self) -> np.ndarray:
-        """The tow (n,) of each window."""
+        """Number of the tow (n,) of each window."""
         return np.array([window.tow for window in self.windows])
 
     @property
     def objectives(self) -> dict[str, float]:
-        """Eq. 35 at ``start`` and ``end``, and at the ``truth`` where that is known."""
+        """Objective of eq. 35 at ``start``, ``end``, and the ``truth`` where that is known."""
         found = {
             'start': objective(self.at_start, self.measured),
             'end': objective(self.at_end, self.measured),
@@ -150,7 +150,7 @@ class Report:
 
     @property
     def by_tow(self) -> tuple[TowOutcome, ...]:
-        """What each tow comes to."""
+        """Outcomes of the tows."""
         found = []
         for tow in map(int, np.unique(self.tow_of)):
             of_tow = self.tow_of == tow
@@ -175,7 +175,7 @@ def report(
     gear: GearRecord | None = None,
     begun: Callable[[int, int], None] | None = None,
 ) -> Report:
-    """Work out the report of a finished identification.
+    """Compute the report of a finished identification.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def _laws(
 
 
 def _values(parts: Sequence[Linearised | None]) -> np.ndarray:
-    """The channels of eq. 35 (n, 4), NaN where there is no steady state."""
+    """Values of the channels of eq. 35 (n, 4), NaN where there is no steady state."""
     return stack(
         [
             np.full(len(PAPER_CHANNELS), np.nan)

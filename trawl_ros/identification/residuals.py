@@ -1,4 +1,4 @@
-"""What the model leaves of each channel, window by window."""
+"""Residuals of each channel, window by window, and their statistics."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from trawl_ros.identification.whiteness import Whiteness, ljung_box
 
 @dataclass(frozen=True)
 class ChannelResiduals:
-    """Measured minus modelled of one channel, in order of time.
+    """Residuals of one channel, measured minus modelled, in order of time.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class ChannelResiduals:
 
     @property
     def scaled(self) -> np.ndarray:
-        """Residuals (n,) in their stated standard deviations."""
+        """Normalised residuals (n,), over their stated std."""
         return self.values / self.stds
 
     @property
@@ -48,12 +48,12 @@ class ChannelResiduals:
 
     @property
     def std(self) -> float:
-        """Scatter of the residuals about their mean; NaN for a single one."""
+        """Standard deviation of the residuals about their mean; NaN for a single one."""
         return float(self.values.std(ddof=1)) if len(self.values) > 1 else float('nan')
 
     @property
     def stated_std(self) -> float:
-        """Root mean square of what was stated."""
+        """Root mean square of the stated std."""
         return float(np.sqrt(np.mean(self.stds**2)))
 
     @property
@@ -63,7 +63,7 @@ class ChannelResiduals:
 
     @property
     def whiteness(self) -> Whiteness | None:
-        """The test of Ljung and Box; None with too few residuals."""
+        """Ljung–Box test of the residuals; None with too few of them."""
         return ljung_box([self.scaled[self.tows == tow] for tow in np.unique(self.tows)])
 
 
@@ -111,7 +111,7 @@ def solve(
 
 
 def residuals(parts: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...]:
-    """Gather the residuals of each channel that any of the windows has.
+    """Collect the residuals of each channel that any of the windows has.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def residuals(parts: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...
 
 
 def innovations(course: Sequence[WindowUsed]) -> tuple[ChannelResiduals, ...]:
-    """Gather what each window's readings differed by from what was predicted before it was used.
+    """Collect the innovations: readings minus their predictions before each window was used.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The report as ``identification.json`` has it."""
+"""Content of ``identification.json``."""
 
 import math
 from typing import Any
@@ -91,7 +91,7 @@ def _laws(report: Report) -> dict[str, Any] | None:
 
 
 def _accepted(report: Report) -> dict[str, Any]:
-    """How many windows and, per channel, readings are in the fit."""
+    """Numbers of windows and, per channel, readings in the fit."""
     readings: dict[str, int] = {}
     for window in report.windows:
         for name, count in window.counts.items():

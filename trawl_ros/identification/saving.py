@@ -1,4 +1,4 @@
-"""The state of an identification in one file, so that who is started anew goes on with it.
+"""Checkpoint of a running identification in one file, from which it can be resumed.
 
 The file is a zip archive without compression: ``state.json`` and the numbers of all arrays in
 ``numbers.bin``, each with a checksum. It holds windows, linearisations with the shapes that the
@@ -36,11 +36,11 @@ DAMAGE = (zipfile.BadZipFile, zlib.error, struct.error)
 
 
 class StateError(TrawlError):
-    """A file of a saved state that is missing, damaged, too large or of something else."""
+    """Checkpoint file that is missing, damaged, too large or of something else."""
 
 
 def save_state(path: Path, identification: Identification, gear: GearRecord) -> None:
-    """Write the state; one that is there is replaced, at once or not at all.
+    """Save a checkpoint; an existing one is replaced atomically.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def save_state(path: Path, identification: Identification, gear: GearRecord) -> 
 
 
 def load_state(path: Path, fresh: Identification, gear: GearRecord) -> Identification:
-    """Read a state.
+    """Load a checkpoint.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def _read(path: Path) -> tuple[bytes, bytes]:
 
 
 def _settings(identification: Identification, gear: GearRecord) -> dict[str, Any]:
-    """Everything that a state is worth nothing without: another gear makes other windows."""
+    """Settings without which a checkpoint is invalid: another gear makes other windows."""
     return {
         'gear': gear.model_dump(mode='json'),
         'windows': asdict(identification.window_options),
@@ -164,7 +164,7 @@ def _settings(identification: Identification, gear: GearRecord) -> dict[str, Any
 
 
 def _differences(found: Any, expected: Any, key: str = '') -> Iterator[str]:
-    """What differs, as 'key found, expected expected'."""
+    """Yield the differences of settings, as 'key found, expected expected'."""
     if isinstance(found, Mapping) and isinstance(expected, Mapping):
         for name in dict.fromkeys((*expected, *found)):
             below = f'{key}.{name}' if key else name

@@ -1,4 +1,4 @@
-"""Channels against each other: could these readings come from this gear at all?
+"""Plausibility screening of channels by the model, within the prior of the board.
 
 Before any tow the board is known within its prior. A steady state far outside what that allows
 is no news about the board: an instrument speaks in a wrong unit, or is wrong altogether.
@@ -33,7 +33,7 @@ IMPLAUSIBLE = 300.0
 
 @dataclass(frozen=True)
 class Judgement:
-    """Channels to leave out and why, or that the window is ``refused``; None where all is well."""
+    """Judgement: channels to leave out and why, or the window ``refused``; None when sound."""
 
     found: Unheld | None = None
     without: tuple[str, ...] = ()
@@ -41,7 +41,7 @@ class Judgement:
 
 
 class Screening:
-    """Judges windows by the model and what is known of the board beforehand.
+    """Screening of windows by the model and the prior of the coefficients.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Screening:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all windows."""
+        """Reset to no windows."""
         self._start: Any = None
         self._state: int | None = None
         self._judgement = Judgement()
@@ -65,7 +65,7 @@ class Screening:
 
     @property
     def near(self) -> Any:
-        """The newest steady state that was found, to start from nearby; None before any."""
+        """Newest steady state found, as a start for nearby ones; None before any."""
         return self._start
 
     def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Judgement:
@@ -109,7 +109,7 @@ class Screening:
     def _distance(
         self, window: SteadyWindow, coefficients: np.ndarray
     ) -> Callable[[Mapping[str, float]], float]:
-        """The squared distance of means from the model, in standard deviations."""
+        """Return the squared Mahalanobis distance of means from the model as a function."""
         solved: dict[tuple[float, float, float], Prediction | None] = {}
 
         def distance(means: Mapping[str, float]) -> float:
@@ -158,7 +158,7 @@ class Screening:
 def _explanations(
     means: Mapping[str, float], distance: Callable[[Mapping[str, float]], float]
 ) -> list[Misreading]:
-    """The units that bring the channels together, the best first."""
+    """Misreadings of units that reconcile the channels, the best first."""
     tried = [
         (distance(repaired), unit)
         for unit in misreadings(means)
@@ -180,7 +180,7 @@ def _unit_judgement(
 
 
 def without(window: SteadyWindow, channels: Sequence[str]) -> SteadyWindow:
-    """The window without some channels."""
+    """Copy of the window without some channels."""
 
     def rest(values: Mapping[str, Any]) -> dict[str, Any]:
         return {name: value for name, value in values.items() if name not in channels}

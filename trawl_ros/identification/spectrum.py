@@ -1,4 +1,4 @@
-"""How much the data know of each direction among the coefficients."""
+"""Spectrum of information over directions among the coefficients."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from trawl_ros.model.board import COEFFICIENTS
 
 @dataclass(frozen=True)
 class Spectrum:
-    """Directions in units of the prior's std, from the best known to the least.
+    """Spectrum: directions in units of the prior's std, from the best known to the least.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Spectrum:
     directions: np.ndarray
 
     def name(self, row: int) -> str:
-        """The coefficients with the largest part in a direction."""
+        """Names of the coefficients with the largest part in a direction."""
         weights = np.abs(self.directions[row])
         order = np.argsort(-weights)
         named = [COEFFICIENTS[i] for i in order if weights[i] >= NAMED_SHARE]
@@ -33,7 +33,7 @@ class Spectrum:
 
 
 def spectrum(covariance: np.ndarray, prior: BoardPrior, prior_weight: float) -> Spectrum:
-    """Take the prior back out of a covariance.
+    """Spectrum of a covariance with the prior's information subtracted.
 
     With C the covariance in prior std, C⁻¹ = V S² Vᵀ + w I: the eigenvalues of C are
     1/(s² + w), whatever else was eliminated on the way to it.

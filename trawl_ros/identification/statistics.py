@@ -1,4 +1,4 @@
-"""Means of correlated readings, their errors, trends, outliers and stuck sensors."""
+"""Statistics of correlated readings: means, their errors, trends, outliers and stuck sensors."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ not longer than its noise is slow cannot tell."""
 
 
 def effective_number(values: np.ndarray) -> float:
-    """Number of independent readings that ``values`` (n,) are worth.
+    """Effective number of independent readings in ``values`` (n,).
 
     From the lag-1 autocorrelation ρ as n (1 − ρ)/(1 + ρ), with Kendall's correction of the
     estimate's bias in short series. Negative ρ is not credited.
@@ -59,7 +59,7 @@ def error_of_mean(values: np.ndarray, stated: float) -> float:
 
 @dataclass(frozen=True)
 class Trend:
-    """Change over the whole series by its fitted slope, the two-sided p-value, and the std of
+    """Trend: change over the series by its fitted slope, the two-sided p-value, and the std of
     the change.
     """
 
@@ -69,12 +69,12 @@ class Trend:
 
     @property
     def beyond_noise(self) -> float:
-        """What is left of the change's size when noise is taken off its square."""
+        """Drift in excess of its noise: root of its square less its error's square."""
         return math.sqrt(max(0.0, self.drift**2 - self.error**2))
 
 
 def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
-    """Straight line through ``values`` (n,) at ``seconds`` (n,), tested against its noise.
+    """Linear trend of ``values`` (n,) at ``seconds`` (n,), tested against its noise.
 
     The degrees of freedom and the slope's error use the effective number of readings of the
     residual, so a slow wander of the sensor is not taken for a trend of the gear.
@@ -108,7 +108,7 @@ def outliers(values: np.ndarray, stated: float, limit: float) -> np.ndarray:
 
 
 def wrapped(angles: np.ndarray) -> np.ndarray:
-    """Angles (n,) in rad as the same ones within ±π."""
+    """Wrap angles (n,) in rad into ±π."""
     return (angles + math.pi) % (2.0 * math.pi) - math.pi
 
 

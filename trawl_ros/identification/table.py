@@ -1,4 +1,4 @@
-"""The report as tables for people."""
+"""Tables of the report for the terminal."""
 
 from rich.table import Table
 
@@ -54,12 +54,12 @@ def channel_table(report: Report) -> Table:
 
 
 def opening_line(report: Report) -> str:
-    """The verdict."""
+    """Verdict in one sentence."""
     return verdict(report).fit
 
 
 def closing_lines(report: Report) -> list[str]:
-    """What remains to be said, one sentence per line."""
+    """Closing remarks, one sentence per line."""
     estimate, objectives = report.estimate, report.objectives
     truth = f', {objectives["truth"]:.4f} at the truth' if 'truth' in objectives else ''
     judged = verdict(report)

@@ -1,4 +1,4 @@
-"""How far time has come, told by the winches: without warp lengths there are no windows."""
+"""Watermark by the stamps of the winches: without warp lengths there are no windows."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ PAUSE_NS = 10 * NANO
 
 @dataclass
 class Timeline:
-    """The stretches of time in which the winches speak, of which the last two count.
+    """Watermark: the stretches of time in which the winches report, of which the last two count.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Timeline:
     _before: int | None = None
 
     def advance(self, stamp: int) -> None:
-        """Take note of a stamp (ns) of the winches."""
+        """Advance to a stamp (ns) of the winches."""
         if self.lead is None:
             self.first = self.start = stamp
         elif stamp > self.lead + PAUSE_NS:
@@ -34,7 +34,7 @@ class Timeline:
         self.lead = stamp if self.lead is None else max(self.lead, stamp)
 
     def speaks_at(self, stamp: int) -> bool:
-        """Whether the winches speak at a stamp (ns), as far as is known."""
+        """True if the winches report at a stamp (ns), as far as is known."""
         if self.lead is None:
             return False
         if stamp > self.lead:

@@ -1,4 +1,4 @@
-"""Tows read apart from each other, brought together in one estimate."""
+"""Tows read in parallel, and brought together in one estimate."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ from trawl_ros.identification.window_records import SteadyWindow
 
 @dataclass(frozen=True)
 class FoundWindows:
-    """What was found in one recording.
+    """Windows found in one recording.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class FoundWindows:
 
 
 def numbered(found: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[str]]:
-    """Number windows, states and tows of all recordings through.
+    """Number windows, states and tows consecutively over all recordings.
 
     Returns
     -------

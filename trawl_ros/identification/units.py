@@ -1,4 +1,4 @@
-"""Units in which instruments speak by mistake, and how much larger or smaller they make a value."""
+"""Wrong units of instruments, and the factors by which they change a value."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -41,14 +41,14 @@ TOWING = (1.2, 3.5)
 
 @dataclass(frozen=True)
 class Misreading:
-    """Channels whose readings are in ``unit``: ``factor`` times the SI value."""
+    """Misreading: channels whose readings are in ``unit``: ``factor`` times the SI value."""
 
     channels: tuple[str, ...]
     unit: str
     factor: float
 
     def repaired(self, means: Mapping[str, float]) -> dict[str, float]:
-        """The means in SI."""
+        """Means converted to SI."""
         return {
             name: mean / self.factor if name in self.channels else mean
             for name, mean in means.items()
@@ -56,11 +56,11 @@ class Misreading:
 
     @property
     def optional(self) -> bool:
-        """Whether windows do without these channels."""
+        """True if windows can do without these channels."""
         return not any(CHANNELS[name].required for name in self.channels)
 
     def sentence(self, means: Mapping[str, float]) -> str:
-        """What was found."""
+        """Sentence on the misreading and its correction."""
         name = next(name for name in self.channels if name in means)
         row = CHANNELS[name]
         return (
@@ -71,7 +71,7 @@ class Misreading:
 
 
 def misreadings(means: Mapping[str, float]) -> list[Misreading]:
-    """All that could be wrong with the units of these channels."""
+    """Return all possible wrong units of these channels."""
     return [
         Misreading(channels, unit, factor)
         for channels in TOGETHER
@@ -81,12 +81,12 @@ def misreadings(means: Mapping[str, float]) -> list[Misreading]:
 
 
 def towable(means: Mapping[str, float]) -> bool:
-    """Whether a mid-water trawl is towed so; a false speed is not worth a solution."""
+    """True in the range of a mid-water trawl's operation; a false speed is not worth a solution."""
     return TOWING[0] <= means['speed'] <= TOWING[1]
 
 
 def unit_of(outside: np.ndarray, channel: Channel) -> str | None:
-    """The unit in which values (n,) would be plausible, all of them outside a channel's range."""
+    """Name the unit in which values (n,), all outside a channel's range, would be plausible."""
     if np.any((outside >= channel.low) & (outside <= channel.high)):
         return None
     for unit, factor in WRONG_UNITS.get(channel.unit, {}).items():

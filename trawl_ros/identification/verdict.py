@@ -1,4 +1,4 @@
-"""What an identification comes to, in sentences; the first one is the verdict."""
+"""Verdict on an identification, in sentences; the first one is the verdict itself."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ NOISY = 2.0
 
 @dataclass(frozen=True)
 class Verdict:
-    """Sentences on one identification.
+    """Verdict: sentences on one identification.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Verdict:
 
 
 def verdict(report: Report) -> Verdict:
-    """Judge a report."""
+    """Return the verdict on a report."""
     held = report.errors['held_out']
     paper = np.array([channel.paper for channel in PAPER_CHANNELS])
     return Verdict(

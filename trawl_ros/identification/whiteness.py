@@ -1,4 +1,4 @@
-"""Whether residuals in order of time are white: the test of Ljung and Box."""
+"""Whiteness of residuals in order of time: the Ljung–Box test."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ reports has a false one."""
 
 @dataclass(frozen=True)
 class Whiteness:
-    """``statistic`` Q of ``lags`` autocorrelations, and the ``p_value`` of a larger one."""
+    """Ljung–Box test: ``statistic`` Q of ``lags`` autocorrelations, and its ``p_value``."""
 
     statistic: float
     lags: int
@@ -26,12 +26,12 @@ class Whiteness:
 
     @property
     def white(self) -> bool:
-        """Whether the residuals pass."""
+        """True if the residuals pass."""
         return self.p_value >= SIGNIFICANT
 
 
 def ljung_box(series: Sequence[np.ndarray], lags: int | None = None) -> Whiteness | None:
-    """Test the autocorrelations of residuals, none of which spans two series.
+    """Test the autocorrelations of residuals (Ljung–Box), none of which spans two series.
 
     Q = n (n + 2) Σₖ ρₖ² / (n - k), which is χ² with as many degrees of freedom as there are
     lags when the residuals are white [1]_. Each series is taken about its own mean, for what

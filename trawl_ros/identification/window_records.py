@@ -1,4 +1,4 @@
-"""Steady windows, rejections, and the rules by which both are decided."""
+"""Records of steady windows and rejections, and the options that decide on both."""
 
 import math
 from collections.abc import Mapping
@@ -37,7 +37,7 @@ MAY_BE_ZERO = (
 
 @dataclass(frozen=True)
 class WindowOptions:
-    """When a window counts as steady.
+    """Options of the window finder: criteria of steadiness.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class WindowOptions:
 
 @dataclass(frozen=True)
 class SteadyWindow:
-    """One stretch of steady towing.
+    """Steady window: one stretch of steady towing.
 
     ``index`` counts windows, ``state`` the steady states they belong to; ``start_ns`` and
     ``end_ns`` are header stamps. Per channel (SI): ``means``, ``noise`` the standard error of
@@ -145,7 +145,7 @@ class SteadyWindow:
 
     @property
     def sense(self) -> float:
-        """Which way the ship goes on her track: 1 or -1, 1 where the heading is not known."""
+        """Course sense on the track: 1 or -1, 1 where the heading is not known."""
         return sense(None if self.track is None else self.track.heading)
 
     def std(self, channel: str, windows_in_state: int = 1) -> float:
@@ -157,7 +157,7 @@ class SteadyWindow:
         return math.sqrt(self.own_noise(channel) ** 2 + shared)
 
     def own_noise(self, channel: str, least: float = 0.0) -> float:
-        """Standard deviation of what a channel's mean shares with no other window, its noise being
+        """Standard deviation of a channel's error that no other window shares, its noise being
         ``least`` at least.
         """
         return math.hypot(max(self.noise[channel], least), self.to_come.get(channel, 0.0))
@@ -165,7 +165,7 @@ class SteadyWindow:
 
 @dataclass(frozen=True)
 class RejectedWindow:
-    """A stretch that was not used, why (a key of `REASONS`), and what exactly was found."""
+    """Rejected window: its reason (a key of `REASONS`) and what exactly was found."""
 
     reason: str
     start_ns: int

@@ -1,4 +1,4 @@
-"""Finds steady windows in a stream of samples.
+"""Window finder: steady windows in a stream of samples.
 
 Windows lie on a grid of header stamps, and a window is decided only when all channels that
 speak have passed its end less their delay. So the result does not depend on when samples
@@ -56,7 +56,7 @@ class SteadyWindowFinder:
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything: time has jumped back."""
+        """Reset to no data: time has jumped back."""
         self.rejections = Rejections()
         self.arrived: Counter[str] = Counter()
         self.readings: Counter[str] = Counter()
@@ -95,7 +95,7 @@ class SteadyWindowFinder:
 
     @property
     def rejected(self) -> Counter[str]:
-        """Reason → count."""
+        """Counts of rejections by reason."""
         return self.rejections.counts
 
     def feed(self, sample: Sample) -> list[SteadyWindow | RejectedWindow]:
@@ -109,14 +109,14 @@ class SteadyWindowFinder:
         return self._advance(self._watermark())
 
     def finish(self) -> list[SteadyWindow | RejectedWindow]:
-        """Decide what is left: no more samples will come."""
+        """Decide the remaining windows: no more samples will come."""
         for buffer in self._buffers.values():
             buffer.order.give_up()
         lead = self._timeline.lead
         return [] if lead is None else self._advance(lead + 1)
 
     def next_tow(self) -> list[SteadyWindow | RejectedWindow]:
-        """Decide what is left of this tow and begin the next; states and counts go on."""
+        """Decide the remaining windows of this tow and begin the next; states and counts go on."""
         found = self.finish()
         if any(buffer.newest is not None for buffer in self._buffers.values()):
             self._begin_tow()
@@ -124,7 +124,7 @@ class SteadyWindowFinder:
         return found
 
     def _watermark(self) -> int | None:
-        """Stamp (ns) that all channels have passed that are waited for."""
+        """Watermark: stamp (ns) that all channels have passed that are waited for."""
         lead = self._timeline.lead
         if lead is None:
             return None
@@ -180,7 +180,7 @@ class SteadyWindowFinder:
         self._last_winch = int(stamps.max())
 
     def _hours(self, stamp: float) -> float:
-        """Since the tow began."""
+        """Time since the tow began, h."""
         return 0.0 if self._began is None else (stamp - self._began) / (3600.0 * NANO)
 
     def _summary(self, index: int) -> Block:

@@ -1,4 +1,4 @@
-"""Writes a report into a folder."""
+"""Files of a report."""
 
 import json
 from collections.abc import Sequence

@@ -1,1 +1,1 @@
-"""Truth in, sample out: what the instruments of a trawler report, with their errors. No ROS."""
+"""Emulated instruments of a trawler: truth in, samples with errors out. No ROS."""

@@ -1,4 +1,4 @@
-"""Spells of trouble that come at random: how a link drops out, how a sensor hangs."""
+"""Random bursts of trouble, such as dropouts of a link or a hanging sensor."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ HOUR = 3600.0
 
 @dataclass(frozen=True)
 class BurstModel:
-    """How often spells begin and how long they last.
+    """Statistics of bursts: rate and mean length.
 
     ``per_hour`` counts from the end of the last one, ``mean_s`` is their mean length; both are
     exponentially distributed. 0: there are none.
@@ -25,7 +25,7 @@ NO_BURSTS = BurstModel()
 
 
 class Bursts:
-    """Tells whether a spell is on; it goes by time, not by the number of samples.
+    """Random process of bursts; it goes by time, not by the number of samples.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Bursts:
         self._until: int | None = None
 
     def on(self, stamp: int) -> bool:
-        """Tell whether a spell is on at a stamp (ns), not before the last one asked about."""
+        """True during a burst at a stamp (ns), not before the last one asked about."""
         model = self._model
         if model.per_hour == 0.0 or model.mean_s == 0.0:
             return False

@@ -1,4 +1,4 @@
-"""One measured quantity with its errors.
+"""Measurement channel: one quantity with its errors.
 
     reading = quantised(limited((1 + scale) truth + offset + drift + bias + noise [+ outlier]))
 
@@ -23,7 +23,7 @@ FAR_OFF = 1.0
 
 @dataclass(frozen=True)
 class ErrorModel:
-    """Errors of a channel, in the channel's unit.
+    """Error model of a channel, in the channel's unit.
 
     ``white_std`` is drawn per sample. ``correlated_std`` is that of a first-order process
     with ``correlation_time`` (s). ``bias_std`` is that of a constant drawn anew for each
@@ -53,7 +53,7 @@ class ErrorModel:
 
 
 class Channel:
-    """Measures one quantity.
+    """Measurement channel of one quantity.
 
     Parameters
     ----------
@@ -75,30 +75,30 @@ class Channel:
 
     @property
     def stated_std(self) -> float:
-        """What the sensor says of its own noise, in the channel's unit."""
+        """Stated standard deviation of the sensor's noise, in the channel's unit."""
         return self.errors.stated_std
 
     @property
     def faults(self) -> tuple[Fault, ...]:
-        """The faults that are on."""
+        """Active faults."""
         return tuple(Fault(kind, size) for kind, size in self._faults.items())
 
     def put(self, fault: Fault) -> None:
-        """Switch a fault on; one of the same kind is replaced."""
+        """Activate a fault; one of the same kind is replaced."""
         self._faults[fault.kind] = fault.size
         if fault.kind == 'drift':
             self._drift_began = None
 
     def take_off(self, kind: str) -> None:
-        """Switch one kind of fault off."""
+        """Deactivate one kind of fault."""
         self._faults.pop(kind, None)
 
     def clear(self) -> None:
-        """Switch all faults off."""
+        """Deactivate all faults."""
         self._faults.clear()
 
     def restart(self) -> None:
-        """Forget all but the faults: the same readings follow as from a new channel."""
+        """Reset all but the faults: the same readings follow as from a new channel."""
         self._white = self._generator('white')
         self._driving = self._generator('correlated')
         self._wild = self._generator('outliers')
@@ -111,7 +111,7 @@ class Channel:
         self._latest = math.nan
 
     def measure(self, value: float, stamp: int, state: int = 0) -> float:
-        """Measure.
+        """Return the reading of a value.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Distances: what range sensors report."""
+"""Range sensors: distances and their limits."""
 
 import math
 
@@ -8,14 +8,14 @@ from trawl_ros.instruments.samples import RangeSample
 
 
 def within(distance: float, low: float, high: float) -> float:
-    """Give a distance (m), or ±infinity where it is out of the sensor's limits (REP-117)."""
+    """Return a distance (m), or ±infinity where it is out of the sensor's limits (REP-117)."""
     if distance > high:
         return math.inf
     return -math.inf if distance < low else distance
 
 
 class RangeInstrument(Instrument[float, RangeSample]):
-    """Sees a distance (m) and reports it."""
+    """Range sensor. Observes a distance (m) and reports it."""
 
     def __init__(self, name: str, what: str, parameters: RangeParameters, draws: Draws) -> None:
         super().__init__(name, parameters.timing(), {'distance': parameters.model()}, draws)

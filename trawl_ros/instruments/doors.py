@@ -1,4 +1,4 @@
-"""The sensors on the doors: depth by pressure, inclinometers, acoustic spread."""
+"""Door sensors: depth by pressure, inclinometers, acoustic spread."""
 
 import math
 
@@ -36,7 +36,7 @@ def pitch_and_roll(orientation: np.ndarray) -> tuple[float, float]:
 
 
 def off_axis(doors: Doors) -> float:
-    """Give the larger angle (rad) between a door's inward normal and the way to the other door."""
+    """Return the larger angle (rad) between a door's inward normal and the way to the other."""
     port, starboard = (door.position for door in doors)
     worst = 0.0
     for door, way, outward in zip(
@@ -50,7 +50,7 @@ def off_axis(doors: Doors) -> float:
 
 
 class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
-    """A door's inclinometer. Sees the door's orientation, a quaternion (4,)."""
+    """Inclinometer of a door. Observes the door's orientation, a quaternion (4,)."""
 
     def __init__(self, side: str, parameters: AttitudeParameters, draws: Draws) -> None:
         errors = {'pitch': parameters.model(), 'roll': parameters.model()}
@@ -69,7 +69,7 @@ class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
 
 
 class DoorSpread(Instrument[Doors, RangeSample]):
-    """The acoustic distance from door to door. Sees both doors, port first.
+    """Acoustic spread sensor from door to door. Observes both doors, port first.
 
     Sound takes its time by the speed it has there, and that time is turned into metres by the
     speed that was set. When the doors turn away from each other there is no sample.
@@ -100,7 +100,7 @@ class DoorSpread(Instrument[Doors, RangeSample]):
 
 
 class DoorInstruments:
-    """All that measures on the doors; ``pressure`` and ``attitude`` in the order of `SIDES`."""
+    """Instruments of both doors; ``pressure`` and ``attitude`` in the order of `SIDES`."""
 
     def __init__(
         self, parameters: DoorParameters, draws: Draws, *, surroundings: Surroundings
@@ -120,7 +120,7 @@ class DoorInstruments:
         self.instruments: tuple[Faulty, ...] = (*self.pressure, *self.attitude, self.spread)
 
     def observe(self, truth: Truth) -> list[Sample]:
-        """Give the samples that are due."""
+        """Return the samples that are due."""
         samples: list[Sample] = []
         for door, pressure, attitude in zip(truth.doors, self.pressure, self.attitude, strict=True):
             samples += pressure.observe(-float(door.position[2]), truth.stamp)

@@ -1,4 +1,4 @@
-"""The echo sounder under the keel: depth of the seabed, and of fish above it."""
+"""Echo sounder under the keel: depth of the seabed, and of fish above it."""
 
 import math
 from abc import abstractmethod
@@ -19,7 +19,7 @@ RINGS, RAYS_PER_RING = 4, 12
 
 @dataclass(frozen=True)
 class Below:
-    """What is under the ship: the ``keel`` (3,) in ``map``, the ``seabed``'s depth there (m below
+    """Surroundings of the keel: its place ``keel`` (3,) in ``map``, the ``seabed``'s depth (m below
     the mean surface) and the schools of fish.
     """
 
@@ -29,12 +29,12 @@ class Below:
 
     @property
     def clearance(self) -> float:
-        """From the keel down to the seabed, m."""
+        """Clearance of the keel over the seabed, m."""
         return self.seabed + float(self.keel[2])
 
 
 def cone(half_angle: float) -> np.ndarray:
-    """Give unit vectors (n, 3) that fill a cone about straight down, evenly from its axis out."""
+    """Return unit vectors (n, 3) that fill a cone about straight down, evenly from its axis out."""
     tilts = np.repeat(np.arange(1, RINGS + 1) / RINGS * half_angle, RAYS_PER_RING)
     around = np.tile(np.arange(RAYS_PER_RING) / RAYS_PER_RING * 2 * math.pi, RINGS)
     rays = np.column_stack(
@@ -44,7 +44,7 @@ def cone(half_angle: float) -> np.ndarray:
 
 
 class _Sounding(Instrument[Below, RangeSample]):
-    """A distance down from the keel, by the time that sound takes.
+    """Sounding: a distance down from the keel, by the travel time of sound.
 
     That time is turned into metres by the speed of sound that was set.
     """
@@ -66,7 +66,7 @@ class _Sounding(Instrument[Below, RangeSample]):
 
     @abstractmethod
     def _distance(self, part: Below) -> float:
-        """The true one, m; infinite where there is nothing."""
+        """True distance, m; infinite where there is nothing."""
 
     def _read(self, part: Below, stamp: int) -> RangeSample:
         distance = self._distance(part)
@@ -80,14 +80,14 @@ class _Sounding(Instrument[Below, RangeSample]):
 
 
 class DepthSounding(_Sounding):
-    """From the keel straight down to the seabed."""
+    """Sounding of the seabed, straight down from the keel."""
 
     def _distance(self, part: Below) -> float:
         return part.clearance
 
 
 class SchoolSounding(_Sounding):
-    """From the keel to the nearest fish in the beam, above the seabed.
+    """Sounding of the nearest fish in the beam, above the seabed.
 
     ``half_angle`` is that of the beam, rad.
     """
@@ -116,7 +116,7 @@ class SchoolSounding(_Sounding):
 
 
 class EchoSounder:
-    """Both readings of the sounder. ``draught`` (m) is that of the keel."""
+    """Echo sounder with both soundings. ``draught`` (m) is that of the keel."""
 
     def __init__(
         self,
@@ -139,7 +139,7 @@ class EchoSounder:
         self._keel = np.array([0.0, 0.0, -draught])
 
     def observe(self, truth: Truth) -> list[Sample]:
-        """Give the samples that are due."""
+        """Return the samples that are due."""
         keel = truth.vessel.position + self._keel
         below = Below(keel, truth.seabed.under_ship, truth.schools)
         return [*self.depth.observe(below, truth.stamp), *self.school.observe(below, truth.stamp)]

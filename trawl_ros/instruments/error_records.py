@@ -1,4 +1,4 @@
-"""Errors of a channel as a file has them: one record per unit, every key with its unit."""
+"""Records of a channel's errors in a file: one per unit, every key with its unit."""
 
 import math
 from typing import Annotated, ClassVar
@@ -57,7 +57,7 @@ class Errors(Record):
         return self
 
     def model(self) -> ErrorModel:
-        """Give the same errors in SI units."""
+        """Return the error model in SI units."""
         white, resolution = self._si('noise'), self._si('resolution')
         stated = getattr(self, f'stated_std_{self.unit}')
         # Rounding to multiples of r adds r²/12 of variance.

@@ -1,4 +1,4 @@
-"""Faults that come and go at times known before."""
+"""Plan of faults at times known before."""
 
 import math
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from trawl_ros.instruments.sampling import SECOND, TOLERANCE
 
 @dataclass(frozen=True)
 class PlannedFault:
-    """A fault from ``begin`` until ``end`` (s since the first truth; None: to the end)."""
+    """Planned fault from ``begin`` until ``end`` (s since the first truth; None: to the end)."""
 
     begin: float
     end: float | None
@@ -19,7 +19,7 @@ class PlannedFault:
 
 
 class FaultPlan:
-    """Switches faults on and off as time goes on.
+    """Plan that activates and deactivates faults in time.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class FaultPlan:
         self._latest = 0
 
     def follow(self, stamp: int) -> None:
-        """Let the plan take effect at a stamp (ns); an earlier one than before starts it anew."""
+        """Advance the plan to a stamp (ns); an earlier one than before starts it anew."""
         if not self._faults:
             return
         if self._first is None or stamp < self._latest:

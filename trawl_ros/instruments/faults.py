@@ -1,4 +1,4 @@
-"""Faults that are switched on and off: what goes wrong with a sensor, where, and when.
+"""Faults of sensors on command: their kinds, places and switching.
 
 A fault is named by a word and, where it has a size, a number in the SI unit of the quantity:
 ``frozen``, ``offset -3.5``, ``scale 1.02``. It sits on a whole instrument (by its topic) or on
@@ -18,7 +18,7 @@ NONE = 'none'
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of fault: what it does, and the range of its size; no range, no size."""
+    """Kind of fault: its description, and the range of its size; no range, no size."""
 
     sentence: str
     low: float | None = None
@@ -26,7 +26,7 @@ class Kind:
 
     @property
     def sized(self) -> bool:
-        """Whether it has a size."""
+        """True for a kind with a size."""
         return self.low is not None
 
 
@@ -59,7 +59,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType({**OF_QUANTITIES, **OF_INSTRUMENTS}
 
 @dataclass(frozen=True)
 class Fault:
-    """A kind of fault and its size (NaN where it has none)."""
+    """Fault: a kind and its size (NaN where it has none)."""
 
     kind: str
     size: float = math.nan
@@ -69,7 +69,7 @@ class Fault:
 
 
 def parse_fault(text: str) -> Fault | None:
-    """Read a fault off text such as ``offset -3.5``; None for ``none``.
+    """Parse a fault such as ``offset -3.5``; None for ``none``.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def parse_fault(text: str) -> Fault | None:
 
 
 class Faulty(Protocol):
-    """What faults can sit on."""
+    """Instrument that can have faults."""
 
     @property
     def name(self) -> str:
@@ -110,23 +110,23 @@ class Faulty(Protocol):
 
     @property
     def quantities(self) -> Sequence[str]:
-        """Its quantities."""
+        """Names of its quantities."""
 
     def put(self, fault: Fault, quantity: str | None) -> None:
-        """Switch a fault on; one of the same kind is replaced."""
+        """Activate a fault; one of the same kind is replaced."""
 
     def take_off(self, kind: str, quantity: str | None) -> None:
-        """Switch one kind of fault off."""
+        """Deactivate one kind of fault."""
 
     def clear(self, quantity: str | None) -> None:
-        """Switch off all faults of a quantity, or all there are."""
+        """Deactivate all faults of a quantity, or all there are."""
 
     def faults(self) -> dict[str, tuple[Fault, ...]]:
-        """Give the faults that are on, by topic or topic/quantity."""
+        """Return the active faults by topic or topic/quantity."""
 
 
 class FaultPanel:
-    """Switches the faults of several instruments.
+    """Fault panel: activates and deactivates faults of several instruments.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class FaultPanel:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """Where faults can sit: topics, and topics with a quantity."""
+        """Possible places of faults: topics, and topics with a quantity."""
         found = []
         for name, instrument in self._instruments.items():
             found.append(name)
@@ -148,11 +148,11 @@ class FaultPanel:
         return tuple(found)
 
     def knows(self, where: str) -> bool:
-        """Tell whether a place is one of these instruments'."""
+        """True if a place is one of these instruments'."""
         return self._place(where) is not None
 
     def check(self, where: str, what: str) -> tuple[Faulty, str | None, Fault | None]:
-        """Read place and fault, and switch nothing.
+        """Parse place and fault without activating anything.
 
         Raises
         ------
@@ -181,7 +181,7 @@ class FaultPanel:
         return instrument, quantity, fault
 
     def switch(self, where: str, what: str) -> None:
-        """Switch a fault on, or all of a place off with ``none``.
+        """Activate a fault, or deactivate all of a place by ``none``.
 
         Raises
         ------
@@ -195,14 +195,14 @@ class FaultPanel:
             instrument.put(fault, quantity)
 
     def switch_off(self, where: str, what: str) -> None:
-        """Switch one fault off that `switch` has switched on, and leave others at its place."""
+        """Deactivate one fault that `switch` has activated, and leave others at its place."""
         place, fault = self._place(where), parse_fault(what)
         if place is not None and fault is not None:
             instrument, quantity = place
             instrument.take_off(fault.kind, quantity)
 
     def active(self) -> dict[str, str]:
-        """Give the faults that are on, by place."""
+        """Return the active faults by place."""
         return {
             place: ', '.join(map(str, faults))
             for instrument in self._instruments.values()

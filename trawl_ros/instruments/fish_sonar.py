@@ -1,4 +1,4 @@
-"""The fish sonar of the ship: it sweeps a sector ahead and shows where schools are."""
+"""Fish sonar of the ship: sweeps of a sector ahead, with the schools in it."""
 
 import math
 
@@ -19,7 +19,7 @@ Around = tuple[VesselTruth, tuple[SchoolTruth, ...]]
 
 
 class FishSonar(Instrument[Around, SchoolsSample]):
-    """Sees ship and schools, `Around`; reports a sample per sweep, empty where nothing is seen.
+    """Fish sonar. Observes ship and schools, `Around`; reports a sample per sweep.
 
     A school can be seen when the middle of it is within range and sector and some of it in the
     beam, which is tilted down. Whether it is seen is drawn for each school and sweep, by how
@@ -57,7 +57,7 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         super().__init__('vessel/fish_sonar', parameters.timing(), errors, draws)
 
     def echo_level(self, school: SchoolTruth, distance: float, depth: float) -> float:
-        """Level of a school's echo, dB, of a source of 0 dB.
+        """Echo level of a school, dB, of a source of 0 dB.
 
         TS + 10 log N − 40 log r − 2 α r: all N fish echo with the target strength TS, sound
         spreads as on a sphere and is absorbed on both ways.
@@ -81,7 +81,7 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         return SchoolsSample(stamp, seen[np.argsort(np.linalg.norm(seen, axis=1))])
 
     def _seen(self, vessel: VesselTruth, school: SchoolTruth, stamp: int) -> np.ndarray | None:
-        """Where a school seems to be, in frame ``vessel``; None if it is not seen."""
+        """Measured position of a school in frame ``vessel``; None if it is not detected."""
         record = self._parameters
         sonar = np.array([0.0, 0.0, -self._draught])
         east, north, up = school.position - vessel.position

@@ -1,4 +1,4 @@
-"""Between ``map`` and latitude and longitude.
+"""Conversion of positions in ``map`` and latitude and longitude.
 
 ``map`` is the plane that touches the ellipsoid WGS 84 at the datum (NIMA TR8350.2). A point
 goes to geocentric coordinates by the rotation of east, north, up at the datum, and on to
@@ -19,14 +19,14 @@ _SECOND_ECCENTRICITY_2 = _ECCENTRICITY_2 / (1 - _ECCENTRICITY_2)
 
 @dataclass(frozen=True)
 class Datum:
-    """Where on Earth ``map`` has its origin: degrees, WGS 84."""
+    """Datum: latitude and longitude (degrees, WGS 84) of the origin of ``map``."""
 
     latitude: float
     longitude: float
 
 
 def to_latitude_longitude(position: np.ndarray, datum: Datum) -> tuple[float, float]:
-    """Give latitude and longitude (degrees) of a position (3,) in ``map``, m."""
+    """Return latitude and longitude (degrees) of a position (3,) in ``map``, m."""
     east, north, up = (float(part) for part in position)
     lat, lon = math.radians(datum.latitude), math.radians(datum.longitude)
     curvature = SEMI_MAJOR / math.sqrt(1 - _ECCENTRICITY_2 * math.sin(lat) ** 2)
@@ -46,7 +46,7 @@ def to_latitude_longitude(position: np.ndarray, datum: Datum) -> tuple[float, fl
 def to_east_north(
     latitudes: np.ndarray, longitudes: np.ndarray, datum: Datum
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Give east and north (n,) in ``map``, m, of places (n,) on the ellipsoid, degrees.
+    """Return east and north (n,) in ``map``, m, of places (n,) on the ellipsoid, degrees.
 
     The inverse of `to_latitude_longitude` but for the height, which a place at sea does not need.
     """

@@ -1,4 +1,4 @@
-"""What all instruments have in common: a rate, channels with errors, faults, and a seed."""
+"""Base class of instruments: sampling clock, channels with errors, faults, and a seed."""
 
 from abc import ABC, abstractmethod
 from bisect import bisect_right
@@ -23,7 +23,7 @@ DROPOUT_S = 10.0
 
 @dataclass(frozen=True)
 class Draws:
-    """What decides on all that is drawn at random.
+    """Seed plan of an instrument's random numbers.
 
     ``seed`` is not negative. ``state_changes`` are the times at which biases are drawn anew,
     rising, in seconds since the instrument's first truth. They are given, as a trial's plan
@@ -35,7 +35,7 @@ class Draws:
 
 
 class Beat:
-    """When an instrument samples and sends: its timing, with what faults do to it.
+    """Sampling clock of an instrument: times of sampling and sending, with timing faults.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Beat:
 
     @property
     def faults(self) -> tuple[Fault, ...]:
-        """The faults that are on."""
+        """Active faults of the timing."""
         return tuple(Fault(kind, size) for kind, size in self._faults.items())
 
     @property
@@ -72,7 +72,7 @@ class Beat:
         return self._timing.latency + self._faults.get('late', 0.0)
 
     def put(self, fault: Fault) -> None:
-        """Switch a fault on."""
+        """Activate a fault."""
         self._faults[fault.kind] = fault.size
         if fault.kind == 'dropouts':
             share = fault.size
@@ -81,25 +81,25 @@ class Beat:
             self._faulty = Bursts(BurstModel(rate, DROPOUT_S), drawn)
 
     def take_off(self, kind: str) -> None:
-        """Switch one kind of fault off."""
+        """Deactivate one kind of fault."""
         self._faults.pop(kind, None)
         if kind == 'dropouts':
             self._faulty = Bursts(NO_BURSTS, generator(self._seed, f'{self._name}/fault'))
 
     def clear(self) -> None:
-        """Switch all faults off."""
+        """Deactivate all faults."""
         for kind in list(self._faults):
             self.take_off(kind)
 
     def started_anew(self, stamp: int) -> bool:
-        """Take note of a stamp (ns); tell whether it is the first, or lies before the last one."""
+        """Register a stamp (ns); True if it is the first, or lies before the last one."""
         anew = self._sampler.started_anew(stamp)
         if anew:
             self._restart()
         return anew
 
     def due(self, stamp: int) -> bool:
-        """Tell whether to sample at a stamp (ns), which `started_anew` has been told of."""
+        """True if a sample is due at a stamp (ns), which `started_anew` has registered."""
         size = self._timing.jitter + self._faults.get('jitter', 0.0)
         if not self._sampler.due(stamp, size * self._shift if size else 0.0):
             return False
@@ -107,7 +107,7 @@ class Beat:
         return True
 
     def sends(self, stamp: int) -> bool:
-        """Tell whether what was sampled at a stamp (ns) is sent."""
+        """True if a sample taken at a stamp (ns) is sent."""
         # Both are asked, so that each has its own time.
         dropped, faulty = self._dropouts.on(stamp), self._faulty.on(stamp)
         return not (dropped or faulty or 'silent' in self._faults)
@@ -127,7 +127,7 @@ class Beat:
 
 
 class Instrument(ABC, Generic[PartT, SampleT]):
-    """An instrument looks at its part of the truth and now and then reports a sample.
+    """Instrument: observes its part of the truth and reports samples at its rate.
 
     It samples on the stamps it is shown, never on a clock. A stamp before the last one (a
     looping bag, a reset simulation) starts it anew, with the readings of a new instrument;
@@ -160,11 +160,11 @@ class Instrument(ABC, Generic[PartT, SampleT]):
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Names of what it measures."""
+        """Names of the measured quantities."""
         return tuple(self._channels)
 
     def put(self, fault: Fault, quantity: str | None = None) -> None:
-        """Switch a fault on, on one quantity or, without it, on the whole instrument."""
+        """Activate a fault, on one quantity or, without it, on the whole instrument."""
         if fault.kind in OF_INSTRUMENTS:
             self._beat.put(fault)
         else:
@@ -172,7 +172,7 @@ class Instrument(ABC, Generic[PartT, SampleT]):
                 channel.put(fault)
 
     def take_off(self, kind: str, quantity: str | None = None) -> None:
-        """Switch one kind of fault off."""
+        """Deactivate one kind of fault."""
         if kind in OF_INSTRUMENTS:
             self._beat.take_off(kind)
         else:
@@ -180,14 +180,14 @@ class Instrument(ABC, Generic[PartT, SampleT]):
                 channel.take_off(kind)
 
     def clear(self, quantity: str | None = None) -> None:
-        """Switch all faults of a quantity off, or all there are."""
+        """Deactivate all faults of a quantity, or all there are."""
         if quantity is None:
             self._beat.clear()
         for channel in self._chosen(quantity):
             channel.clear()
 
     def faults(self) -> dict[str, tuple[Fault, ...]]:
-        """Give the faults that are on, by topic or topic/quantity."""
+        """Return the active faults by topic or topic/quantity."""
         alone = len(self._channels) == 1
         found = {self.name: self._beat.faults}
         for channel in self._channels.values():
@@ -196,7 +196,7 @@ class Instrument(ABC, Generic[PartT, SampleT]):
         return {place: on for place, on in found.items() if on}
 
     def observe(self, part: PartT, stamp: int) -> list[SampleT]:
-        """Look at the truth.
+        """Observe the truth; return the samples that arrive.
 
         Parameters
         ----------
@@ -229,10 +229,10 @@ class Instrument(ABC, Generic[PartT, SampleT]):
 
     @abstractmethod
     def _read(self, part: PartT, stamp: int) -> SampleT | None:
-        """Make the sample that is due; None where nothing can be measured."""
+        """Return the sample that is due; None where nothing can be measured."""
 
     def _restart(self) -> None:
-        """Forget what is remembered beside the channels' own memory."""
+        """Reset state beside that of the channels."""
 
     def _measure(self, channel: str, value: float, stamp: int) -> float:
         return self._channels[channel].measure(value, stamp, self._state)

@@ -25,7 +25,7 @@ BASE = 'base'
 
 
 class WinchParameters(Timed):
-    """Both winches: counter, pay-out speed and load cell; sides err independently.
+    """Winches: counter, pay-out speed and load cell; sides err independently.
 
     The counting wheel counts wire as it is stretched when it passes: by its tension over
     ``wire_stiffness_mn``, beyond what the counter was calibrated with, ``calibrated_at_kn``. The
@@ -42,15 +42,15 @@ class WinchParameters(Timed):
 
 
 class PressureParameters(PressureErrors, Timed):
-    """A pressure sensor."""
+    """Pressure sensor."""
 
 
 class AttitudeParameters(AngleErrors, Timed):
-    """An inclinometer; pitch and roll err alike and independently."""
+    """Inclinometer; pitch and roll err alike and independently."""
 
 
 class LimitedLength(LengthErrors):
-    """A distance; outside its limits the reading is infinite (REP-117)."""
+    """Length sensor; outside its limits the reading is infinite (REP-117)."""
 
     min_range_m: NotNegative
     max_range_m: Annotated[float, Field(gt=0, le=10_000)]
@@ -66,26 +66,26 @@ class LimitedLength(LengthErrors):
 
 
 class RangeParameters(LimitedLength, Timed):
-    """A sensor of a distance."""
+    """Range sensor."""
 
 
 class VelocityParameters(Timed):
-    """A velocity over ground or through the water, with the rate of turn."""
+    """Velocity sensor over ground or through the water, with the rate of turn."""
 
     velocity: SpeedErrors
     yaw_rate: TurnErrors
 
 
 class FixParameters(LengthErrors, Timed):
-    """A position; east and north err alike and independently."""
+    """Position sensor; east and north err alike and independently."""
 
 
 class HeadingParameters(AngleErrors, Timed):
-    """A compass."""
+    """Compass."""
 
 
 class SpreadParameters(RangeParameters):
-    """The acoustic distance from door to door.
+    """Acoustic spread sensor from door to door.
 
     A time of flight is turned into metres with ``assumed_sound_speed_m_s``, whatever that of the
     water is. Each door looks inward along its own normal, and hears nothing once the other is
@@ -97,7 +97,7 @@ class SpreadParameters(RangeParameters):
 
 
 class DoorParameters(Record):
-    """The sensors on the doors, alike on both."""
+    """Sensors of the doors, alike on both."""
 
     pressure: PressureParameters
     attitude: AttitudeParameters
@@ -105,7 +105,7 @@ class DoorParameters(Record):
 
 
 class SweepParameters(SweepRecord, Timed):
-    """The trawl sonar's sweeps: ``rate_hz`` of them per second, one begins as another ends."""
+    """Trawl sonar's sweeps: ``rate_hz`` of them per second, one begins as another ends."""
 
     @model_validator(mode='after')
     def _time_to_listen(self) -> 'SweepParameters':
@@ -120,14 +120,14 @@ class SweepParameters(SweepRecord, Timed):
 
 
 class OpeningParameters(LimitedLength, Sent):
-    """An opening as it is read off each image: errors beside those that the image brings.
+    """Opening as it is read off each image: errors beside those that the image brings.
 
     ``stated_std_m`` is what is said of the reading's error, all in all.
     """
 
 
 class BottomParameters(RangeParameters):
-    """The sounder that looks down from the headrope.
+    """Sounder that looks down from the headrope.
 
     Times of flight are turned into metres with ``assumed_sound_speed_m_s``.
     """
@@ -136,7 +136,7 @@ class BottomParameters(RangeParameters):
 
 
 class SonarParameters(Record):
-    """The trawl sonar on the headrope, with what else is in its housing."""
+    """Trawl sonar on the headrope, with the other instruments in its housing."""
 
     pressure: PressureParameters
     sweep: SweepParameters
@@ -146,7 +146,7 @@ class SonarParameters(Record):
 
 
 class EchoSounderParameters(Record):
-    """The echo sounder under the keel: down to the seabed, and to the nearest fish in its beam.
+    """Echo sounder under the keel: down to the seabed, and to the nearest fish in its beam.
 
     Times of flight are turned into metres with ``assumed_sound_speed_m_s``; the beam is
     ``beam_width_deg`` wide in all.
@@ -159,7 +159,7 @@ class EchoSounderParameters(Record):
 
 
 class FishSonarParameters(Timed):
-    """The fish sonar: a sweep over ``sector_deg`` in all, half of it to either side of ahead.
+    """Fish sonar: a sweep over ``sector_deg`` in all, half of it to either side of ahead.
 
     The beam looks down by ``beam_tilt_deg`` and is ``beam_width_deg`` high. ``range``,
     ``bearing`` and ``tilt`` are the errors with which a school is placed.
@@ -185,7 +185,7 @@ class FishSonarParameters(Timed):
 
 
 class VesselParameters(Record):
-    """The ship's own sensors, and where on Earth ``map`` has its origin.
+    """Sensors of the ship, and the datum of ``map``.
 
     Her keel, with the echo sounder and the fish sonar under it, is ``draught_m`` below the
     towing blocks.

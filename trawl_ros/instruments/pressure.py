@@ -1,4 +1,4 @@
-"""Pressure sensors: at a given depth of the water, in a given place."""
+"""Pressure sensors of doors and trawl sonar."""
 
 from trawl_ros.instruments.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import PressureParameters
@@ -7,7 +7,7 @@ from trawl_ros.instruments.surroundings import PressureAt
 
 
 class PressureInstrument(Instrument[float, PressureSample]):
-    """Sees its own depth (m, positive down) and reports absolute pressure.
+    """Pressure sensor. Observes its depth (m, positive down) and reports absolute pressure.
 
     Above the surface it reports the pressure there.
     """

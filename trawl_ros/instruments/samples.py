@@ -1,4 +1,4 @@
-"""What instruments report: one record per kind of reading, stamped when it was sampled.
+"""Samples of instruments: one record per kind of reading, stamped when it was sampled.
 
 Stamps are integer nanoseconds; units are SI; a ``std`` is the sensor's *stated* noise.
 """
@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class WinchSample:
-    """Counter (m), pay-out speed (m/s) and load cell (N) of both winches, port first."""
+    """Winch sample: counter (m), pay-out speed (m/s) and load cell (N) of both, port first."""
 
     stamp: int
     lengths: tuple[float, float]
@@ -20,7 +20,7 @@ class WinchSample:
 
 @dataclass(frozen=True)
 class PressureSample:
-    """Absolute pressure (Pa); ``place`` is 'port', 'starboard' (the doors) or 'sonar'."""
+    """Pressure sample (Pa, absolute); ``place`` is 'port', 'starboard' (the doors) or 'sonar'."""
 
     stamp: int
     place: str
@@ -30,7 +30,7 @@ class PressureSample:
 
 @dataclass(frozen=True)
 class AttitudeSample:
-    """A door's inclinometer: pitch (nose down positive) and roll (top to starboard), rad."""
+    """Inclinometer sample: pitch (nose down positive) and roll (top to starboard), rad."""
 
     stamp: int
     side: str
@@ -41,7 +41,7 @@ class AttitudeSample:
 
 @dataclass(frozen=True)
 class RangeSample:
-    """A distance in m.
+    """Range sample, m.
 
     ``what`` is 'spread', 'opening_height', 'opening_width', 'bottom' (from the headrope down
     to the seabed), 'depth' (from the keel down to it) or 'school' (from the keel down to fish).
@@ -57,7 +57,7 @@ class RangeSample:
 
 @dataclass(frozen=True)
 class VelocitySample:
-    """A velocity (3,) in m/s: ``over`` 'water' in frame vessel, ``over`` 'ground' in map."""
+    """Velocity sample (3,), m/s: ``over`` 'water' in frame vessel, ``over`` 'ground' in map."""
 
     stamp: int
     over: str
@@ -67,7 +67,7 @@ class VelocitySample:
 
 @dataclass(frozen=True)
 class HeadingSample:
-    """Heading as ENU yaw, rad."""
+    """Heading sample as ENU yaw, rad."""
 
     stamp: int
     heading: float
@@ -76,7 +76,7 @@ class HeadingSample:
 
 @dataclass(frozen=True)
 class FixSample:
-    """Position: latitude and longitude in degrees (WGS 84), std in m."""
+    """Position sample: latitude and longitude in degrees (WGS 84), std in m."""
 
     stamp: int
     latitude: float
@@ -86,7 +86,7 @@ class FixSample:
 
 @dataclass(frozen=True)
 class SonarImageSample:
-    """One sweep of the trawl sonar as its screen shows it, stamped at the first ping.
+    """Image sample of one sweep of the trawl sonar, as on its screen, stamped at the first ping.
 
     ``image`` (beams, cells) uint8: row i is a beam, column j the echo from (j + ½) / cells of
     the range. At which angles and how far, the scan of the same stamp says.
@@ -117,7 +117,7 @@ class SonarScanSample:
 
 @dataclass(frozen=True)
 class SonarPointsSample:
-    """The echoes of a sweep: ``points`` (n, 4), position in ``map`` (m) and intensity, 0 to 255."""
+    """Echoes of a sweep: ``points`` (n, 4), position in ``map`` (m) and intensity, 0 to 255."""
 
     stamp: int
     points: np.ndarray
@@ -125,7 +125,7 @@ class SonarPointsSample:
 
 @dataclass(frozen=True)
 class SchoolsSample:
-    """Where the fish sonar sees schools: ``positions`` (n, 3) in frame ``vessel``, m."""
+    """Schools detected by the fish sonar: ``positions`` (n, 3) in frame ``vessel``, m."""
 
     stamp: int
     positions: np.ndarray

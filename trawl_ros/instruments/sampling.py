@@ -1,4 +1,4 @@
-"""When a sensor samples: by the stamps of truth alone, so results do not depend on the machine."""
+"""Sampling times by the stamps of truth alone, so that results do not depend on the machine."""
 
 SECOND = 1_000_000_000
 
@@ -10,7 +10,7 @@ MOST_JITTER = 0.45
 
 
 class Sampler:
-    """Tells whether a sample is due at a stamp.
+    """Sampler: decides at which stamps a sample is due.
 
     The first stamp is due; after it the multiples of the period since the first, each at the
     first stamp that reaches it. So the mean rate is kept however truth is paced, and truth
@@ -37,7 +37,7 @@ class Sampler:
         return self._first
 
     def started_anew(self, stamp: int) -> bool:
-        """Take note of a stamp (ns); tell whether it is the first, or lies before the last one."""
+        """Register a stamp (ns); True if it is the first, or lies before the last one."""
         anew = self._latest is None or stamp < self._latest
         self._latest = stamp
         if anew:
@@ -46,7 +46,7 @@ class Sampler:
         return anew
 
     def due(self, stamp: int, shift_s: float = 0.0) -> bool:
-        """Tell whether to sample at ``stamp`` (ns), which `started_anew` has been told of.
+        """True if a sample is due at ``stamp`` (ns), which `started_anew` has registered.
 
         ``shift_s`` is how much later than on the beat the next sample is to be taken.
         """

@@ -1,4 +1,4 @@
-"""Schools of fish as sound meets them."""
+"""Acoustic geometry of schools of fish."""
 
 import math
 
@@ -10,7 +10,7 @@ from trawl_ros.simulation.truth import SchoolTruth
 def inside(
     school: SchoolTruth, position: np.ndarray, ways: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Give the distances between which straight lines run through a school.
+    """Return the distances at which straight lines enter and leave a school.
 
     Parameters
     ----------

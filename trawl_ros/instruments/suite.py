@@ -1,4 +1,4 @@
-"""All instruments of a ship, in the four groups that are nodes in the graph."""
+"""Suite of all instruments of a ship, in the four groups that are nodes in the graph."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ from trawl_ros.simulation.truth import Truth
 
 
 class InstrumentSuite:
-    """Every instrument; a group on its own gives the very same samples.
+    """Suite of all instruments; a group on its own gives the very same samples.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class InstrumentSuite:
         self._plan = FaultPlan(faults, self.panel)
 
     def observe(self, truth: Truth) -> list[Sample]:
-        """Give the samples that are due at one instant, always in the same order."""
+        """Return the samples that are due at one instant, always in the same order."""
         self._plan.follow(truth.stamp)
         groups = (self.winch, self.door, self.sonar, self.vessel)
         return [sample for group in groups for sample in group.observe(truth)]

@@ -1,4 +1,4 @@
-"""What of the sea matters to instruments: pressure, and how fast sound travels."""
+"""Properties of the water for instruments: pressure, and the speed of sound."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ DEPTH_STEP = 1.0
 
 @dataclass(frozen=True)
 class Surroundings:
-    """The water around instruments.
+    """Properties of the water around instruments.
 
     ``pressure_at`` gives absolute pressure (Pa) at a depth (m). ``temperatures`` are pairs of depth
     (m, rising) and in-situ temperature (°C), straight lines between them; ``salinity`` is
@@ -30,12 +30,12 @@ class Surroundings:
     salinity: float = 35.0
 
     def temperature(self, depth: float) -> float:
-        """Give the temperature (°C) at a depth (m)."""
+        """Return the temperature (°C) at a depth (m)."""
         depths, values = zip(*self.temperatures, strict=True)
         return float(np.interp(depth, depths, values))
 
     def sound_speed(self, depth: float) -> float:
-        """Give the speed of sound (m/s) at a depth (m), by TEOS-10."""
+        """Return the speed of sound (m/s) at a depth (m), by TEOS-10."""
         if not np.isfinite(depth):
             return float('nan')
         level = DEPTH_STEP * round(max(depth, 0.0) / DEPTH_STEP)
@@ -43,7 +43,7 @@ class Surroundings:
         return _sound_speed(self.salinity, self.temperature(level), round(gauge, 3))
 
     def mean_sound_speed(self, upper: float, lower: float) -> float:
-        """Give the speed (m/s) of sound that goes straight from one depth (m) to another."""
+        """Return the mean speed of sound (m/s) straight from one depth (m) to another."""
         levels = np.linspace(upper, lower, 11)
         # What adds up along the way is time, so it is the slowness whose mean counts.
         return float(1.0 / np.mean([1.0 / self.sound_speed(level) for level in levels]))

@@ -1,4 +1,4 @@
-"""When samples are taken and when they arrive."""
+"""Timing of samples: rate, jitter, latency, dropouts and start-up."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from trawl_ros.instruments.bursts import NO_BURSTS, BurstModel
 
 @dataclass(frozen=True)
 class Timing:
-    """Times in s.
+    """Timing of an instrument; times in s.
 
     ``rate`` in samples per second; ``jitter`` is the standard deviation with which samples are
     off the beat, ``latency`` the time from sampling to sending, ``start_up`` the time after

@@ -1,4 +1,4 @@
-"""When instruments sample and send, as a file has it."""
+"""Records of an instrument's timing in a file."""
 
 from typing import Annotated
 
@@ -16,7 +16,7 @@ Rate = Annotated[float, Field(gt=0, le=MOST_OFTEN)]
 
 
 class Sent(Record):
-    """How what was sampled is sent.
+    """Timing of sending.
 
     It takes ``latency_s``, and fails ``dropouts_per_hour`` times, for ``dropout_s`` in the mean.
     """
@@ -35,7 +35,7 @@ class Sent(Record):
         return self
 
     def timing(self) -> Timing:
-        """Give the same as instruments take it; there is a sample whenever truth brings one."""
+        """Return the timing of an instrument that samples whenever truth comes."""
         return Timing(MOST_OFTEN, latency=self.latency_s, dropouts=self._bursts())
 
     def _bursts(self) -> BurstModel:
@@ -43,7 +43,7 @@ class Sent(Record):
 
 
 class Timed(Sent):
-    """When an instrument samples and sends.
+    """Timing of sampling and sending.
 
     ``rate_hz`` is that of its samples; ``jitter_s`` the standard deviation with which they are
     off the beat, ``start_up_s`` the time after switching on before the first.
@@ -54,5 +54,5 @@ class Timed(Sent):
     start_up_s: Seconds = 0.0
 
     def timing(self) -> Timing:
-        """Give the same as instruments take it."""
+        """Return the timing of the instrument."""
         return Timing(self.rate_hz, self.jitter_s, self.latency_s, self.start_up_s, self._bursts())

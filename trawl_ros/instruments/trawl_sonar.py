@@ -1,4 +1,4 @@
-"""The trawl sonar on the headrope: its image, what is read off it, and what is in its housing."""
+"""Trawl sonar on the headrope: its image, the readings off it, and the sensors in its housing."""
 
 import math
 
@@ -32,7 +32,7 @@ from trawl_ros.simulation.truth import NetTruth, Truth
 
 
 class TrawlSonar(Instrument[Truth, Sweep]):
-    """The scanning sonar. Sees the net, schools and seabed; reports a sweep when it is complete.
+    """Scanning sonar. Observes net, schools and seabed; reports a sweep when it is complete.
 
     Its beams ping one after the other all through the sweep, and each meets what passes through
     the sonar's plane at its own time. A sweep ends when the next one begins; one that is cut
@@ -64,7 +64,7 @@ class TrawlSonar(Instrument[Truth, Sweep]):
         self._restart()
 
     def observe(self, part: Truth, stamp: int) -> list[Sweep]:
-        """Look at the truth; pings since the last one meet what is there now."""
+        """Observe the truth; pings since the last one meet what is there now."""
         self._ping(part, stamp)
         sweeps = super().observe(part, stamp)
         self._ping(part, stamp)
@@ -100,7 +100,7 @@ class TrawlSonar(Instrument[Truth, Sweep]):
             self._pings.append(_ping(part, angle if math.isfinite(angle) else 0.0))
 
     def _complete(self) -> Sweep | None:
-        """The image of the pings made so far."""
+        """Sweep of the pings made so far."""
         if self._begin is None or not self._pings:
             return None
         image = image_of(
@@ -151,7 +151,7 @@ def _axes(net: NetTruth) -> np.ndarray:
 
 
 class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
-    """An opening of the net as it is read off an image.
+    """Opening of the net as it is read off an image.
 
     Sees the stamp (ns) of the image and the opening (m), NaN where it cannot be read, or None
     when there is no new image. ``what`` is 'opening_height' or 'opening_width'.
@@ -173,7 +173,7 @@ class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
 
 
 class SonarBottom(RangeInstrument):
-    """The sounder that looks down from the headrope. Sees the seabed below it (m)."""
+    """Sounder that looks down from the headrope. Observes the seabed below it (m)."""
 
     def __init__(
         self, parameters: BottomParameters, surroundings: Surroundings, draws: Draws
@@ -183,7 +183,7 @@ class SonarBottom(RangeInstrument):
         self._surroundings = surroundings
 
     def look(self, truth: Truth) -> list[RangeSample]:
-        """Look at the truth as `observe` does, through the water there is."""
+        """Observe the truth through the water there is."""
         depth, seabed = truth.net.headrope_depth, truth.seabed.under_headrope
         below = seabed - depth
         if math.isfinite(below):
@@ -192,7 +192,7 @@ class SonarBottom(RangeInstrument):
 
 
 class SonarInstruments:
-    """All that the trawl sonar reports."""
+    """Instruments of the trawl sonar."""
 
     def __init__(
         self, parameters: SonarParameters, draws: Draws, *, surroundings: Surroundings
@@ -207,7 +207,7 @@ class SonarInstruments:
         self.instruments = (self.pressure, self.sonar, self.height, self.width, self.bottom)
 
     def observe(self, truth: Truth) -> list[Sample]:
-        """Give the samples that are due."""
+        """Return the samples that are due."""
         stamp = truth.stamp
         samples: list[Sample] = []
         samples += self.pressure.observe(truth.net.headrope_depth, stamp)

@@ -1,4 +1,4 @@
-"""The ship's own sensors: speed log, GPS, compass; sounder and sonar have files of their own."""
+"""Sensors of the ship: speed log, GPS, compass; sounder and sonar have files of their own."""
 
 import math
 
@@ -24,7 +24,7 @@ Moving = tuple[np.ndarray, float]
 
 
 class _Velocity(Instrument[Moving, VelocitySample]):
-    """Two horizontal components with errors of their own; the vertical one is reported as 0."""
+    """Velocity sensor of two horizontal components; the vertical one is reported as 0."""
 
     def __init__(self, over: str, parameters: VelocityParameters, draws: Draws) -> None:
         speed = parameters.velocity.model()
@@ -46,21 +46,21 @@ class _Velocity(Instrument[Moving, VelocitySample]):
 
 
 class SpeedLog(_Velocity):
-    """A two-axis log with a rate-of-turn indicator. Sees velocity through the water, `Moving`."""
+    """Two-axis speed log with a rate-of-turn indicator. Observes velocity through the water."""
 
     def __init__(self, parameters: VelocityParameters, draws: Draws) -> None:
         super().__init__('water', parameters, draws)
 
 
 class GpsVelocity(_Velocity):
-    """Velocity over ground with the rate of turn. Sees velocity in ``map``, `Moving`."""
+    """GPS velocity over ground with the rate of turn. Observes velocity in ``map``, `Moving`."""
 
     def __init__(self, parameters: VelocityParameters, draws: Draws) -> None:
         super().__init__('ground', parameters, draws)
 
 
 class GpsFix(Instrument[np.ndarray, FixSample]):
-    """Position on Earth. Sees the ship's position (3,) in ``map``."""
+    """GPS position on Earth. Observes the ship's position (3,) in ``map``."""
 
     def __init__(self, parameters: FixParameters, datum: Datum, draws: Draws) -> None:
         errors = {'east': parameters.model(), 'north': parameters.model()}
@@ -80,7 +80,7 @@ class GpsFix(Instrument[np.ndarray, FixSample]):
 
 
 class Heading(Instrument[float, HeadingSample]):
-    """The compass. Sees the heading as ENU yaw (rad) and reports it within ±π."""
+    """Compass. Observes the heading as ENU yaw (rad) and reports it within ±π."""
 
     def __init__(self, parameters: HeadingParameters, draws: Draws) -> None:
         super().__init__(
@@ -95,7 +95,7 @@ class Heading(Instrument[float, HeadingSample]):
 
 
 class VesselInstruments:
-    """All that the ship herself measures, but for her winches."""
+    """Instruments of the ship herself, but for her winches."""
 
     def __init__(
         self, parameters: VesselParameters, draws: Draws, *, surroundings: Surroundings
@@ -118,7 +118,7 @@ class VesselInstruments:
         )
 
     def observe(self, truth: Truth) -> list[Sample]:
-        """Give the samples that are due."""
+        """Return the samples that are due."""
         vessel, stamp = truth.vessel, truth.stamp
         samples: list[Sample] = []
         samples += self.velocity_water.observe((vessel.velocity_water, vessel.yaw_rate), stamp)

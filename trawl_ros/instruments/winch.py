@@ -1,4 +1,4 @@
-"""The winches: counter, pay-out speed and load cell of both."""
+"""Instruments of the winches: counter, pay-out speed and load cell of both."""
 
 import math
 
@@ -9,7 +9,7 @@ from trawl_ros.simulation.truth import SIDES, Truth, WinchTruth
 
 
 class CountingWheel:
-    """Counts the wire that passes over it, as far as tension has stretched it by then.
+    """Counting wheel: counts the wire that passes, as far as tension has stretched it by then.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class CountingWheel:
         self._before = 0.0
 
     def count(self, length: float, tension: float) -> float:
-        """Give the metres counted when ``length`` (m, unstretched) is out under ``tension`` (N)."""
+        """Return the metres counted with ``length`` (m, unstretched) out under ``tension`` (N)."""
         if self._stiffness is None:
             return length
         stretch = 1.0 + (tension - self._calibrated_at) / self._stiffness
@@ -40,21 +40,21 @@ class CountingWheel:
 
 
 class LoadCell:
-    """Feels the tension through friction, which holds it back by up to ``play`` (N) either way."""
+    """Load cell with friction, which holds the force back by up to ``play`` (N) either way."""
 
     def __init__(self, play: float) -> None:
         self._play = play
         self._felt: float | None = None
 
     def feel(self, tension: float) -> float:
-        """Give the force (N) on the cell."""
+        """Return the force (N) on the cell."""
         before = tension if self._felt is None or math.isnan(self._felt) else self._felt
         self._felt = min(max(before, tension - self._play), tension + self._play)
         return self._felt
 
 
 class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
-    """Sees both winches, port first, and reports them in one sample."""
+    """Instrument of both winches, port first, reported in one sample."""
 
     def __init__(self, parameters: WinchParameters, draws: Draws) -> None:
         quantities = {
@@ -77,7 +77,7 @@ class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
         self._cells = [LoadCell(1e3 * record.hysteresis_kn) for _ in SIDES]
 
     def observe(self, part: tuple[WinchTruth, WinchTruth], stamp: int) -> list[WinchSample]:
-        """Look at both winches: wheels and cells work between samples too."""
+        """Observe both winches: wheels and cells work between samples too."""
         samples = super().observe(part, stamp)
         self._turn(part)
         return samples
@@ -104,12 +104,12 @@ class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
 
 
 class WinchInstruments:
-    """All that measures on the winches."""
+    """Instruments of the winches."""
 
     def __init__(self, parameters: WinchParameters, draws: Draws) -> None:
         self.winch = WinchInstrument(parameters, draws)
         self.instruments = (self.winch,)
 
     def observe(self, truth: Truth) -> list[Sample]:
-        """Give the samples that are due."""
+        """Return the samples that are due."""
         return list(self.winch.observe(truth.winches, truth.stamp))

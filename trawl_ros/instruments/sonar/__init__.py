@@ -1,1 +1,1 @@
-"""The trawl sonar: what its beams meet, what its screen shows, and what is read off it. No ROS."""
+"""Trawl sonar: echoes in its beams, the image on its screen, and readings off it. No ROS."""

@@ -1,4 +1,4 @@
-"""How fast sea water takes the energy out of sound."""
+"""Absorption of sound in sea water."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ PH = 8.0
 
 
 def absorption(frequency: float, temperature: float, salinity: float, depth: float) -> float:
-    """Absorption of sound in sea water.
+    """Absorption coefficient of sound in sea water.
 
     The simplified formula of Ainslie and McColm, J. Acoust. Soc. Am. 103(3), 1998, within 10 % of
     that of Francois and Garrison (1982).

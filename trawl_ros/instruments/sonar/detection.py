@@ -1,4 +1,4 @@
-"""Which cells of an image hold an echo."""
+"""Detection of echoes in an image."""
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -14,7 +14,7 @@ _NOISE_ALONG = 9
 
 
 def contrast(image: np.ndarray, grid: Grid) -> np.ndarray:
-    """How far an image stands out from what is usual at each range.
+    """Contrast of an image against the usual level at each range.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def contrast(image: np.ndarray, grid: Grid) -> np.ndarray:
 
 
 def clear_echoes(image: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Find all echoes.
+    """Detect all echoes.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def clear_echoes(image: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]
 
 
 def first_echoes(image: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Find the nearest echo of each beam.
+    """Detect the nearest echo of each beam.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What the beams of the trawl sonar meet: ropes, twine, fish and the seabed.
+"""Echoes in the beams of the trawl sonar: of ropes, twine, fish and the seabed.
 
 All echoes are backscattering cross-sections σ in m², 10 log σ being the target strength, as the
 sonar receives them: weighed with its beam pattern on the way out and back.
@@ -22,7 +22,7 @@ SEABED_STEPS = 4
 
 @dataclass(frozen=True)
 class Ping:
-    """One ping: where the beam looks (``angle``, rad, as the scan's) and what is there.
+    """Ping: direction of the beam (``angle``, rad, as the scan's) and the scatterers there.
 
     ``position`` (3,) and ``axes`` (3, 3), whose columns are x, y, z, are the pose of frame
     ``sonar`` in ``map``. ``section`` (k, 3) is that of `NetTruth`; ``altitude`` (m) is how far
@@ -39,7 +39,7 @@ class Ping:
 
 @dataclass(frozen=True)
 class Beam:
-    """A beam: its full widths (rad) between the half-power points, ``width`` in the plane of the
+    """Beam: its full widths (rad) between the half-power points, ``width`` in the plane of the
     sweep and ``thickness`` across it, and the ``wave_length`` (m) of its sound.
     """
 
@@ -58,7 +58,7 @@ class Beam:
 
 @dataclass(frozen=True)
 class Strengths:
-    """How strongly things scatter sound back.
+    """Backscattering strengths of scatterers.
 
     ``rope`` is the part of the sound that hits a rope or twine and goes into all directions;
     ``fish`` the cross-section of one fish, m²; ``seabed`` that of a square metre of seabed hit
@@ -87,7 +87,7 @@ def rope_cross_section(
 
 @dataclass(frozen=True)
 class Sounding:
-    """How the sonar turns time into distance.
+    """Conversion of travel time into range.
 
     ``stretch`` is the speed of sound it assumes over the true one; ``pulse`` (m) the length in
     range between the half-power points of an echo from a point.
@@ -152,7 +152,7 @@ def _seabed(
     strengths: Strengths,
     stretch: float,
 ) -> np.ndarray:
-    """A level seabed in patches, which scatter by Lambert's law as the cosine squared."""
+    """Cross-sections of a level seabed in patches, by Lambert's law (cosine squared)."""
     step = grid.angle_increment / SEABED_STEPS
     angle = np.arange(-0.5 * np.pi, 0.5 * np.pi, step)
     down = np.array([-ping.axes[2] for ping in pings])
@@ -177,7 +177,7 @@ def _fish(
     stretch: float,
     generator: np.random.Generator,
 ) -> np.ndarray:
-    """Fish drawn cell by cell, each seen by its own beam and, as far as they reach, by others."""
+    """Cross-sections of fish, drawn cell by cell, in their own beam and its neighbours."""
     true_cell = grid.cell / stretch
     ranges = grid.ranges / stretch
     volume = true_cell * (ranges * grid.angle_increment) * (ranges * beam.thickness)
@@ -199,7 +199,7 @@ def _turned(angle: np.ndarray) -> np.ndarray:
 def _gathered(
     rows: np.ndarray, ranges: np.ndarray, strengths: np.ndarray, grid: Grid
 ) -> np.ndarray:
-    """Put point targets into cells, each shared by the two whose middles are nearest."""
+    """Distribute point targets over cells, each shared by the two whose middles are nearest."""
     place = ranges / grid.cell - 0.5
     first = np.floor(place).astype(int)
     share = place - first
@@ -215,7 +215,7 @@ def _gathered(
 
 
 def _as_long_as_a_pulse(received: np.ndarray, cells: float) -> np.ndarray:
-    """Spread what is in one cell over a bell curve of so many cells between half-power points.
+    """Smear each cell over a bell curve of so many cells between half-power points.
 
     The peak keeps its height, as a point's echo is as strong as the point for its whole length.
     """

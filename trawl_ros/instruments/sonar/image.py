@@ -1,4 +1,4 @@
-"""The sonar's image as a grid: beams by angle, cells by range."""
+"""Grid of the sonar's image: beams by angle, cells by range."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ BRIGHTEST = 255
 
 @dataclass(frozen=True)
 class Grid:
-    """What rows, columns and values of an image stand for.
+    """Grid of an image: meaning of its rows, columns and values.
 
     ``beams`` rows: row i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame
     ``sonar``: 0 down, positive to port). ``cells`` columns: column j holds what comes from

@@ -1,4 +1,4 @@
-"""Reads the openings of the net off an image of the trawl sonar, as its operator would.
+"""Readings of the net's openings off an image of the trawl sonar, as its operator would take them.
 
 Nothing goes in but the image and what its rows, columns and brightness stand for. The net shows
 as a line of echoes from side to side, with the footrope as its lowest point; fish between the
@@ -50,7 +50,7 @@ _AROUND = 3
 
 @dataclass(frozen=True)
 class Openings:
-    """What was read (m), NaN where it cannot be read.
+    """Openings read off an image (m), NaN where they cannot be read.
 
     ``height`` is from the sonar down to the footrope, ``width`` from side to side of the net.
     """
@@ -88,7 +88,7 @@ def _sides(grid: Grid) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def _height(level: np.ndarray, grid: Grid) -> float:
-    """The lowest clear echo below the sonar."""
+    """Height (m) by the lowest clear echo below the sonar; NaN where there is none."""
     rows = np.flatnonzero(np.abs(grid.angles) < LOW_SECTOR)
     there = level[rows] >= CLEAR
     if not there.any():
@@ -105,7 +105,7 @@ def _height(level: np.ndarray, grid: Grid) -> float:
 
 
 def _half_width(level: np.ndarray, angles: np.ndarray, grid: Grid) -> float:
-    """How far one side of the net is out, by a curve through the widest part of its line."""
+    """Half width (m) of one side of the net, by a curve through the widest part of its line."""
     line = follow(level)
     beams = np.arange(len(line))
     seen = level[beams, line] >= CLEAR
@@ -131,7 +131,7 @@ def _half_width(level: np.ndarray, angles: np.ndarray, grid: Grid) -> float:
 
 
 def _middle(level: np.ndarray, column: int, grid: Grid) -> float:
-    """Range (m) of the middle of the echo in one beam at a column."""
+    """Range (m) of the echo's centre in one beam at a column."""
     around = np.arange(max(column - 3, 0), min(column + 3, grid.cells - 1) + 1)
     weight = np.maximum(level[around] - 0.5 * CLEAR, 0.0) ** 2
     if weight.sum() == 0.0:

@@ -1,4 +1,4 @@
-"""What a file says of the trawl sonar beside its timing."""
+"""Records of the trawl sonar in a file, beside its timing."""
 
 from typing import Annotated
 
@@ -26,7 +26,7 @@ SLOWEST_SOUND = 1440.0
 
 
 class InterferenceRecord(Record):
-    """Another sonar that is heard: a pulse of ``pulse_ms`` every ``period_s``, with ``level_db``
+    """Interference by another sonar: a pulse of ``pulse_ms`` every ``period_s``, with ``level_db``
     (dB re 1 µPa) at the receiver.
     """
 
@@ -36,7 +36,7 @@ class InterferenceRecord(Record):
 
 
 class SweepRecord(Record):
-    """The trawl sonar: what a sweep looks at, how sound goes and comes, what the screen shows.
+    """Trawl sonar: sector of a sweep, levels and noise of sound, brightness of the screen.
 
     ``sector_deg`` is swept by ``beams`` pings, from starboard to port through straight down; the
     image has ``cells`` columns up to ``max_range_m``, and hears nothing nearer than
@@ -98,11 +98,11 @@ class SweepRecord(Record):
 
     @property
     def listening_s(self) -> float:
-        """How long a ping listens at least, s."""
+        """Shortest listening time of a ping, s."""
         return 2 * self.max_range_m / SLOWEST_SOUND
 
     def grid(self) -> Grid:
-        """Give what the image's rows, columns and values stand for."""
+        """Return the grid of the images."""
         sector = np.radians(self.sector_deg)
         # A full circle does not look twice into the same direction.
         steps = self.beams if self.sector_deg == 360 else self.beams - 1
@@ -117,17 +117,17 @@ class SweepRecord(Record):
         )
 
     def beam(self, sound_speed: float) -> Beam:
-        """Give the beam at a speed of sound (m/s)."""
+        """Return the beam at a speed of sound (m/s)."""
         width, thickness = np.radians([self.beam_width_deg, self.beam_thickness_deg])
         return Beam(float(width), float(thickness), sound_speed / (1e3 * self.frequency_khz))
 
     def strengths(self) -> Strengths:
-        """Give how strongly things scatter."""
+        """Return the backscattering strengths."""
         fish, seabed = power(np.array([self.fish_target_strength_db, self.seabed_strength_db]))
         return Strengths(self.rope_reflectivity, float(fish), float(seabed))
 
     def receiver(self) -> Receiver:
-        """Give what makes levels of echoes."""
+        """Return the receiver."""
         return Receiver(
             self.source_level_db,
             self.noise_level_db,
@@ -137,7 +137,7 @@ class SweepRecord(Record):
         )
 
     def other_sonar(self) -> Interference | None:
-        """Give the other sonar, if one is heard."""
+        """Return the interference by another sonar, if there is one."""
         other = self.interference
         if other is None:
             return None

@@ -1,4 +1,4 @@
-"""From echoes to the image on the screen: levels, noise, speckle and 8 bits."""
+"""Receiver and screen: from echoes to an image with levels, noise, speckle and 8 bits."""
 
 from dataclasses import dataclass
 
@@ -8,13 +8,13 @@ from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 
 
 def power(level: np.ndarray | float) -> np.ndarray:
-    """Turn dB into a ratio of powers."""
+    """Convert dB into a ratio of powers."""
     return 10 ** (np.asarray(level) / 10)
 
 
 @dataclass(frozen=True)
 class Receiver:
-    """How an echo becomes a brightness.
+    """Receiver: conversion of an echo into brightness.
 
     ``source_level`` dB re 1 µPa m; ``noise_level`` dB re 1 µPa in the receiver's band;
     ``absorption`` dB/m that the time-varied gain makes good; the image is black at a target
@@ -32,11 +32,11 @@ class Receiver:
         return 40 * np.log10(ranges) + 2 * self.absorption * ranges
 
     def unwanted(self, level: float, ranges: np.ndarray) -> np.ndarray:
-        """Cross-section (m²) that sound of a level (dB re 1 µPa) is taken for at ranges (m)."""
+        """Apparent cross-section (m²) of sound of a level (dB re 1 µPa) at ranges (m)."""
         return power(level - self.source_level + self.gain(ranges))
 
     def brightness(self, strength: np.ndarray, gain: float) -> np.ndarray:
-        """Image (uint8) of cross-sections (m²), with so much gain (dB) too much."""
+        """Image (uint8) of cross-sections (m²), with an excess ``gain`` (dB)."""
         level = 10 * np.log10(np.maximum(strength, np.finfo(float).tiny)) + gain
         share = (level - self.black) / (self.white - self.black)
         return np.clip(np.round(BRIGHTEST * share), 0, BRIGHTEST).astype(np.uint8)
@@ -44,7 +44,7 @@ class Receiver:
 
 @dataclass(frozen=True)
 class Interference:
-    """Another sonar: a pulse of ``length`` s every ``period`` s, of ``level`` dB re 1 µPa here."""
+    """Interference: a pulse of ``length`` s every ``period`` s, of ``level`` dB re 1 µPa here."""
 
     period: float
     length: float
@@ -54,7 +54,7 @@ class Interference:
 def heard(
     echoes: np.ndarray, grid: Grid, receiver: Receiver, true_absorption: float, stretch: float
 ) -> np.ndarray:
-    """Mean cross-sections (m²) as they come out of the receiver, with noise.
+    """Received cross-sections (m²), mean with noise.
 
     The sonar equation: source level - 40 log r - 2 α r + target strength is received, and
     time-varied gain is put on top. It makes spreading good but for the ``stretch`` of ranges
@@ -77,7 +77,7 @@ def heard(
 def interfering(
     times: np.ndarray, grid: Grid, receiver: Receiver, other: Interference, assumed_speed: float
 ) -> np.ndarray:
-    """What another sonar adds to each cell, (beams, cells) m².
+    """Apparent cross-sections (beams, cells) of another sonar's pulses, m².
 
     Its pulses come at whole multiples of its period, whatever the ``times`` (beams,) of the
     pings (s): they wander through the image as a dotted spiral.
@@ -90,5 +90,5 @@ def interfering(
 
 
 def speckled(mean: np.ndarray, generator: np.random.Generator) -> np.ndarray:
-    """Power of many waves that meet with random phases: Rayleigh in amplitude, here squared."""
+    """Speckle: power of many waves with random phases, Rayleigh in amplitude, here squared."""
     return mean * generator.standard_exponential(mean.shape)

@@ -1,4 +1,4 @@
-"""The brightest line through an image that goes on from beam to beam without a jump."""
+"""Seam: the brightest line through an image that goes on from beam to beam without a jump."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ ENOUGH = 25.0
 
 
 def follow(level: np.ndarray) -> np.ndarray:
-    """Find the line along which levels add up to most.
+    """Find the line along which the sum of levels is largest.
 
     By dynamic programming, row by row; a line may pass through rows without an echo.
 

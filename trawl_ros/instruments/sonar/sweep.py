@@ -1,4 +1,4 @@
-"""One sweep: pings made while the gear moves, put together to an image."""
+"""Sweep of the trawl sonar: pings made while the gear moves, assembled to an image."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from trawl_ros.instruments.surroundings import Surroundings
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep that is complete.
+    """Complete sweep.
 
     ``stamp`` (ns) is that of its first ping; ``image`` (beams, cells) uint8; ``pings`` those that
     were made, one per row from the first on.
@@ -46,7 +46,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Luck:
-    """Generators of what is drawn for an image, each for one kind of chance."""
+    """Random generators of an image, each for one kind of chance."""
 
     fish: np.random.Generator
     speckle: np.random.Generator
@@ -62,7 +62,7 @@ def image_of(
     surroundings: Surroundings,
     luck: Luck,
 ) -> np.ndarray:
-    """Make the image of a sweep.
+    """Compute the image of a sweep.
 
     Parameters
     ----------
