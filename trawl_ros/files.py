@@ -1,11 +1,17 @@
 """Files and folders: as a user names them, or as they come with the package; written whole."""
 
 import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from trawl_ros.errors import TrawlError
 from trawl_ros.share import share_path
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def packaged(path: Path, folder: str) -> Path:
@@ -37,14 +43,73 @@ def empty_folder(path: Path, *, force: bool) -> Path:
     return path
 
 
-def write_json(path: Path, record: Any) -> None:
-    """Write a file whole or not at all, whenever one is interrupted.
+@contextmanager
+def written(path: Path) -> Iterator[Path]:
+    """Write a file whole or not at all, whenever one is interrupted or the disk is full.
+
+    Parameters
+    ----------
+    path
+        The file. Where it is a link, the link is replaced, and what it leads to stays as it is.
+
+    Yields
+    ------
+    Path
+        A file beside it, with the same suffix, to be written; it then takes the other's place.
+
+    Raises
+    ------
+    TrawlError
+        If it cannot be written.
+    """
+    draft = path.with_name(f'.{os.getpid()}.{path.name}')
+    try:
+        draft.unlink(missing_ok=True)
+        yield draft
+        draft.replace(path)
+    except OSError as reason:
+        raise TrawlError(f'{path}: cannot be written ({reason.strerror})') from reason
+    finally:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write text that ends with one line's end, as `written` does."""
+    with written(path) as draft:
+        # Names of files may hold bytes that are no text.
+        draft.write_bytes(f'{text.rstrip()}\n'.encode('utf-8', 'backslashreplace'))
+
+
+def write_json(
+    path: Path, record: Any, *, indent: int | None = None, ensure_ascii: bool = True
+) -> None:
+    """Write JSON as `written` does.
 
     Raises
     ------
     ValueError
         If a number is not finite, which JSON does not know.
     """
-    beside = path.with_suffix('.part')
-    beside.write_text(json.dumps(record, allow_nan=False) + '\n', encoding='utf-8')
-    beside.replace(path)
+    write_text(path, json.dumps(record, indent=indent, ensure_ascii=ensure_ascii, allow_nan=False))
+
+
+def write_figure(path: Path, figure: 'Figure', dpi: float) -> None:
+    """Write a figure as `written` does."""
+    with written(path) as draft:
+        figure.savefig(draft, dpi=dpi)
+
+
+def appending(path: Path) -> TextIO:
+    """Open a text file of results to add to it; a link is refused, not followed.
+
+    Raises
+    ------
+    TrawlError
+        If it cannot be opened.
+    """
+    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW
+    try:
+        return os.fdopen(os.open(path, flags, 0o666), 'a', encoding='utf-8')
+    except OSError as reason:
+        raise TrawlError(f'{path}: cannot be written ({reason.strerror})') from reason

@@ -1,21 +1,35 @@
 """What the reports of validation and benchmark share: templates, and figures as text."""
 
+import re
+from functools import lru_cache
+from typing import Any
+
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 DPI = 110
 
 
-def templates(package: str) -> Environment:
-    """The templates of a package, with the filters of this module."""
+@lru_cache
+def _templates(package: str) -> Environment:
     environment = Environment(
         loader=PackageLoader(package, 'templates'),
-        autoescape=select_autoescape(['html']),
+        # Their names end with .j2, which jinja would take for text.
+        autoescape=select_autoescape(['html.j2']),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(number=number, cell=cell)
+    environment.filters.update(number=number, cell=cell, foreign=foreign)
     return environment
+
+
+def page(package: str, name: str, /, **content: Any) -> str:
+    """Fill in the template ``<name>.j2`` of a package.
+
+    On HTML pages all that is filled in is escaped. In Markdown what others named, such as a gear,
+    goes through the filter `foreign`.
+    """
+    return _templates(package).get_template(f'{name}.j2').render(content)
 
 
 def number(value: float) -> str:
@@ -28,3 +42,8 @@ def number(value: float) -> str:
 def cell(text: str) -> str:
     """Text in a cell of a Markdown table."""
     return text.replace('|', '\\|').replace('\n', ' ')
+
+
+def foreign(text: str) -> str:
+    """What others named, in Markdown: shown as it is, and nothing more."""
+    return re.sub(r'([\\`*_{}\[\]<>()#|!&~])', r'\\\1', ' '.join(text.split()))

@@ -33,6 +33,29 @@ def test_a_tow_with_truth_becomes_pictures_and_a_page(run, bag, tmp_path):
         assert film.n_frames == 7
 
 
+def test_names_are_text_on_the_page_and_in_pictures(run, steady_tow, tmp_path):
+    bag = steady_tow.bag(tmp_path / '<script>alert(1)<$b$ \\frac', leg_s=30)
+    done = run('plot', bag, '--out', tmp_path / 'a<b onmouseover="x">')
+    assert done.exit_code == 0, done.output
+    page = (tmp_path / 'a<b onmouseover="x">' / 'index.html').read_text()
+    assert '<h1>&lt;script&gt;alert(1)&lt;$b$ \\frac</h1>' in page
+    assert '<script' not in page
+    assert '<b onmouseover' not in page
+
+
+def test_force_replaces_a_link_and_not_what_it_leads_to(run, steady_tow, tmp_path):
+    bag = steady_tow.bag(tmp_path / 'bag', leg_s=30)
+    (tmp_path / 'victim').write_text('mine')
+    out = tmp_path / 'pictures'
+    out.mkdir()
+    for name in ('index.html', 'history.png', 'gear_00015s.png'):
+        (out / name).symlink_to('../victim')
+    done = run('plot', bag, '--out', out, '--force')
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / 'victim').read_text() == 'mine'
+    assert not (out / 'index.html').is_symlink()
+
+
 def test_readings_alone_are_drawn_and_the_page_says_so(run, steady_tow, tmp_path):
     bag = steady_tow.bag(tmp_path / 'bag', leg_s=30)
     done = run('plot', bag, '--out', tmp_path / 'pictures')

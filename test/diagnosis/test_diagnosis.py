@@ -102,7 +102,10 @@ def test_all_is_written(caught, tmp_path):
     bag = tmp_path / 'bag'
     bag.mkdir()
     (bag / 'bag_0.mcap').write_bytes(b'not much')
-    write_diagnosis(replace(caught, checks=('Tow on.',)), [source(bag)], tmp_path / 'out')
+    named = caught.gear.model_copy(update={'name': '<script>|*'})
+    write_diagnosis(
+        replace(caught, checks=('Tow on.',), gear=named), [source(bag)], tmp_path / 'out'
+    )
     found = json.loads((tmp_path / 'out' / 'diagnosis.json').read_text())
     assert {
         'verdict', 'reason', 'effects', 'ambiguous_with', 'where', 'evidence', 'channels',
@@ -119,7 +122,9 @@ def test_all_is_written(caught, tmp_path):
     assert 'Tow on.' in page
     assert 'src="http' not in page
     assert page.count('data:image/png') == 5
-    assert (tmp_path / 'out' / 'report.md').read_text().startswith('# Diagnosis of the gear')
+    assert '<script' not in page
+    heading = '# Diagnosis of the gear \\<script\\>\\|\\*'
+    assert (tmp_path / 'out' / 'report.md').read_text().startswith(heading)
 
 
 @pytest.fixture(scope='module')

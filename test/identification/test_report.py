@@ -248,6 +248,10 @@ def test_the_page_needs_nothing_beside_it_and_begins_with_the_verdict(sea, tows,
     assert body.index('900 m at 2.0 m/s') > body.index('What to tow next')
     assert REASONS['outlier'] in text
     assert 'What to tow next' not in page(found, tmp_path, [])
+    named = replace(found, found={'outlier': '<script>'})
+    hostile = page(named, tmp_path, [], ['<script>'])
+    assert '<script' not in hostile
+    assert hostile.count('&lt;script&gt;') == 2
 
 
 def test_figures_are_drawn_for_whatever_there_is(sea, model, prior, windows, tmp_path):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trawl_ros.errors import GearError
 from trawl_ros.gear.records import GearRecord, NettingRecord, SectionRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.netting import NetMesh, build_net
@@ -201,3 +202,21 @@ def test_refining_cuts_finer_and_keeps_the_gear(model: GearModel) -> None:
         )
         # The wings' outline follows the meshes, so their netting changes a little.
         assert fine_sum == pytest.approx(coarse_sum, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ('changes', 'part'),
+    [
+        ({'length_m': 600_000.0}, 'have more than 30000 nodes, expected fewer meshes around'),
+        ({'length_m': 0.001}, 'are 0 rows of the mesh, expected at least 3'),
+        (
+            {'front_circumference_m': 1e-300, 'back_circumference_m': 1e-300},
+            'have more than 30000 nodes',
+        ),
+    ],
+)
+def test_a_net_is_bounded_before_it_is_built(gear, changes, part):
+    body = tuple(section.model_copy(update=changes) for section in gear.netting.body)
+    asked = gear.model_copy(update={'netting': gear.netting.model_copy(update={'body': body})})
+    with pytest.raises(GearError, match=part):
+        build_model(asked)

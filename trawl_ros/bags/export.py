@@ -1,6 +1,5 @@
 """Bags as CSV: one file per topic, for spreadsheets and data frames."""
 
-import csv
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack
@@ -8,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from trawl_ros.bags.csv_output import CsvOutput
 from trawl_ros.bags.field_units import unit_of
 from trawl_ros.bags.flattening import Column, Layout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
@@ -189,13 +189,13 @@ def _write(
             stream = stack.enter_context(
                 (folder / table.file_name).open('x', encoding='utf-8', newline='')
             )
-            writers[topic] = csv.writer(stream, lineterminator='\n')
-            writers[topic].writerow([*LOG_COLUMNS, *(column.name for column in table.columns)])
+            writers[topic] = CsvOutput(stream)
+            writers[topic].row([*LOG_COLUMNS, *(column.name for column in table.columns)])
         start: int | None = None
         if writers:
             for received in bag.messages(writers):
                 cells = written[received.topic].cells(received.log_time, received.message)
-                writers[received.topic].writerow(cells)
+                writers[received.topic].row(cells)
                 rows[received.topic] += 1
                 start = received.log_time if start is None else start
                 progress((received.log_time - start) / SECOND)
@@ -206,8 +206,8 @@ def _write(
 
 def _write_dictionary(bag: Bag, folder: Path, tables: Mapping[str, _Table], namespace: str) -> None:
     with (folder / DICTIONARY).open('x', encoding='utf-8', newline='') as stream:
-        writer = csv.writer(stream, lineterminator='\n')
-        writer.writerow(['file', 'column', 'unit', 'topic', 'type'])
+        writer = CsvOutput(stream)
+        writer.row(['file', 'column', 'unit', 'topic', 'type'])
         for topic, table in tables.items():
             if not table.columns:
                 continue
@@ -215,7 +215,7 @@ def _write_dictionary(bag: Bag, folder: Path, tables: Mapping[str, _Table], name
             known = find_topic(topic, namespace)
             contract = known.name if known else ''
             for column, unit in zip(LOG_COLUMNS, ('s', 'ns'), strict=True):
-                writer.writerow([table.file_name, column, unit, topic, type_name])
+                writer.row([table.file_name, column, unit, topic, type_name])
             for entry in table.columns:
                 unit = unit_of(contract, type_name, entry.path)
-                writer.writerow([table.file_name, entry.name, unit, topic, type_name])
+                writer.row([table.file_name, entry.name, unit, topic, type_name])

@@ -1,6 +1,5 @@
 """The report of the benchmark as JSON and Markdown, with its figures."""
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +9,8 @@ from trawl_ros.benchmark.findings import Findings
 from trawl_ros.benchmark.machine import blas_threads, cpu_model, software
 from trawl_ros.benchmark.modules import NAMES, TITLES
 from trawl_ros.benchmark.row import Row
-from trawl_ros.reporting import DPI, number, templates
+from trawl_ros.files import write_figure, write_json, write_text
+from trawl_ros.reporting import DPI, number, page
 
 JSON, REPORT = 'benchmark.json', 'benchmark.md'
 
@@ -33,10 +33,11 @@ def write_report(folder: Path, measured: Sequence[Measured], *, small: bool) -> 
     ordered = sorted(measured, key=lambda module: NAMES.index(module.name))
     rows = [row for module in ordered for row in module.findings.rows]
     records = [row_record(row) for row in rows]
-    (folder / JSON).write_text(json.dumps({'rows': records}, indent=1, ensure_ascii=False) + '\n')
-    environment = templates('trawl_ros.benchmark')
-    environment.filters['target'] = target
-    text = environment.get_template(f'{REPORT}.j2').render(
+    write_json(folder / JSON, {'rows': records}, indent=1, ensure_ascii=False)
+    text = page(
+        'trawl_ros.benchmark',
+        REPORT,
+        target=target,
         modules=[(TITLES[module.name], module, _draw(folder, module)) for module in ordered],
         asked=sum(row.target is not None for row in rows),
         reached=sum(row.target is not None and row.ok for row in rows),
@@ -46,7 +47,7 @@ def write_report(folder: Path, measured: Sequence[Measured], *, small: bool) -> 
         blas_threads=blas_threads(),
         small=small,
     )
-    (folder / REPORT).write_text(text.rstrip() + '\n')
+    write_text(folder / REPORT, text)
 
 
 def _draw(folder: Path, module: Measured) -> list[tuple[str, str]]:
@@ -55,7 +56,7 @@ def _draw(folder: Path, module: Measured) -> list[tuple[str, str]]:
     for drawing in module.findings.drawings:
         file = f'{FIGURES}/{module.name}_{drawing.name}.png'
         (folder / FIGURES).mkdir(exist_ok=True)
-        drawing.figure.savefig(folder / file, dpi=DPI)
+        write_figure(folder / file, drawing.figure, DPI)
         pictures.append((file, drawing.caption))
     return pictures
 

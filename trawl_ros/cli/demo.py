@@ -18,7 +18,7 @@ from trawl_ros.cli.own_graph import own_graph
 from trawl_ros.cli.processes import Processes
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.errors import RosMissing, TrawlError
-from trawl_ros.files import packaged
+from trawl_ros.files import packaged, write_figure
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.messages.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
 from trawl_ros.model.board import COEFFICIENTS
@@ -204,11 +204,11 @@ def _gear_file(scenario: Scenario) -> str:
 def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
     read = read_tow(folder.bag, build_water(scenario.plant).depth, NAMESPACE)
     tow = replace(read, name=scenario.path.stem)
-    history_figure(tow).savefig(folder.path / 'history.png', dpi=DPI)
+    write_figure(folder.path / 'history.png', history_figure(tow), DPI)
     (end,) = read_moments(folder.bag, tow, [tow.duration_s], NAMESPACE, [GEAR])
     shape = gear_shape(end, tow, scenario.plant)
     if shape is not None:
-        gear_figure(shape, tow.name).savefig(folder.path / 'gear.png', dpi=DPI)
+        write_figure(folder.path / 'gear.png', gear_figure(shape, tow.name), DPI)
     return sorted(file.name for file in folder.path.glob('*.png'))
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import write_json
 
 MADE_BY = 'trawl demo'
 SUMMARY = 'summary.json'
@@ -73,8 +74,7 @@ class DemoFolder:
 
     def write_summary(self, content: dict[str, Any]) -> None:
         """Write ``summary.json``."""
-        text = json.dumps({'made_by': MADE_BY, **content}, indent=2)
-        (self.path / SUMMARY).write_text(f'{text}\n', encoding='utf-8')
+        write_json(self.path / SUMMARY, {'made_by': MADE_BY, **content}, indent=2)
 
     def _require_former_demo(self) -> None:
         try:

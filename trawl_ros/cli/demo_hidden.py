@@ -1,6 +1,5 @@
 """The last act of the demo: something is hidden in a trial, found, named, and repaired."""
 
-import json
 from pathlib import Path
 
 import click
@@ -11,6 +10,7 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose
 from trawl_ros.diagnosis.words import headline, sentences
 from trawl_ros.diagnosis.writing import MODEL, write_diagnosis
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import write_json
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.studies.discrepancy.study import FINER
@@ -44,7 +44,7 @@ def hidden_effect(folder: Path, console: Console) -> None:
         if found.repair is not None:
             repaired = load_gear(folder / MODEL)
             again = diagnose(repaired, made.windows, tows, baseline, status.update)
-    (folder / 'key.json').write_text(json.dumps(key.record(), indent=2) + '\n', encoding='utf-8')
+    write_json(folder / 'key.json', key.record(), indent=2)
     _print(found, again)
     click.echo(f'{folder}: report.html, {MODEL}, and key.json, which the diagnosis has not seen')
 

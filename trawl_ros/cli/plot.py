@@ -12,7 +12,7 @@ from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.errors import TrawlError
-from trawl_ros.files import empty_folder
+from trawl_ros.files import empty_folder, write_figure
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.topics import NAMESPACE
@@ -190,7 +190,7 @@ class _Album:
         return zip(moments, sweeps, strict=True)
 
     def _add(self, figure: Figure, file: str, caption: str, section: str) -> None:
-        figure.savefig(self._folder / file, dpi=DPI)
+        write_figure(self._folder / file, figure, DPI)
         self.pictures.append(Picture(file, caption, section))
 
     def _note(self, sentence: str) -> None:

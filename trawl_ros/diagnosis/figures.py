@@ -9,6 +9,7 @@ from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown
 from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.files import write_figure
 from trawl_ros.identification.figures import Drawing
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.plots.style import DPI, FAINT, MEASURED, SECOND, quiet
@@ -77,7 +78,7 @@ def draw_figures(found: Diagnosis, folder: Path) -> list[Drawing]:
     """Draw all figures into a folder."""
     made = drawings(found)
     for drawing in made:
-        drawing.figure.savefig(folder / drawing.file, dpi=DPI)
+        write_figure(folder / drawing.file, drawing.figure, DPI)
     return made
 
 

@@ -1,7 +1,6 @@
 """Writes a diagnosis into a folder."""
 
 import base64
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,9 +11,10 @@ from trawl_ros.diagnosis.repair import Source, gear_text, repaired
 from trawl_ros.diagnosis.result import result
 from trawl_ros.diagnosis.words import headline, sentences
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import write_json, write_text
 from trawl_ros.identification.figures import Drawing
 from trawl_ros.identification.page import Embedded
-from trawl_ros.reporting import templates
+from trawl_ros.reporting import page
 
 MODEL = 'model.yaml'
 
@@ -40,14 +40,12 @@ def write_diagnosis(found: Diagnosis, sources: Sequence[Source], folder: Path) -
     gear = repaired(found, sources)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(numbers, indent=2, allow_nan=False)
-        (folder / 'diagnosis.json').write_text(f'{text}\n', encoding='utf-8')
+        write_json(folder / 'diagnosis.json', numbers, indent=2)
         if gear is not None:
-            (folder / MODEL).write_text(gear_text(gear), encoding='utf-8')
+            write_text(folder / MODEL, gear_text(gear))
         drawn = draw_figures(found, folder)
         for name in ('report.html', 'report.md'):
-            page = _page(name, found, numbers, folder, drawn, gear is not None)
-            (folder / name).write_text(page, encoding='utf-8')
+            write_text(folder / name, _page(name, found, numbers, folder, drawn, gear is not None))
     except OSError as reason:
         raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
 
@@ -64,16 +62,13 @@ def _page(
     for drawing in drawn:
         data = base64.b64encode((folder / drawing.file).read_bytes()).decode('ascii')
         figures.setdefault(drawing.section, []).append(Embedded(drawing.caption, data))
-    text = (
-        templates('trawl_ros.diagnosis')
-        .get_template(f'{name}.j2')
-        .render(
-            result={**numbers, 'gear': found.gear.name},
-            headline=headline(found),
-            sentences=sentences(found),
-            figures=list(figures.items()),
-            repaired=repaired,
-            added_as=found.added_as,
-        )
+    return page(
+        'trawl_ros.diagnosis',
+        name,
+        result={**numbers, 'gear': found.gear.name},
+        headline=headline(found),
+        sentences=sentences(found),
+        figures=list(figures.items()),
+        repaired=repaired,
+        added_as=found.added_as,
     )
-    return text.rstrip() + '\n'

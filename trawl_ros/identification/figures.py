@@ -5,6 +5,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from trawl_ros.files import write_figure
 from trawl_ros.identification.figures_coefficients import (
     coefficients_figure,
     lift_drag_figure,
@@ -96,5 +97,5 @@ def draw_figures(report: Report, folder: Path) -> list[Drawing]:
     """Draw all figures into an existing folder."""
     found = drawings(report)
     for drawing in found:
-        drawing.figure.savefig(folder / drawing.file, dpi=DPI)
+        write_figure(folder / drawing.file, drawing.figure, DPI)
     return found

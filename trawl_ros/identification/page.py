@@ -16,7 +16,7 @@ from trawl_ros.identification.residuals import ChannelResiduals
 from trawl_ros.identification.verdict import BEYOND, verdict
 from trawl_ros.identification.window_records import REASONS
 from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.reporting import templates
+from trawl_ros.reporting import page as filled
 
 PAGE = 'report.html'
 
@@ -49,29 +49,26 @@ def page(
     for drawing in drawings:
         data = base64.b64encode((folder / drawing.file).read_bytes()).decode('ascii')
         sections.setdefault(drawing.section, []).append(Embedded(drawing.caption, data))
-    text = (
-        templates('trawl_ros.identification')
-        .get_template(f'{PAGE}.j2')
-        .render(
-            report=report,
-            verdict=verdict(report),
-            advice=advice,
-            coefficients=_coefficients(report),
-            sections=list(sections.items()),
-            residuals=[_residual(row) for row in report.residuals],
-            channels=PAPER_CHANNELS,
-            tows=_tows(report),
-            rejected=[
-                (key, count, REASONS[key], report.found.get(key, ''))
-                for key, count in report.rejected.items()
-            ],
-            laws=_laws(report),
-            attack_deg=math.degrees(report.laws.angles.attack) if report.laws else math.nan,
-            objectives=report.objectives,
-            version=__version__,
-        )
+    return filled(
+        'trawl_ros.identification',
+        PAGE,
+        report=report,
+        verdict=verdict(report),
+        advice=advice,
+        coefficients=_coefficients(report),
+        sections=list(sections.items()),
+        residuals=[_residual(row) for row in report.residuals],
+        channels=PAPER_CHANNELS,
+        tows=_tows(report),
+        rejected=[
+            (key, count, REASONS[key], report.found.get(key, ''))
+            for key, count in report.rejected.items()
+        ],
+        laws=_laws(report),
+        attack_deg=math.degrees(report.laws.angles.attack) if report.laws else math.nan,
+        objectives=report.objectives,
+        version=__version__,
     )
-    return text.rstrip() + '\n'
 
 
 def _coefficients(report: Report) -> list[dict[str, Any]]:

@@ -2,13 +2,13 @@
 
 import json
 import math
-import shutil
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import write_figure, write_text
 from trawl_ros.identification.laws import QUANTITIES, LawQuantities
 from trawl_ros.identification.planning import TrialPlan
 from trawl_ros.identification.planning_figure import plan_figure
@@ -42,16 +42,16 @@ def write_plan(plan: TrialPlan, gear: str, folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps(plan_record(plan), indent=2)
-        (folder / PLAN).write_text(f'{text}\n', encoding='utf-8')
+        write_text(folder / PLAN, text)
         named = gear
         if Path(gear).is_file():
             named = f'{Path(gear).stem}.yaml'
             if not (folder / named).exists() or not Path(gear).samefile(folder / named):
-                shutil.copyfile(gear, folder / named)
+                write_text(folder / named, Path(gear).read_text(encoding='utf-8'))
         record = scenario_of(plan.trial, named)
         lines = yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100)
-        (folder / SCENARIO).write_text(lines, encoding='utf-8')
-        plan_figure(plan).savefig(folder / PICTURE, dpi=DPI)
+        write_text(folder / SCENARIO, lines)
+        write_figure(folder / PICTURE, plan_figure(plan), DPI)
     except OSError as reason:
         raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
     load_scenario(folder / SCENARIO)

@@ -19,6 +19,7 @@ from typing import Any
 from trawl_ros import __version__
 from trawl_ros.complaints import shown
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import written
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.packing import Packer, Unpacker
@@ -70,18 +71,16 @@ def save_state(path: Path, identification: Identification, gear: GearRecord) -> 
             f'{path}: {len(identification.estimator.windows)} windows take more than '
             f'{MAX_BYTES / 1e6:g} MB and are not saved'
         )
-    draft = path.with_name(f'{path.name}.partial')
     try:
-        with draft.open('wb') as stream:
+        with written(path) as draft, draft.open('wb') as stream:
             with zipfile.ZipFile(stream, 'w') as archive:
                 archive.writestr(JSON, text)
                 archive.writestr(NUMBERS, bytes(packer.numbers))
             stream.flush()
             # Renamed before its content is on the disk, it could be empty after a power cut.
             os.fsync(stream.fileno())
-        draft.replace(path)
-    except OSError as reason:
-        raise StateError(f'{path}: the state cannot be written ({reason.strerror})') from reason
+    except TrawlError as reason:
+        raise StateError(f'the state is not saved: {reason}') from reason
 
 
 def load_state(path: Path, fresh: Identification, gear: GearRecord) -> Identification:

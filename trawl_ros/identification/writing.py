@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import write_text
 from trawl_ros.identification.figures import draw_figures
 from trawl_ros.identification.page import PAGE, page
 from trawl_ros.identification.report import Report
@@ -31,8 +32,8 @@ def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> Non
     try:
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps(result(found), indent=2)
-        (folder / 'identification.json').write_text(f'{text}\n', encoding='utf-8')
+        write_text(folder / 'identification.json', text)
         drawings = draw_figures(found, folder)
-        (folder / PAGE).write_text(page(found, folder, drawings, advice), encoding='utf-8')
+        write_text(folder / PAGE, page(found, folder, drawings, advice))
     except OSError as reason:
         raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason

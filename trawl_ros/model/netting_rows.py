@@ -4,10 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.errors import GearError
 from trawl_ros.gear.records import SectionRecord
+from trawl_ros.limits import GEAR_NODES
 
 SLICES = 64
 """Slices along a row over which the sections' properties are summed."""
+
+LEAST_ROWS = 3
+"""So that the top has two nodes for the kite's carrying points."""
 
 
 @dataclass(frozen=True)
@@ -105,19 +110,36 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
         Numerical meshes around the mouth.
     halved_at
         Stretched circumferences (m), falling, below which half as many meshes go around.
+
+    Raises
+    ------
+    GearError
+        If they have more nodes than `GEAR_NODES` allows, or there are too few to carry a kite.
     """
     rows: list[Row] = []
-    x, odd, pending = 0.0, False, list(halved_at)
+    x, odd, pending, nodes = 0.0, False, list(halved_at), 0
     while True:
         _, circumference = profile.at(x)
         # The circumference shrinks along the row: use the one at its middle.
         _, middle = profile.at(min(x + circumference / (4 * around), profile.length))
         end = x + middle / (2 * around)
         if end > profile.length:
-            return tuple(rows)
+            break
+        nodes += around
+        if nodes > GEAR_NODES.value:
+            raise GearError(
+                f'netting.body: {profile.length:g} m in rows of {end - x:g} m have more than '
+                f'{GEAR_NODES}, expected fewer meshes around or less netting'
+            )
         joins = bool(pending) and circumference <= pending[0] and odd and around % 2 == 0
         rows.append(Row(x, end, around, odd, joins))
         x, odd = end, not odd
         if joins:
             around, odd = around // 2, False
             del pending[0]
+    if len(rows) < LEAST_ROWS:
+        raise GearError(
+            f'netting.body: {profile.length:g} m of netting are {len(rows)} rows of the mesh, '
+            f'expected at least {LEAST_ROWS}: more meshes around or more netting'
+        )
+    return tuple(rows)

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.artist import Artist
 
+from trawl_ros.files import written
 from trawl_ros.plots import gear, sonar, style
 from trawl_ros.plots.records import GearShape, SonarPicture, Tow
 
@@ -61,10 +62,10 @@ def write_film(path: Path, name: str, frames: Sequence[Frame], go_on: Callable[[
         views.right.set_title('sonar', fontsize='medium')
     else:
         gear.prepare_rear(views.right, gear.extent(shapes, rear=True))
-    title = views.figure.suptitle('')
+    title = views.figure.suptitle('', parse_math=False)
     writer = PillowWriter(fps=FRAMES_PER_S)
     done = 0
-    with writer.saving(views.figure, str(path), DPI):
+    with written(path) as draft, writer.saving(views.figure, str(draft), DPI):
         for frame in frames:
             title.set_text(f'{name} at {style.clock(frame.shape.time)}: {frame.shape.source}')
             drawn = _draw(views, frame, with_sonar=first is not None)

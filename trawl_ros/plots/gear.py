@@ -50,7 +50,8 @@ def gear_figure(shape: GearShape, name: str) -> Figure:
     prepare_rear(views.right, extent([shape], rear=True))
     for axes, plane in ((views.top, ABOVE), (views.side, BESIDE), (views.right, BEHIND)):
         draw(shape, axes, plane)
-    views.figure.suptitle(f'{name} at {style.clock(shape.time)}: {shape.source}')
+    title = f'{name} at {style.clock(shape.time)}: {shape.source}'
+    views.figure.suptitle(title, parse_math=False)
     if shape.by_tension:
         _tension_bar(views.figure, views.right)
     return views.figure

@@ -137,7 +137,7 @@ def history_figure(tow: Tow) -> Figure:
         last.set_xlabel('time since the start / min')
         last.tick_params(labelbottom=True)
     grid[0, 0].set_xlim(0.0, max(tow.duration_s, 1.0) / 60.0)
-    figure.suptitle(tow.name, fontsize='large')
+    figure.suptitle(tow.name, fontsize='large', parse_math=False)
     figure.legend(
         handles=[*marks.values(), *_SIDES], labels=[*marks, *SIDES], loc='outside lower center',
         ncols=len(marks) + len(_SIDES), frameon=False, fontsize='small',

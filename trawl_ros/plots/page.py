@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros import __version__
+from trawl_ros.files import write_text
 from trawl_ros.plots import style
 from trawl_ros.plots.records import Tow
-from trawl_ros.reporting import templates
+from trawl_ros.reporting import page
 
 PAGE = 'index.html'
 
@@ -26,15 +27,13 @@ def write_page(folder: Path, tow: Tow, pictures: Sequence[Picture], notes: Seque
     sections: dict[str, list[Picture]] = {}
     for picture in pictures:
         sections.setdefault(picture.section, []).append(picture)
-    text = (
-        templates('trawl_ros.plots')
-        .get_template(f'{PAGE}.j2')
-        .render(
-            name=tow.name,
-            duration=style.clock(tow.duration_s),
-            sections=sections,
-            notes=notes,
-            version=__version__,
-        )
+    text = page(
+        'trawl_ros.plots',
+        PAGE,
+        name=tow.name,
+        duration=style.clock(tow.duration_s),
+        sections=sections,
+        notes=notes,
+        version=__version__,
     )
-    (folder / PAGE).write_text(text.rstrip() + '\n', encoding='utf-8')
+    write_text(folder / PAGE, text)

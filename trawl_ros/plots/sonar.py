@@ -22,7 +22,7 @@ def sonar_figure(picture: SonarPicture, name: str) -> Figure:
     axes = figure.subplots()
     prepare(axes, picture)
     draw(axes, picture)
-    axes.set_title(f'{name}, sweep from {style.clock(picture.time)} on')
+    axes.set_title(f'{name}, sweep from {style.clock(picture.time)} on', parse_math=False)
     handles, labels = axes.get_legend_handles_labels()
     if handles:
         figure.legend(

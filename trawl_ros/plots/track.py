@@ -47,7 +47,7 @@ def track_figure(tow: Tow) -> Figure | None:
     axes.set_ylabel('north / km')
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(lambda metres, _: f'{1e-3 * metres:g}')
-    axes.set_title(f'{tow.name}: the ship over ground')
+    axes.set_title(f'{tow.name}: the ship over ground', parse_math=False)
     figure.legend(loc='outside lower center', ncols=6, frameon=False, fontsize='small')
     return figure
 

@@ -5,6 +5,7 @@ from shutil import copyfile
 
 import yaml
 
+from trawl_ros.files import write_text
 from trawl_ros.gear.load import load_gear
 
 TRUTH_HZ = 2.0
@@ -28,7 +29,7 @@ def write_coarse_gear(folder: Path, gear: str) -> str:
     netting = record.netting.model_copy(update={'around': COARSEST})
     data = record.model_copy(update={'netting': netting}).model_dump(mode='json')
     path = folder / 'coarse.yaml'
-    path.write_text(yaml.safe_dump(data, sort_keys=False))
+    write_text(path, yaml.safe_dump(data, sort_keys=False))
     return str(path)
 
 
@@ -67,5 +68,5 @@ def write_long_tow(folder: Path, gear: str, hours: float, truth_rate_hz: float =
         'truth_rate_hz': truth_rate_hz,
     }
     path = folder / 'long_tow.yaml'
-    path.write_text(yaml.safe_dump(record, sort_keys=False))
+    write_text(path, yaml.safe_dump(record, sort_keys=False))
     return path

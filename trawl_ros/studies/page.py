@@ -1,17 +1,17 @@
 """The page of a study: JSON, Markdown, a self-contained HTML page and a figure."""
 
 import base64
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
+from trawl_ros.files import write_figure, write_json, write_text
 from trawl_ros.plots.style import DPI
-from trawl_ros.reporting import number, templates
+from trawl_ros.reporting import number
+from trawl_ros.reporting import page as filled
 from trawl_ros.studies.row import Row
 
 Section = tuple[str, Sequence[Row]]
@@ -42,23 +42,20 @@ class Page:
 def write_page(folder: Path, page: Page, sections: Sequence[Section], figure: Figure) -> None:
     """Write ``<name>.json`` with all rows, ``.md``, ``.html`` and ``.png`` into a folder."""
     records = [row.record() for _, rows in sections for row in rows]
-    text = json.dumps({'rows': records}, indent=1, ensure_ascii=False)
-    (folder / f'{page.name}.json').write_text(text + '\n', encoding='utf-8')
-    picture = BytesIO()
-    figure.savefig(picture, format='png', dpi=DPI)
-    (folder / f'{page.name}.png').write_bytes(picture.getvalue())
+    write_json(folder / f'{page.name}.json', {'rows': records}, indent=1, ensure_ascii=False)
+    picture = folder / f'{page.name}.png'
+    write_figure(picture, figure, DPI)
     content: dict[str, Any] = {
         **asdict(page),
         'sections': [section for section in sections if section[1]],
         'asked': [row for _, rows in sections for row in rows if row.asked],
-        'figure': f'{page.name}.png',
-        'data': base64.b64encode(picture.getvalue()).decode('ascii'),
+        'figure': picture.name,
+        'data': base64.b64encode(picture.read_bytes()).decode('ascii'),
+        'wanted': wanted,
     }
-    environment = templates('trawl_ros.studies')
-    environment.filters['wanted'] = wanted
     for kind in ('md', 'html'):
-        text = environment.get_template(f'study.{kind}.j2').render(content)
-        (folder / f'{page.name}.{kind}').write_text(text.rstrip() + '\n', encoding='utf-8')
+        text = filled('trawl_ros.studies', f'study.{kind}', **content)
+        write_text(folder / f'{page.name}.{kind}', text)
 
 
 def wanted(row: Row) -> str:

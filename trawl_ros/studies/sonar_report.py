@@ -1,6 +1,5 @@
 """The report of the study of the trawl sonar: JSON, Markdown and a picture."""
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -9,10 +8,11 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.files import write_figure, write_json, write_text
 from trawl_ros.plots import style
 from trawl_ros.plots.records import SonarPicture
 from trawl_ros.plots.sonar import BACKGROUND, ECHOES, draw, prepare
-from trawl_ros.reporting import templates
+from trawl_ros.reporting import page
 from trawl_ros.studies.sonar import SHOWN, STATES, Measured, figures
 
 JSON, REPORT, PICTURE = 'sonar.json', 'sonar.md', 'sonar.png'
@@ -22,12 +22,10 @@ def write_sonar(folder: Path, measured: Sequence[Measured], sweeps: int) -> None
     """Write ``sonar.json``, ``sonar.md`` and ``sonar.png`` into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = [_row(case) for case in measured]
-    text = json.dumps({'sweeps': sweeps, 'cases': rows}, indent=1)
-    (folder / JSON).write_text(text + '\n')
-    template = templates('trawl_ros.studies').get_template(f'{REPORT}.j2')
-    page = template.render(rows=rows, sweeps=sweeps, picture=PICTURE, states=scatter(measured))
-    (folder / REPORT).write_text(page.rstrip() + '\n')
-    sonar_figure(measured).savefig(folder / PICTURE, dpi=style.DPI)
+    write_json(folder / JSON, {'sweeps': sweeps, 'cases': rows}, indent=1)
+    about = {'rows': rows, 'sweeps': sweeps, 'picture': PICTURE, 'states': scatter(measured)}
+    write_text(folder / REPORT, page('trawl_ros.studies', REPORT, **about))
+    write_figure(folder / PICTURE, sonar_figure(measured), style.DPI)
 
 
 def scatter(measured: Sequence[Measured]) -> dict[str, float]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros.errors import TrawlError
+from trawl_ros.files import write_figure
 from trawl_ros.reporting import DPI
 from trawl_ros.validation.cases import load_case, section_of
 from trawl_ros.validation.check import Check, Outcome, Table
@@ -98,7 +99,7 @@ def run_case(name: str, folder: Path, *, small: bool) -> Finished:
     pictures = []
     for drawing in outcome.drawings:
         file = f'figures/{name}_{drawing.name}.png'
-        drawing.figure.savefig(folder / file, dpi=DPI)
+        write_figure(folder / file, drawing.figure, DPI)
         pictures.append(Picture(file, drawing.caption))
     keys = [check.key for check in outcome.checks]
     assert len(set(keys)) == len(keys), f'{name}: two checks share a key'

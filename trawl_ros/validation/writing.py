@@ -1,11 +1,11 @@
 """The report of validation as JSON, Markdown and HTML."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
 from trawl_ros import __version__
-from trawl_ros.reporting import number, templates
+from trawl_ros.files import write_json, write_text
+from trawl_ros.reporting import number, page
 from trawl_ros.validation.cases import NAMES, TITLES
 from trawl_ros.validation.check import Check
 from trawl_ros.validation.run import Finished
@@ -19,15 +19,16 @@ def write_report(folder: Path, finished: Sequence[Finished], *, small: bool) -> 
     figures = {
         f'{case.name}.{check.key}': check_record(check) for case in ordered for check in case.checks
     }
-    (folder / JSON).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + '\n')
-    environment = templates('trawl_ros.validation')
-    environment.filters['expectation'] = expectation
+    write_json(folder / JSON, figures, indent=1, ensure_ascii=False)
     sections = [
         (title, [case for case in ordered if case.section == section])
         for section, title in TITLES.items()
     ]
     for name in REPORTS:
-        text = environment.get_template(f'{name}.j2').render(
+        text = page(
+            'trawl_ros.validation',
+            name,
+            expectation=expectation,
             sections=[(title, cases) for title, cases in sections if cases],
             passed=sum(check.ok for case in ordered for check in case.checks),
             total=sum(len(case.checks) for case in ordered),
@@ -35,7 +36,7 @@ def write_report(folder: Path, finished: Sequence[Finished], *, small: bool) -> 
             small=small,
             version=__version__,
         )
-        (folder / name).write_text(text.rstrip() + '\n')
+        write_text(folder / name, text)
 
 
 def check_record(check: Check) -> dict[str, object]:

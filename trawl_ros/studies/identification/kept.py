@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trawl_ros.errors import TrawlError
-from trawl_ros.files import empty_folder
+from trawl_ros.files import appending, empty_folder, write_json, write_text
 from trawl_ros.studies.identification.trial import Trial
 
 FILE = 'trials.jsonl'
@@ -39,7 +39,7 @@ class KeptTrials:
         if force or not self._path.is_file():
             empty_folder(folder, force=force)
             folder.mkdir(parents=True, exist_ok=True)
-            self._path.write_text(json.dumps({'asked': self._asked}) + '\n', encoding='utf-8')
+            write_json(self._path, {'asked': self._asked})
             return
         self._read()
 
@@ -68,11 +68,11 @@ class KeptTrials:
         if lines and lines[-1]:
             # A study that was killed may leave a line without its end.
             kept = '\n'.join((first, *whole)) + '\n'
-            self._path.write_text(kept, encoding='utf-8')
+            write_text(self._path, kept)
 
     def add(self, trial: Trial) -> None:
         """Keep one more."""
-        with self._path.open('a', encoding='utf-8') as file:
+        with appending(self._path) as file:
             file.write(json.dumps(asdict(trial), allow_nan=False) + '\n')
         self._trials[trial.series, trial.number] = trial
 

@@ -1,5 +1,6 @@
 """YAML of gears, scenarios, instruments and mappings: damaged, wrong, and written with intent."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from trawl_ros.bags.log_mapping import load_mapping
 from trawl_ros.bags.nmea_mapping import load_nmea_mapping
 from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.parameters import load_instruments
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.share import share_path
 
@@ -114,7 +116,44 @@ def _target(name: str, folder: str, load: Callable[[Path], Any], key: str) -> Ta
     )
 
 
+@st.composite
+def with_other_numbers(draw: DrawFn, sound: str) -> bytes:
+    """A sound file with other numbers, most of them possible."""
+    spans = [found.span(1) for found in re.finditer(r'[:,\[] *(-?[\d.]+(?:e-?\d+)?)', sound)]
+    chosen = draw(st.lists(st.sampled_from(spans), min_size=1, max_size=4, unique=True))
+    for start, end in sorted(chosen, reverse=True):
+        old = sound[start:end]
+        factors = st.sampled_from((0.0, 1e-9, 0.01, 0.5, 2.0, 30.0, 1000.0, 1e9, 1e300, -1.0))
+        if '.' in old or 'e' in old:
+            new = repr(float(old) * draw(factors))
+        else:
+            new = str(draw(st.sampled_from((0, 1, 2, 12, 100, 240, 500, -1, 10**9))))
+        sound = sound[:start] + new + sound[end:]
+    return sound.encode()
+
+
+def _gear_with(**changes: str) -> Callable[[], Files]:
+    def made() -> Files:
+        text = _files('gear')[0]
+        for key, value in changes.items():
+            text = re.sub(rf'\b{key}: [^ }}\n]+', f'{key}: {value}', text)
+        return {FILE: text.encode()}
+
+    return made
+
+
 TARGETS = (
+    Target(
+        name='gear-model',
+        inputs=one_file(FILE, st.sampled_from(_files('gear')).flatmap(with_other_numbers)),
+        read=lambda given, results: build_model(load_gear(given / FILE)),
+        examples=40,
+        known={
+            'netting-of-600-km': _gear_with(length_m='600000.0'),
+            'netting-of-a-millimetre': _gear_with(length_m='0.001'),
+            'no-circumference': _gear_with(front_circumference_m='1.0e-300'),
+        },
+    ),
     _target('gear', 'gear', load_gear, 'name'),
     _target('scenario', 'scenarios', load_scenario, 'name'),
     _target('instruments', 'instruments', load_instruments, 'winch'),

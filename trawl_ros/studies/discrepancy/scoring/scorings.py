@@ -9,6 +9,7 @@ from pathlib import Path
 
 from trawl_ros import __version__
 from trawl_ros.diagnosis import rules
+from trawl_ros.files import appending
 from trawl_ros.studies.discrepancy.study import Plan
 from trawl_ros.studies.row import Row
 
@@ -28,5 +29,5 @@ def log_scoring(folder: Path, plan: Plan, trials: int, rows: Sequence[Row]) -> N
         'asked': len(asked),
         'missed': [row.what for row in asked if not row.ok],
     }
-    with (folder / SCORINGS).open('a', encoding='utf-8') as log:
+    with appending(folder / SCORINGS) as log:
         log.write(json.dumps(line) + '\n')
