@@ -1,1 +1,1 @@
-"""Side by side with other tools: what is measured for `trawl benchmark`."""
+"""Benchmark against other tools: the modules of `trawl benchmark`."""

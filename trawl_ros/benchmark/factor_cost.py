@@ -1,4 +1,4 @@
-"""What one factorisation of the gear's stiffness costs."""
+"""Cost of one factorisation of the gear's stiffness matrix."""
 
 from trawl_ros.benchmark.timing import median_s
 from trawl_ros.model.assembly import linearised
@@ -11,7 +11,7 @@ NUMBER_BYTES = 12
 
 
 def factor_cost(model: GearModel, state: State, tow: Tow, repeats: int) -> tuple[float, float]:
-    """CPU time (s) of factorising once and solving once with it, and memory (MB) of the factors."""
+    """CPU time (s) of one factorisation with its solution, and memory (MB) of the factors."""
     here = linearised(model, state, tow)
     factor = factorised(model.pattern, here.stiffness)
     seconds = median_s(lambda: factorised(model.pattern, here.stiffness).solve(here.force), repeats)

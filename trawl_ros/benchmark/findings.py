@@ -1,4 +1,4 @@
-"""What one module of the benchmark found."""
+"""Findings of one benchmark module."""
 
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
@@ -9,7 +9,7 @@ from trawl_ros.validation.check import Drawing
 
 @dataclass(frozen=True)
 class Findings:
-    """Rows of the report, the figures beside them, and how they were measured, in words."""
+    """Findings: rows of the report, figures, and a description of the measurement."""
 
     rows: tuple[Row, ...]
     drawings: tuple[Drawing, ...] = ()
@@ -17,7 +17,7 @@ class Findings:
 
 
 def without_ros(asked: Row) -> Findings | None:
-    """Say of a figure without a value yet that it needs ROS 2; None where that is there."""
+    """Return findings that say ROS 2 is missing for this row; None where it is installed."""
     if find_spec('rclpy') is not None:
         return None
     note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'

@@ -34,7 +34,7 @@ QUICK = EstimatorOptions(iterations_per_window=1, iterations_final=2, relinearis
 
 @dataclass(frozen=True)
 class Fitted:
-    """What a fit came to: eq. 35, steady states that were solved, CPU time (s), its end."""
+    """Result of a fit: eq. 35, steady states that were solved, CPU time (s), its end."""
 
     objective: float
     solves: int
@@ -120,7 +120,7 @@ def _fitted(
 
 
 def _no_worse(name: str, ours: Fitted, theirs: Fitted | Searched) -> Row:
-    """Eq. 35 to four digits, since differences are never exact."""
+    """Row on the objective (eq. 35) to four digits, since differences are never exact."""
     note = f'{ours.objective:.4f} and {theirs.objective:.4f}'
     if ours.objective > theirs.objective:
         note += '; a search that is stopped when it is no worse ends a little lower'

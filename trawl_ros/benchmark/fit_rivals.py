@@ -1,4 +1,4 @@
-"""Other ways to the twelve coefficients, for the benchmark only."""
+"""Rival optimisers of the twelve coefficients, for the benchmark only."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ FIRST_STEP, LAST_STEP = 0.5, 1e-6
 
 
 class Counting(Predictor):
-    """The model that ships, counting how many steady states it is asked for."""
+    """Predictor that ships, with a count of the steady states it is asked for."""
 
     def __init__(self, model: GearModel) -> None:
         super().__init__(model)
@@ -46,7 +46,7 @@ class Counting(Predictor):
 
 
 class Differences(Counting):
-    """The same model with derivatives by forward differences, each a warm steady state."""
+    """Predictor with derivatives by forward differences, each a warm steady state."""
 
     def __init__(self, model: GearModel, std: np.ndarray) -> None:
         super().__init__(model)
@@ -80,7 +80,7 @@ class Differences(Counting):
 
 @dataclass(frozen=True)
 class Searched:
-    """Where a coordinate search came to, after how many steady states, and why it ended."""
+    """Result of a coordinate search: objective, number of steady states, and its end."""
 
     objective: float
     solves: int
@@ -130,7 +130,7 @@ class CoordinateSearch:
         return Searched(least, self.solves, least <= target)
 
     def _try(self, coefficients: np.ndarray, least: float) -> float:
-        """The objective; the states found become the starts when it is lower than ``least``."""
+        """Objective; the states found become the starts when it is lower than ``least``."""
         model = self._model.with_coefficients(coefficients)
         found: list[Equilibrium] = []
         try:

@@ -1,4 +1,4 @@
-"""All topics of the project from one process, at a steady rate: what a recorder is measured with.
+"""Publisher of all topics of the project at a steady rate, for measurements of the recorder.
 
 Messages are valid and as large as on a tow; what they say is nothing.
 """
@@ -41,7 +41,7 @@ _EMPTY = {'string': '', 'bool': False, 'float32': 0.0, 'float64': 0.0}
 
 
 def schedule(seconds: float, rate: float) -> list[tuple[float, int]]:
-    """Say when (s) which of `TOPICS` speaks, so that all together come to a rate in Hz.
+    """Schedule of `TOPICS` in time (s), so that all together come to a rate in Hz.
 
     Each has its share by its usual rate, and they do not all speak at once.
     """

@@ -1,4 +1,4 @@
-"""The full gear through a hauling manoeuvre: how many times real time, and how exactly."""
+"""Speed and accuracy of the full gear through a hauling manoeuvre."""
 
 import math
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ REAL_TIME, OVER_MOORDYN = 100.0, 5.0
 
 @dataclass(frozen=True)
 class Run:
-    """The manoeuvre at one step: its error (None when a step failed), times real time, and
+    """Run of the manoeuvre at one step: its error (None when a step failed), times real time, and
     factorisations per step.
     """
 
@@ -122,7 +122,7 @@ def _beside_moordyn(factor: float, model: GearModel, *, small: bool) -> Row:
 
 
 def _simulation(model: GearModel, duration_s: float) -> Row:
-    """The tow as `sim_node` and `trawl tow` advance it."""
+    """Row on the tow as `sim_node` and `trawl tow` advance it."""
     period_s = 0.1
     simulation = Simulation(model, FROM, period=period_s)
     simulation.command = TO

@@ -1,4 +1,4 @@
-"""The gears that are measured."""
+"""Gears of the benchmark."""
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord

@@ -1,4 +1,4 @@
-"""How time and memory grow as the net is cut finer, around and along alike."""
+"""Growth of time and memory as the net is refined, around and along alike."""
 
 import sys
 from collections.abc import Sequence
@@ -95,7 +95,7 @@ def measure(small: bool) -> Findings:
 
 
 def exponent(nodes: Sequence[int], values: Sequence[float]) -> float:
-    """Slope of the straight line through the logarithms."""
+    """Exponent of growth: slope of the straight line through the logarithms."""
     return float(np.polyfit(np.log(nodes), np.log(values), 1)[0])
 
 

@@ -1,4 +1,4 @@
-"""A hauling manoeuvre in steps of one length after another, under the very same ship."""
+"""Hauling manoeuvre in steps of one length after another, under the very same ship."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ WATCHED = (
 
 @dataclass(frozen=True)
 class Ride:
-    """Once through the manoeuvre: ``seen`` (n, n_watched) is what is `WATCHED`, every
+    """Ride through the manoeuvre: ``seen`` (n, n_watched) are the observables of `WATCHED`, every
     `LOOK_EVERY_S` seconds; ``factorisations`` of the stepper's matrix.
     """
 
@@ -46,7 +46,7 @@ class Ride:
 
 @dataclass(frozen=True)
 class Haul:
-    """The manoeuvre of one gear: where it starts, and what ship and winches do, every
+    """Haul: manoeuvre of one gear, by its start and the towing boundary every
     `FINEST_S` seconds from the start on.
     """
 
@@ -56,11 +56,11 @@ class Haul:
 
     @property
     def duration_s(self) -> float:
-        """How long it takes, s."""
+        """Duration of the manoeuvre, s."""
         return FINEST_S * (len(self.tows) - 1)
 
     def run(self, step_s: float) -> 'Ride':
-        """Go through it in steps of one length, which divides `LOOK_EVERY_S`.
+        """Run the manoeuvre in steps of one length, which divides `LOOK_EVERY_S`.
 
         A step that does not converge is taken in two halves, as in `Simulation`.
 
@@ -92,7 +92,7 @@ class Haul:
 
 
 def haul_of(model: GearModel, duration_s: float, start: Equilibrium | None = None) -> Haul:
-    """The manoeuvre from the steady state at `FROM` on, which may be given."""
+    """Return the manoeuvre from the steady state at `FROM` on, which may be given."""
     if start is None:
         start = find_equilibrium(model, START)
     tows = _tows(model, model.gear, round(duration_s / FINEST_S))
@@ -127,7 +127,7 @@ class Error:
 
 
 def error(seen: np.ndarray, converged: np.ndarray) -> Error:
-    """Hold a run against the converged one."""
+    """Error of a run against the converged one."""
     difference = np.abs(seen - converged).max(axis=0)
     by_range = difference / np.ptp(converged, axis=0)
     by_value = difference / np.abs(converged).mean(axis=0)

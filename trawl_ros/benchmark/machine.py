@@ -1,4 +1,4 @@
-"""What the benchmark ran on."""
+"""Machine of the benchmark: processor, software, threads."""
 
 import os
 import platform
@@ -22,7 +22,7 @@ def cpu_model() -> str:
 
 
 def software() -> dict[str, str]:
-    """Names and versions of what was measured and what it ran on; absent ones are left out."""
+    """Names and versions of the measured programs and their platform; absent ones are left out."""
     found = {'trawl_ros': __version__, 'Python': platform.python_version()}
     for name in LIBRARIES:
         try:
@@ -33,5 +33,5 @@ def software() -> dict[str, str]:
 
 
 def blas_threads() -> str:
-    """How many threads BLAS was asked to use."""
+    """Number of threads that BLAS was limited to."""
     return os.environ.get('OPENBLAS_NUM_THREADS', 'not limited')

@@ -1,4 +1,4 @@
-"""The modules of the benchmark, in the order of the report."""
+"""Modules of the benchmark, in the order of the report."""
 
 from collections.abc import Mapping
 from importlib import import_module

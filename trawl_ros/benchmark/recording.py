@@ -1,4 +1,4 @@
-"""What the recorder gets of all that is published at the rates of the full chain, and its cost."""
+"""Losses and cost of the recorder at the rates of the full chain."""
 
 import json
 import math
@@ -28,7 +28,7 @@ RECORDER = 'bag_recorder'
 
 @dataclass(frozen=True)
 class Recorded:
-    """Messages by full topic name as published and as in the bag, and what it took.
+    """Recording: messages by full topic name as published and as in the bag, and its cost.
 
     ``behind_s`` is wall time by which the publisher fell behind for good, ``cpu_s`` the
     recorder's, its start included.
@@ -41,7 +41,7 @@ class Recorded:
 
     @property
     def lost(self) -> int:
-        """How many messages are not in the bag."""
+        """Number of messages that are not in the bag."""
         return sum((Counter(self.published) - Counter(self.recorded)).values())
 
 
@@ -130,7 +130,7 @@ def measure(small: bool) -> Findings:
 
 
 def _cpu_s(pid: int) -> float:
-    """CPU time (s) of a process so far."""
+    """CPU time (s) used by a process so far."""
     # What stands behind the name, which may have spaces, begins with the third field.
     fields = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()
     user, system = int(fields[11]), int(fields[12])

@@ -1,4 +1,4 @@
-"""One measured figure of the benchmark and what was asked of it."""
+"""Row of the benchmark: a measured figure with its target."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Rule = Literal['at_least', 'at_most']
 
 @dataclass(frozen=True)
 class Row:
-    """A measured figure.
+    """Row: a measured figure with its target.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Row:
 
     @property
     def ok(self) -> bool:
-        """Whether the target is met; true where there is none. NaN never meets one."""
+        """True if the target is met; true without one. NaN never meets one."""
         if self.target is None:
             return True
         if self.rule == 'at_least':

@@ -1,4 +1,4 @@
-"""How long a node takes from nothing to its first message, and what with."""
+"""Start-up time of the nodes to their first message, and its share by imports."""
 
 import math
 import os
@@ -33,7 +33,7 @@ HEAVIEST = 4
 
 @dataclass(frozen=True)
 class Start:
-    """A node, the topic of its first message, its parameters, and whether it needs a running
+    """Start of a node: the topic of its first message, its parameters, and its need of a running
     simulation for that message.
     """
 
@@ -47,7 +47,7 @@ TOW = Start('sim_node', 'truth/winch')
 
 
 def starts(folder: Path) -> tuple[Start, ...]:
-    """Every node; those without a stream of their own report on /diagnostics."""
+    """All nodes' starts; those without a stream of their own report on /diagnostics."""
     return (
         Start('bag_recorder', '/diagnostics', {'output': str(folder / 'bag')}),
         Start('identification_node', '/diagnostics'),
@@ -119,7 +119,7 @@ def _times(start: Start, folder: Path, repeats: int) -> list[float]:
 
 
 def _forget(folder: Path) -> None:
-    """Move the bag of a recorder away, for the next one wants an empty place."""
+    """Move the bag of a recorder away, for the next one needs an empty place."""
     bag = folder / 'bag'
     if bag.exists():
         bag.rename(folder / f'bag_{time.monotonic_ns()}')
@@ -162,7 +162,7 @@ def import_s(module: str) -> dict[str, float]:
 
 @contextmanager
 def _environment(wanted: Mapping[str, str]) -> Iterator[None]:
-    """Variables of this process, as they were again afterwards."""
+    """Set variables of this process's environment, and restore them afterwards."""
     before = {key: os.environ.get(key) for key in wanted}
     os.environ.update(wanted)
     try:

@@ -1,4 +1,4 @@
-"""The benchmark's clock."""
+"""CPU clock of the benchmark."""
 
 import time
 from collections.abc import Callable
@@ -9,7 +9,7 @@ Result = TypeVar('Result')
 
 
 def timed(work: Callable[[], Result]) -> tuple[Result, float]:
-    """Do some work once.
+    """Time a function once.
 
     Returns
     -------
@@ -23,5 +23,5 @@ def timed(work: Callable[[], Result]) -> tuple[Result, float]:
 
 
 def median_s(work: Callable[[], object], repeats: int) -> float:
-    """Median CPU time (s) of doing the same work several times."""
+    """Median CPU time (s) of repeated calls."""
     return median(timed(work)[1] for _ in range(repeats))

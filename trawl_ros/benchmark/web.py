@@ -1,4 +1,4 @@
-"""MoorDyn on a web as large as the gear: how fast it runs at the largest step that is stable."""
+"""Speed of MoorDyn on a web as large as the gear, at its largest stable step."""
 
 import math
 from collections.abc import Iterator
@@ -39,7 +39,7 @@ FORCE_SHARE = 0.01
 
 @dataclass(frozen=True)
 class Stable:
-    """The largest stable step (s) of a scheme and how many times faster than real time it is."""
+    """Largest stable step (s) of a scheme and its speed over real time."""
 
     scheme: str
     damping: float
@@ -101,7 +101,7 @@ def _smaller(scheme: str, damping: float) -> Row:
 
 
 def best_of(found: tuple[Stable, ...]) -> Stable:
-    """The fastest.
+    """Return the fastest.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def largest_stable(
     duration: float,
     repeats: int,
 ) -> Stable | None:
-    """Try steps from long to short; None when all are unstable."""
+    """Search steps from long to short for the largest stable one; None when all are unstable."""
     web = web_of(model, start.state, start.tow, damping)
     limit = explicit_limit(model, start)
     reference, _ = towed(web, 'RK4', SAFE_SHARE * limit, duration)
@@ -153,7 +153,7 @@ def largest_stable(
 def _stable_runs(
     web: Web, scheme: str, step: float, duration: float, repeats: int, reference: np.ndarray
 ) -> Iterator[float]:
-    """Factors of runs, until one is unstable."""
+    """Yield the factors of runs, until one is unstable."""
     for _ in range(repeats):
         try:
             forces, seconds = towed(web, scheme, step, duration)
@@ -167,7 +167,7 @@ def _stable_runs(
 
 
 def explicit_limit(model: GearModel, start: Equilibrium) -> float:
-    """Step (s) of 2/ω, ω² being twice a node's stiffness over its mass where that is largest."""
+    """Stability limit (s) of explicit steps: 2/ω, ω² twice the largest stiffness over mass."""
     tow = start.tow
     side = np.maximum(model.warp_side, 0)
     rest = np.where(model.warp_side >= 0, tow.lengths[side] / model.warp_segments, model.rest)

@@ -1,4 +1,4 @@
-"""One towed wire through a manoeuvre, here and in MoorDyn, at steps whose errors are alike."""
+"""Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of like error."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -35,7 +35,7 @@ SETTLING = 200.0
 
 @dataclass(frozen=True)
 class Choice:
-    """A scheme of MoorDyn with the inner damping of the wire (s) that lets it take its longest
+    """MoorDyn's scheme with the inner damping of the wire (s) that lets it take its longest
     steps, and steps to try (s), from long to short.
     """
 

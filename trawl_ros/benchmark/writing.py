@@ -1,4 +1,4 @@
-"""The report of the benchmark as JSON and Markdown, with its figures."""
+"""Benchmark report as JSON and Markdown, with its figures."""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ FIGURES = 'benchmark'
 
 @dataclass(frozen=True)
 class Measured:
-    """A module that was run, with its ``seconds`` of wall clock."""
+    """Module that was run, with its ``seconds`` of wall clock."""
 
     name: str
     findings: Findings
@@ -62,7 +62,7 @@ def _draw(folder: Path, module: Measured) -> list[tuple[str, str]]:
 
 
 def row_record(row: Row) -> dict[str, object]:
-    """One row as plain values; what could not be measured is null."""
+    """Row as plain values; what could not be measured is null."""
     return {
         'what': row.what,
         'value': row.value if math.isfinite(row.value) else None,
@@ -74,7 +74,7 @@ def row_record(row: Row) -> dict[str, object]:
 
 
 def target(row: Row) -> str:
-    """What was asked, in signs."""
+    """Target of a row in symbols."""
     if row.target is None:
         return ''
     sign = '≥' if row.rule == 'at_least' else '≤'

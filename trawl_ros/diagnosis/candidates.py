@@ -1,4 +1,4 @@
-"""What is looked for: effects around values where they may be told, and what they would change."""
+"""Candidate effects, their start values, and their signatures in the windows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -22,8 +22,9 @@ WIDE = 5.0
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect around ``start`` (m,); of one that is looked for in several places, ``place``
-    counts them.
+    """Candidate effect with its start values (m,).
+
+    ``place`` counts the starts of an effect that is searched from several.
     """
 
     effect: Effect
@@ -32,17 +33,17 @@ class Candidate:
 
     @property
     def name(self) -> str:
-        """Of the effect."""
+        """Name of the effect."""
         return self.effect.name
 
     @property
     def scale(self) -> np.ndarray:
-        """How far from neutral its values are commonly found (m,)."""
+        """Prior std of the values (m,) about neutral."""
         return np.array([parameter.std for parameter in self.effect.parameters])
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Between these its values (m,) are possible."""
+        """Bounds of the values (m,)."""
         low, high = zip(*((p.low, p.high) for p in self.effect.parameters), strict=True)
         return np.array(low), np.array(high)
 
@@ -50,7 +51,7 @@ class Candidate:
 def candidates(
     effects: Mapping[str, Effect], predictor: Predictor, depths: np.ndarray
 ) -> tuple[Candidate, ...]:
-    """All that steady tows may show.
+    """All candidates that steady tows may show.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def candidates(
 
 
 def blocks_of_candidates(wanted: Sequence[Candidate]) -> tuple[range, ...]:
-    """Where the values of each stand, one behind the other."""
+    """Slices of the candidates' values in their joint vector."""
     ends = np.cumsum([len(candidate.start) for candidate in wanted]).tolist()
     return tuple(range(a, b) for a, b in pairwise([0, *ends]))
 
@@ -82,7 +83,7 @@ def blocks_of_candidates(wanted: Sequence[Candidate]) -> tuple[range, ...]:
 def signatures(
     predictor: Predictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
 ) -> list[np.ndarray]:
-    """What the candidates would change in windows that were solved.
+    """Signatures of the candidates: changes in the windows' readings per unit of their values.
 
     Returns
     -------
@@ -107,7 +108,7 @@ def signatures(
 def extended(
     fit: Fit, wanted: Sequence[Candidate], columns: Sequence[np.ndarray], options: EstimatorOptions
 ) -> Fit:
-    """A fit in which values of candidates stand behind the coefficients.
+    """Fit with the candidates' values appended to the coefficients.
 
     Parameters
     ----------
@@ -136,7 +137,7 @@ def extended(
 def behind(
     parts: Sequence[Linearised], values: np.ndarray, columns: Sequence[np.ndarray]
 ) -> tuple[Linearised, ...]:
-    """Windows in which more values (m,) stand behind all others.
+    """Windows with more values (m,) appended to all others.
 
     With what each of these changes: for each window (channels of the window, m).
     """
@@ -151,7 +152,7 @@ def behind(
 
 
 def extended_prior(prior: BoardPrior, wanted: Sequence[Candidate]) -> BoardPrior:
-    """What is known before any tow of the boards, and of effects that may or may not be there."""
+    """Joint prior of the boards, and of effects that may or may not be present."""
     lows, highs = zip(*(candidate.bounds for candidate in wanted), strict=True)
     effects = BoardPrior(
         start=np.concatenate([candidate.start for candidate in wanted]),

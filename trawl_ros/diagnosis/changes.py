@@ -1,4 +1,4 @@
-"""When something changed: a channel that jumps between two steady states, and stays there."""
+"""Change points: a channel that jumps between two steady states and stays there."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""The whole way: detect, locate, name, add, show."""
+"""Diagnosis of a gear: detect, locate, name, repair, and compare on held-out windows."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -34,7 +34,7 @@ PLACEBO_STEPS = 3
 
 @dataclass(frozen=True)
 class Shown:
-    """Errors on windows that decided nothing: without, with the effect, and with the best wrong one
+    """Hold-out comparison: errors without, with the effect, and with the best wrong one
     (``placebo``, whose name is ``instead``).
     """
 
@@ -45,18 +45,18 @@ class Shown:
 
     @property
     def removed(self) -> float | None:
-        """Part of the excess error that the effect removes; None where there is none."""
+        """Share of the excess error that the effect removes; None where there is none."""
         return _removed(self.before, self.after)
 
     @property
     def removed_by_placebo(self) -> float | None:
-        """Part that the best wrong effect removes."""
+        """Share of the excess error that the best wrong effect removes."""
         return _removed(self.before, self.placebo)
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What was found.
+    """Diagnosis of a gear.
 
     Attributes
     ----------
@@ -105,17 +105,17 @@ class Diagnosis:
 
     @property
     def added(self) -> Weighed | None:
-        """Beside what the boards alone are set: an empirical term, or else the best effect."""
+        """Addition to the boards' refit: an empirical term, or else the best effect."""
         return self.best if self.empirical is None else self.empirical.weighed
 
     @property
     def added_as(self) -> str:
-        """What that is called."""
+        """Designation of the addition in sentences."""
         return 'the effect' if self.empirical is None else 'the empirical term'
 
     @property
     def repair(self) -> Weighed | None:
-        """What goes into the gear: the effect that is named, or an empirical term."""
+        """Repair of the gear: the effect that is named, or an empirical term."""
         return self.added if self.empirical or self.verdict == 'NAMED' else None
 
 
@@ -126,7 +126,7 @@ def diagnose(
     baseline: frozenset[int] = frozenset(),
     told: Told = lambda what: None,
 ) -> Diagnosis:
-    """Find what the model of a gear lacks.
+    """Diagnose the missing effects of a gear's model.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
 def _advice(
     predictor: Predictor, seen: Screen, named: Named
 ) -> tuple[tuple[str, ...], tuple[Proposal, ...]]:
-    """How to tell the best effect from those that are not excluded."""
+    """Direct checks and tows that separate the best effect from those not excluded."""
     others = {*named.rivals, *named.alike}
     if not named.weighed or not others:
         return (), ()
@@ -248,7 +248,7 @@ def _advice(
 
 
 def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> Refit | None:
-    """The best effect that is neither named nor of its class.
+    """Placebo: the best effect that is neither named nor of its class.
 
     Where none is named, only one that was refitted already will do.
     """

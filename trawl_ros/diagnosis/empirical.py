@@ -1,4 +1,4 @@
-"""Where no effect fits: the empirical term that does best, beside placebos of all terms.
+"""Empirical term of a diagnosis where no effect fits, tested against placebos of all terms.
 
 A placebo is a term whose sign is drawn anew for each window. It has the same size in every window
 and goes with nothing, so what the best of all placebos explains is what the best of so many terms
@@ -27,7 +27,7 @@ REFITTED = 2
 
 @dataclass(frozen=True)
 class Empirical:
-    """A term that explains what no effect does.
+    """Empirical term that explains residuals which no effect does.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Empirical:
 
 
 def empirical(predictor: Predictor, base: Refit, seen: Screen) -> Empirical | None:
-    """Find the best term; None where placebos do nearly as well.
+    """Select the best term; None where placebos do nearly as well.
 
     Parameters
     ----------

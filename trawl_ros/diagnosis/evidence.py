@@ -1,4 +1,4 @@
-"""What windows say of effects to first order, with what coefficients could mimic taken out.
+"""Score tests of effects with the coefficients eliminated: information, score and χ² of each.
 
 Errors, calibration and coefficients are eliminated together (`marginal`), which leaves a triangle T
 and a right side z for the values of effects: T'T is their information and T'z their score. The
@@ -27,7 +27,7 @@ DRAWS = 4000
 
 @dataclass(frozen=True)
 class Evidence:
-    """Information and score of n values.
+    """Information and score of n values, for tests to first order.
 
     Attributes
     ----------
@@ -44,11 +44,11 @@ class Evidence:
     root: np.ndarray
 
     def chi2(self, block: Sequence[int]) -> float:
-        """By how much the χ² of all data falls with these values free."""
+        """Score statistic: decrease of the χ² of all data with these values free."""
         return float(self.score[list(block)] @ self.values(block))
 
     def freedom(self, block: Sequence[int]) -> int:
-        """How many of these values, or combinations of them, the data see."""
+        """Degrees of freedom: rank of the information on these values."""
         return int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
 
     def strength(self, block: Sequence[int], doubt: float = 1.0) -> float:
@@ -60,17 +60,17 @@ class Evidence:
         return tail(self.chi2(block) / doubt**2, freedom) if freedom else 0.0
 
     def values(self, block: Sequence[int]) -> np.ndarray:
-        """Most likely values, from where they were linearised, in units of the columns."""
+        """Most likely values, relative to their linearisation point, in units of the columns."""
         return np.linalg.pinv(self._of(block), 1e-10, hermitian=True) @ self.score[list(block)]
 
     def std(self, block: Sequence[int]) -> np.ndarray:
-        """Standard deviations of values, each alone; infinite where nothing is seen of it."""
+        """Standard deviations of values, each alone; infinite where they are unobservable."""
         diagonal = np.diag(self._of(block))
         with np.errstate(divide='ignore'):
             return 1.0 / np.sqrt(np.where(diagonal > BLIND, diagonal, 0.0))
 
     def covered(self, block: Sequence[int], values: np.ndarray, other: Sequence[int]) -> float:
-        """Cosine of what values change with the nearest that other values could do instead."""
+        """Cosine of the values' signature with the nearest of other values' signatures."""
         rows, columns = list(block), list(other)
         size = float(values @ self._of(block) @ values)
         if size <= BLIND:
@@ -80,7 +80,7 @@ class Evidence:
         return float(np.sqrt(np.clip(seen @ inverse @ seen / size, 0.0, 1.0)))
 
     def without(self, block: Sequence[int]) -> 'Evidence':
-        """The evidence with some values free in any case; theirs is 0 then."""
+        """Conditional evidence with some values free in any case; theirs is 0 then."""
         rows = list(block)
         inverse = np.linalg.pinv(self._of(block), 1e-10, hermitian=True)
         gain = self.information[:, rows] @ inverse
@@ -103,7 +103,7 @@ def evidence(
     tows: Sequence[TowErrors] | None = None,
     weights: Sequence[np.ndarray] | None = None,
 ) -> Evidence:
-    """Gather the evidence for values of effects around a fit of the boards.
+    """Compute information and score of effects' values around a fit of the boards.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def tail(value: float, freedom: int) -> float:
 def threshold(
     found: Evidence, blocks: Sequence[Sequence[int]], false_alarms: float, seed: int = 0
 ) -> float:
-    """The `tail` that the largest of all blocks exceeds in so few trials without any effect."""
+    """Critical value of the largest `tail` of all blocks, for a rate of false alarms."""
     draws = np.random.default_rng(seed).standard_normal((DRAWS, len(found.root))) @ found.root
     largest = np.zeros(DRAWS)
     for block in blocks:
@@ -169,6 +169,6 @@ def threshold(
 def detectable(
     found: Evidence, block: Sequence[int], limit: float, doubt: float = 1.0
 ) -> np.ndarray:
-    """Sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
+    """Detectable sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
     sigmas = doubt * float(norm.isf(0.5 * 10.0**-limit)) + POWER
     return sigmas * found.std(block)

@@ -1,4 +1,4 @@
-"""A diagnosis as figures."""
+"""Figures of a diagnosis."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ BARS = 10
 
 
 def drawings(found: Diagnosis) -> list[Drawing]:
-    """All figures that there are numbers for."""
+    """Return all figures for which there are numbers."""
     seen, shown, made = found.seen, found.shown, []
     if seen is not None:
         made.append(
@@ -83,7 +83,7 @@ def draw_figures(found: Diagnosis, folder: Path) -> list[Drawing]:
 
 
 def where_figure(seen: Screen) -> Figure:
-    """Channels by variables."""
+    """Map of residual patterns: channels by variables."""
     channels, variables, z = map_of(seen)
     figure = Figure(figsize=(8.0, 0.35 * len(channels) + 1.8), layout='constrained')
     axes = figure.subplots()
@@ -98,7 +98,7 @@ def where_figure(seen: Screen) -> Figure:
 
 
 def evidence_figure(found: Diagnosis, seen: Screen) -> Figure:
-    """Effects in order of what they explain."""
+    """Bars of the effects in order of the χ² they explain."""
     first: dict[str, float] = {}
     for candidate in seen.wanted:
         chi2 = seen.evidence.chi2(seen.block(candidate))
@@ -119,7 +119,7 @@ def evidence_figure(found: Diagnosis, seen: Screen) -> Figure:
 
 
 def confusable_figure(seen: Screen) -> Figure:
-    """Cosines of all effects."""
+    """Matrix of the cosines of all effects' signatures."""
     wanted = [one for one in seen.wanted if not one.place]
     size = len(wanted)
     cosines = np.array([[largest_cosine(seen, a, b) for b in wanted] for a in wanted])
@@ -140,7 +140,7 @@ def confusable_figure(seen: Screen) -> Figure:
 
 
 def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
-    """The cosine of the nearest that two effects can come to each other."""
+    """Largest cosine of the signatures of two effects."""
     a, b = (list(seen.block(which)) for which in (one, other))
     information = seen.evidence.information
     roots = []
@@ -155,7 +155,7 @@ def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
 
 
 def gap_figure(shown: Shown, added: str) -> Figure:
-    """Errors before, after, and with the placebo."""
+    """Errors before and after the repair, and with the placebo."""
     channels = list(shown.before.rms)
     figure = Figure(figsize=(9.0, 4.5), layout='constrained')
     axes = figure.subplots()
@@ -179,7 +179,7 @@ def gap_figure(shown: Shown, added: str) -> Figure:
 
 
 def coefficients_figure(found: Diagnosis) -> Figure:
-    """Boards with and without."""
+    """Coefficients of the boards with and without the effect."""
     base, added = found.base, found.added
     assert base is not None
     assert added is not None

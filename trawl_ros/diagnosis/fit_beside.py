@@ -1,4 +1,4 @@
-"""Boards of a gear to which an earlier diagnosis has added effects."""
+"""Refit of the boards of a gear to which an earlier diagnosis has added effects."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ from trawl_ros.solver.predict import Predictor
 def fit_beside(
     predictor: Predictor, prior: BoardPrior, windows: tuple[SteadyWindow, ...]
 ) -> Refit | None:
-    """Fit the boards beside effects that were added; None where no window has a steady state.
+    """Fit the boards with the added effects held; None where no window has a steady state.
 
     From where the gear file has them. With warp lengths and speed as they are shown a strong effect
     may leave hardly a steady state, and a fit that begins there stops at once. Then boards are
@@ -59,7 +59,7 @@ def fit_beside(
 
 
 def _nearest(active: Active, predictor: Predictor, base: Refit) -> Candidate:
-    """Where an effect is looked for, nearest to where it was found."""
+    """Candidate of an effect, at the start nearest to its found values."""
     depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
     places = candidates({active.name: active.effect}, predictor, depths)
 
@@ -70,7 +70,7 @@ def _nearest(active: Active, predictor: Predictor, base: Refit) -> Candidate:
 
 
 def _held(part: Linearised, values: np.ndarray) -> Linearised:
-    """A window whose effects have these values, and only coefficients are free."""
+    """Window with the effects at these values, and only coefficients free."""
     board = slice(len(COEFFICIENTS))
     return replace(
         part,

@@ -1,4 +1,4 @@
-"""What readings say of their instruments without any effect: wrong units, a log over ground."""
+"""Faults of instruments told without any effect: wrong units, a log over ground."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ JUDGED = 5
 def wrong_unit(
     predictor: Predictor, prior: BoardPrior, windows: Sequence[SteadyWindow]
 ) -> str | None:
-    """A sentence on a channel that speaks in another unit; None where none is found."""
+    """Sentence on a channel that reports in another unit; None where none is found."""
     screening = Screening(predictor, prior, OBSERVABLES)
     for window in windows[:: max(1, len(windows) // JUDGED)]:
         found = screening.judge(window, prior.start).found
@@ -27,7 +27,7 @@ def wrong_unit(
 
 
 def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, ...]:
-    """A sentence for each tow whose log gives speed over ground."""
+    """Sentences on tows whose log gives speed over ground."""
     judge, told = OverGround(), {}
     for window in sorted(windows, key=lambda one: (one.tow, one.start_ns)):
         found = judge.judge(window.tow, window.track)

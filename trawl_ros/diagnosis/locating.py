@@ -1,4 +1,4 @@
-"""Where model and measurement disagree: which channel, and with what its residuals go."""
+"""Localisation of a misfit: channels, and the variables that their residuals follow."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ DIRECTIONS = {
 
 @dataclass(frozen=True)
 class Where:
-    """Residuals of a channel that go with a variable: ``z`` is how far, in standard deviations of
+    """Residuals of a channel that follow a variable: ``z`` is how far, in standard deviations of
     what errors would make; ``region`` says it in words.
     """
 
@@ -30,7 +30,7 @@ class Where:
 
 
 def located(seen: Screen) -> tuple[Where, ...]:
-    """All patterns, the most telling first."""
+    """All patterns, the most significant first."""
     found = []
     for place, pattern in enumerate(seen.patterns, seen.number):
         information = float(seen.evidence.information[place, place])
@@ -42,12 +42,12 @@ def located(seen: Screen) -> tuple[Where, ...]:
 
 
 def telling(seen: Screen) -> tuple[Where, ...]:
-    """Those worth a word."""
+    """Significant patterns."""
     return tuple(where for where in located(seen) if abs(where.z) >= TELLING)
 
 
 def map_of(seen: Screen) -> tuple[list[str], list[str], np.ndarray]:
-    """Channels, variables and z (channels, variables), NaN where there is nothing to be seen."""
+    """Channels, variables and z (channels, variables), NaN where a pattern is unobservable."""
     found = {(where.channel, where.variable): where.z for where in located(seen)}
     channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))
     variables = [name for name in SHAPES if any(p.shape == name for p in seen.patterns)]

@@ -1,4 +1,4 @@
-"""Second look: the best effects refitted, weighed against each other, and judged."""
+"""Naming of an effect: refits of the best candidates, their comparison, and the verdict."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ SECONDS = 2
 
 @dataclass(frozen=True)
 class Named:
-    """What naming comes to.
+    """Result of the naming.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ def name(
     seen: Screen,
     tried: Callable[[str], None] = lambda what: None,
 ) -> Named:
-    """Name what was detected, or say why it cannot be.
+    """Name the detected effect, or say why it cannot be named.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def name(
 
 
 def _possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
-    """Effects in order, but behind one that does nearly as well what would rest on a bound."""
+    """Effects in order, those on a bound behind one that does nearly as well."""
     best = weighed[0]
     if not best.refit.at_bound():
         return weighed
@@ -155,7 +155,7 @@ def _rivals(seen: Screen, weighed: Sequence[Weighed]) -> tuple[str, ...]:
 
 
 def _near(seen: Screen, weighed: Sequence[Weighed]) -> frozenset[str]:
-    """What does nearly as well as the best, or nearly the same: then both may be there."""
+    """Names of effects nearly as good as the best, or nearly the same: both may be present."""
     refitted_too = {name for other in weighed[1:] for name in other.refit.names}
     alike = refitted_too.intersection(twins(seen, weighed[0].refit, NEARLY_ALIKE))
     return frozenset({*_rivals(seen, weighed), *alike})
@@ -171,8 +171,10 @@ def _of_one_instrument(seen: Screen, best: Weighed) -> frozenset[str]:
 
 
 def _seconds(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
-    """What may be there beside the best: some of its rivals, or else of all effects, that explain
-    most of what is left over; and other errors of its instrument.
+    """Candidates for a second effect beside the best.
+
+    Some of its rivals, or else of all effects, that explain most of what is left over; and other
+    errors of its instrument.
     """
     best = weighed[0]
     (first,) = best.refit.wanted
@@ -192,7 +194,7 @@ def _seconds(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> tuple[
 
 
 def _once(found: Iterable[Candidate]) -> tuple[Candidate, ...]:
-    """Of each effect the first."""
+    """First candidate of each effect."""
     first: dict[str, Candidate] = {}
     for one in found:
         first.setdefault(one.name, one)
@@ -200,7 +202,7 @@ def _once(found: Iterable[Candidate]) -> tuple[Candidate, ...]:
 
 
 def _to_be_there(best: Weighed) -> float:
-    """By how much a second effect must lower the criterion: less is the best's own other form."""
+    """Required decrease of the criterion by a second effect: less is the best's other form."""
     return max(LEAST_BIC, LEFT_SHARE * best.delta_chi2)
 
 
@@ -211,7 +213,7 @@ def refitted(
     wanted: Sequence[Candidate],
     options: EstimatorOptions | None = None,
 ) -> Refit | None:
-    """Refit boards and effects together, from where they are seen to first order.
+    """Refit boards and effects together, from their first-order values.
 
     With ``options``, or those of a refit. None where a state that was towed has no steady state
     then: that explains nothing.
@@ -239,7 +241,7 @@ def _refitted(
     wanted: Sequence[Candidate],
     options: EstimatorOptions,
 ) -> Refit | None:
-    """As `refitted`, but with the windows there are where some have lost their steady state."""
+    """Refit as `refitted`, with the remaining windows where some have lost their steady state."""
     rows = [place for candidate in wanted for place in seen.block(candidate)]
     columns = [own[:, rows] for own in seen.columns]
     parts = extended(base.fit, wanted, columns, base.fit.options).windows
@@ -264,7 +266,7 @@ def _with_second(
     seconds: Sequence[Candidate],
     tried: Callable[[str], None],
 ) -> tuple[tuple[Weighed, ...], LeftOver]:
-    """Weigh the best effect together with a second, and that one alone; and what is left over."""
+    """Weigh the best effect together with a second, and that one alone; with their residuals."""
     (first,) = weighed[0].refit.wanted
     more = []
     for second in seconds:

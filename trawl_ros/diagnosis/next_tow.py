@@ -1,4 +1,4 @@
-"""The tow that would best part an effect from its rivals."""
+"""Design of the next tow that best discriminates an effect from its rivals."""
 
 import math
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ TOLD = 3
 
 @dataclass(frozen=True)
 class Proposal:
-    """A tow of some steady states (warp length m, speed m/s), on the same or the reciprocal track.
+    """Proposed tow of steady states (warp length m, speed m/s), on the same or reciprocal track.
 
     ``before`` and ``after`` are the χ² by which an effect is better than its nearest rival, with
     the tows at hand and with this one too.
@@ -43,12 +43,12 @@ class Proposal:
 
     @property
     def hours(self) -> float:
-        """How long it takes."""
+        """Duration, h."""
         return len(self.states) * STATE_MINUTES / 60.0
 
     @property
     def per_hour(self) -> float:
-        """What an hour of it gains."""
+        """Gain of χ² per hour."""
         return (self.after - self.before) / self.hours
 
     def __str__(self) -> str:
@@ -75,7 +75,7 @@ def propose(
     values: np.ndarray,
     rivals: Sequence[Candidate],
 ) -> tuple[Proposal, ...]:
-    """Look up tows like those at hand, and those on the reciprocal track.
+    """Propose tows like those at hand, and those on the reciprocal track.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def propose(
 def _apart(
     seen: Screen, there: Evidence, best: Candidate, values: np.ndarray, rivals: Sequence[Candidate]
 ) -> float:
-    """χ² that the nearest rival cannot explain of what an effect changes."""
+    """Least χ² of an effect that a rival cannot explain."""
     block = list(seen.block(best))
     scaled = (values - best.start) / best.scale
     left = []
@@ -141,7 +141,7 @@ def _places(seen: Screen) -> list[tuple[float, float, int]]:
 
 
 def _tows(seen: Screen) -> list[tuple[tuple[float, float], ...]]:
-    """Speed steps at the shortest and longest warp, warp steps at the lowest and highest speed."""
+    """Tows of speed steps at both ends of the warp's range, and warp steps at both speeds'."""
     lengths, speeds, _ = (np.array(column) for column in zip(*_places(seen), strict=True))
     steps = [np.linspace(values.min(), values.max(), STATES) for values in (lengths, speeds)]
     found = [tuple((float(end), float(u)) for u in steps[1]) for end in steps[0][[0, -1]]]
@@ -156,7 +156,7 @@ def _solved(
     solved: dict[tuple[float, float], Linearised],
     state: tuple[float, float],
 ) -> Linearised:
-    """The gear in a state that was not towed, as instruments would show it."""
+    """Linearised gear in a state that was not towed, as instruments would show it."""
     if state in solved:
         return solved[state]
     length, speed = state
@@ -179,7 +179,7 @@ def _solved(
 
 
 def _window_of(part: Linearised, tow: int, number: int, reciprocal: bool) -> Linearised:
-    """The same as a window of a tow of its own."""
+    """Copy of a window as one of a tow of its own."""
     window: SteadyWindow = part.window
     heading = 0.0 if window.sense > 0.0 else math.pi
     if reciprocal:

@@ -1,4 +1,4 @@
-"""What residuals of a channel can follow, whatever the reason: a few simple shapes."""
+"""Patterns of a channel's residuals, whatever their cause: a few simple shapes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ SHAPES = ('throughout', *VARIABLES)
 
 @dataclass(frozen=True)
 class Pattern:
-    """Residuals of one channel that go with one of `SHAPES`."""
+    """Pattern: residuals of one channel that follow one of `SHAPES`."""
 
     channel: str
     shape: str
 
 
 def patterns(parts: Sequence[Linearised]) -> tuple[tuple[Pattern, ...], list[np.ndarray]]:
-    """All patterns that the windows can show.
+    """All patterns that are observable in the windows.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def patterns(parts: Sequence[Linearised]) -> tuple[tuple[Pattern, ...], list[np.
 
 
 def _variables(parts: Sequence[Linearised]) -> np.ndarray:
-    """The shapes (windows, shapes), centred and scaled."""
+    """Shapes (windows, shapes), centred and scaled."""
     length = np.array([0.5 * part.inputs[:2].sum() for part in parts])
     speed = np.array([part.inputs[2] for part in parts])
     hours = np.array([part.window.hours for part in parts])

@@ -1,4 +1,4 @@
-"""Boards and effects refitted together, all windows solved anew."""
+"""Joint refit of boards and effects, all windows solved anew."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -37,7 +37,7 @@ POOR = 3.0
 
 @dataclass(frozen=True)
 class Refit:
-    """Boards and some effects (none: the boards alone) as the data have them best.
+    """Joint fit of boards and some effects (none: the boards alone).
 
     Attributes
     ----------
@@ -55,28 +55,28 @@ class Refit:
 
     @property
     def fit(self) -> Fit:
-        """The windows beside the model."""
+        """Fit of the windows."""
         return self.estimator.fit
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the effects."""
+        """Names of the effects."""
         return tuple(candidate.name for candidate in self.wanted)
 
     @property
     def number(self) -> int:
-        """How many values there are behind the coefficients."""
+        """Number of effects' values behind the coefficients."""
         return len(self.estimate.values) - len(COEFFICIENTS)
 
     def cost(self, scales: tuple[float, ...]) -> float:
-        """The cost with given noise, without what is known of the effects before."""
+        """Cost at given noise scales, without the prior of the effects."""
         fit = replace(self.fit, scales=scales)
         extra = slice(len(COEFFICIENTS), None)
         away = (fit.coefficients - fit.prior.start)[extra] / fit.prior.std[extra]
         return fit.cost - 0.5 * self.fit.options.prior_weight * float(away @ away)
 
     def at_bound(self) -> bool:
-        """Whether a value of an effect rests on a bound of what is possible."""
+        """True if a value of an effect rests on a bound."""
         extra, prior = slice(len(COEFFICIENTS), None), self.fit.prior
         low, high = on_bound(self.estimate.values, prior)
         return bool(np.any(low[extra] | high[extra]))
@@ -116,14 +116,14 @@ def was_in_order(
     windows: Sequence[SteadyWindow],
     baseline: frozenset[int],
 ) -> bool:
-    """Whether the baseline alone looks like this gear."""
+    """True if the baseline alone agrees with this gear."""
     before = [window for window in windows if window.tow in baseline]
     found = fit_boards(predictor, prior, before) if before else None
     return found is not None and float(np.median(found.fit.scales)) < NEAR
 
 
 def likelier(one: Refit | None, other: Refit | None) -> Refit | None:
-    """Of two fits of the same windows that with more of them, or else the likelier."""
+    """The fit with more windows, or else the likelier, of two fits of the same ones."""
     if one is None or other is None:
         return one or other
     if len(one.fit.windows) != len(other.fit.windows):

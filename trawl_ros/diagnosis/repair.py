@@ -1,4 +1,4 @@
-"""The gear with the effect in it, as a gear file."""
+"""Repaired gear file with the effect in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,14 +26,14 @@ PIECE = 1 << 20
 
 @dataclass(frozen=True)
 class Source:
-    """A bag and the SHA-256 of what was recorded in it."""
+    """Source: a bag and the SHA-256 of its recordings."""
 
     bag: str
     sha256: str
 
 
 def source(bag: Path) -> Source:
-    """Name a bag beyond doubt: by the bytes of its recordings, in the order of their names."""
+    """Identify a bag by the SHA-256 of its recordings, in the order of their names."""
     files = sorted(bag.rglob('*')) if bag.is_dir() else [bag]
     recordings = [file for file in files if file.suffix in RECORDINGS and file.is_file()]
     digests = []
@@ -59,7 +59,7 @@ def repaired(found: Diagnosis, sources: Sequence[Source]) -> GearRecord | None:
 
 
 def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> GearRecord:
-    """The gear as a refit has it."""
+    """Gear with the boards and effects of a refit."""
     board = dict(zip(COEFFICIENTS, map(float, one.estimate.values), strict=False))
     taken = set(one.names)
     effects = tuple(effect for effect in gear.effects if effect.name not in taken)
@@ -94,6 +94,6 @@ def _provenance(best: Weighed, sources: Sequence[Source]) -> ProvenanceRecord:
 
 
 def gear_text(gear: GearRecord) -> str:
-    """The gear file as text."""
+    """Text of a gear file."""
     plain = gear.model_dump(mode='json', exclude_none=True)
     return yaml.safe_dump(plain, sort_keys=False, allow_unicode=True, width=100)

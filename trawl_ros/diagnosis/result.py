@@ -1,4 +1,4 @@
-"""A diagnosis as plain numbers, as ``diagnosis.json`` has it."""
+"""Content of ``diagnosis.json``: a diagnosis as plain numbers."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from trawl_ros.model.board import COEFFICIENTS
 
 
 def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
-    """Give all that was found as JSON has it; numbers that are not finite are null."""
+    """Build the content of ``diagnosis.json``; numbers that are not finite are null."""
     named, best = found.named, found.best
     sure = found.verdict in ('NAMED', 'AMBIGUOUS')
     ambiguous = () if named is None or best is None else (*named.rivals, *named.alike)
@@ -84,7 +84,7 @@ def _effects(found: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _empirical(found: Diagnosis) -> dict[str, Any] | None:
-    """The term, which is labelled what it is: empirical."""
+    """Empirical term, labelled as such."""
     if found.empirical is None:
         return None
     weighed, term = found.empirical.weighed, found.empirical.term
@@ -106,7 +106,7 @@ def _empirical(found: Diagnosis) -> dict[str, Any] | None:
 
 
 def _next(found: Diagnosis) -> list[dict[str, Any]]:
-    """Checks, which need no tow, and tows with what an hour of each adds to χ²."""
+    """Checks, which need no tow, and tows with the gain of χ² per hour."""
     checks = [{'sentence': check, 'states': []} for check in found.checks]
     return checks + [
         {

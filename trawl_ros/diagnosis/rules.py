@@ -77,7 +77,7 @@ does, and still be the best in a refit."""
 
 @dataclass(frozen=True)
 class Grounds:
-    """What speaks for the best effect, or two effects, and which others are not excluded.
+    """Grounds of a verdict on the best effect, or two effects, with the rivals not excluded.
 
     Attributes
     ----------
@@ -108,12 +108,12 @@ class Grounds:
 
 
 def leaves_too_much(left_over: float, left_share: float) -> bool:
-    """Whether there must be more than the effect."""
+    """True if residuals remain that the effect does not explain."""
     return left_over < FIT_AT_ALL or (left_over < FIT and left_share > LEFT_SHARE)
 
 
 def judge(grounds: Grounds) -> tuple[Verdict, str]:
-    """Whether what was detected gets a name, and why."""
+    """Judge whether the detected effect is named, with the reason."""
     if leaves_too_much(grounds.left_over, grounds.left_share):
         return 'UNKNOWN', (
             'what the best effect leaves over does not look like errors '

@@ -1,4 +1,4 @@
-"""First look: all effects and all patterns beside the fit of the boards, to first order."""
+"""Screening by score tests: all effects and patterns beside the fit of the boards."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +30,7 @@ USUAL_PATTERN, FAR = 3.0, 1e3
 
 @dataclass(frozen=True)
 class Screen:
-    """Evidence for every candidate and every pattern.
+    """Score tests of every candidate and every pattern.
 
     Attributes
     ----------
@@ -59,11 +59,11 @@ class Screen:
 
     @property
     def units(self) -> np.ndarray:
-        """In which the values of all candidates are counted."""
+        """Units of all candidates' values."""
         return np.concatenate([candidate.scale for candidate in self.wanted])
 
     def block(self, candidate: Candidate) -> range:
-        """Where the values of a candidate stand."""
+        """Slice of a candidate's values."""
         for other, block in zip(self.wanted, blocks_of_candidates(self.wanted), strict=True):
             if other is candidate:
                 return block
@@ -71,47 +71,47 @@ class Screen:
 
     @property
     def channels(self) -> Mapping[str, range]:
-        """Where the patterns of each channel stand."""
+        """Slices of each channel's patterns."""
         return blocks_of(self.patterns, self.number)
 
     @property
     def number(self) -> int:
-        """Values of all candidates."""
+        """Number of all candidates' values."""
         return sum(len(candidate.start) for candidate in self.wanted)
 
     @property
     def readings(self) -> int:
-        """In all windows."""
+        """Number of readings in all windows."""
         return sum(len(part.channels) for part in self.fit.windows)
 
     def strength(self, candidate: Candidate) -> float:
-        """Of the evidence for one: for all its values, or for that alone which shows most."""
+        """Strength of a candidate: of all its values together, or of the strongest alone."""
         looks = looks_at(self.block(candidate))
         return max(self.evidence.strength(look, DOUBT) for look in looks)
 
     @property
     def strongest(self) -> float:
-        """Of all evidence."""
+        """Strength of the strongest candidate or pattern."""
         of_channels = [self.evidence.strength(block, DOUBT) for block in self.channels.values()]
         return max([self.strength(candidate) for candidate in self.wanted] + of_channels)
 
     @property
     def detected(self) -> bool:
-        """Whether something is there that is not in the model."""
+        """True if something beyond the model is detected."""
         return self.strongest > self.limit
 
     def detectable(self, candidate: Candidate) -> np.ndarray:
-        """Departures (m,) from where it was looked for that these data show, each value alone."""
+        """Detectable departures (m,) from the candidate's start, each value alone."""
         return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit, DOUBT)
 
     def penalised(self, candidate: Candidate, found: Evidence | None = None) -> float:
-        """By how much it lowers the information criterion of Bayes, to first order."""
+        """Decrease of the BIC (Bayesian information criterion) with a candidate, first order."""
         found = found or self.evidence
         block = self.block(candidate)
         return found.chi2(block) - found.freedom(block) * float(np.log(self.readings))
 
     def resampled(self, tows: Sequence[int]) -> Evidence:
-        """Evidence of some of the tows, by their place, one of them perhaps several times."""
+        """Evidence of tows chosen with replacement, by their place (bootstrap)."""
         errors: list[TowErrors] = [self.fit.errors[tow] for tow in tows]
         weights = [self.weights[tow] for tow in tows]
         return evidence(self.fit, self.columns, self.units, tows=errors, weights=weights)
@@ -123,7 +123,7 @@ class Screen:
 
 
 def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Screen:
-    """Look for all effects.
+    """Screen all effects.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def looks_at(block: range) -> list[range]:
 
 
 def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:
-    """A fit in which sizes of patterns stand behind all else."""
+    """Fit with sizes of patterns appended to all else."""
     number = shapes[0].shape[1]
     nothing, far = np.zeros(number), np.full(number, FAR)
     sizes = BoardPrior(nothing, np.full(number, USUAL_PATTERN), -far, far, ('',) * number)
@@ -178,7 +178,7 @@ def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:
 
 
 def blocks_of(shapes: Sequence[Pattern], first: int) -> dict[str, range]:
-    """Where the patterns of each channel stand, the first of all at ``first``."""
+    """Slices of each channel's patterns, the first of all at ``first``."""
     found: dict[str, range] = {}
     for place, pattern in enumerate(shapes, first):
         begin = found[pattern.channel].start if pattern.channel in found else place

@@ -1,4 +1,4 @@
-"""Third look: tows that decided nothing, predicted without the effect, with it, with another."""
+"""Hold-out comparison: kept-back windows predicted without the effect, with it, with a placebo."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ EVERY = 3
 
 @dataclass(frozen=True)
 class Split:
-    """Windows that decide, and those kept back to show; ``by`` says what was kept back: tows, or
+    """Split: windows that decide, and those kept back; ``by`` says what was kept back: tows, or
     steady states of tows that also decide.
     """
 
@@ -59,8 +59,8 @@ def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
 
 @dataclass(frozen=True)
 class Errors:
-    """Root mean square errors by channel, in its unit, and ``expected``, what errors known of would
-    make them.
+    """Root mean square errors by channel, in its unit, and ``expected``, those that the
+    known errors would make.
     """
 
     rms: Mapping[str, float]
@@ -68,7 +68,7 @@ class Errors:
     windows: int
 
     def excess(self, expected: Mapping[str, float]) -> float:
-        """Mean square of all channels in what is expected of them, beyond that."""
+        """Mean square over channels, relative to the expected one, beyond it."""
         if not self.rms:
             return 0.0
         ratios = [(self.rms[name] / expected[name]) ** 2 for name in self.rms]
@@ -78,7 +78,7 @@ class Errors:
 def errors(
     fits: Sequence[tuple[Predictor, Refit]], windows: Sequence[SteadyWindow]
 ) -> list[Errors]:
-    """Errors of fits on windows that none of them has seen.
+    """Errors of fits on windows that none of them was fitted to.
 
     Windows for which any of them has no steady state are left out for all.
 

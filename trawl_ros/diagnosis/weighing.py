@@ -1,4 +1,4 @@
-"""Effects that were refitted, weighed against each other and by what they leave over."""
+"""Comparison of refitted effects by BIC, bootstrap gains and residual patterns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ GAIN_DRAWS = 2000
 
 @dataclass(frozen=True)
 class Weighed:
-    """One effect, or two, beside the others.
+    """Comparison of one effect, or two, with the others.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Weighed:
 
     @property
     def gain(self) -> tuple[float, float, float]:
-        """Mean gain of a unit and the ends of its interval."""
+        """Mean gain of a unit and the bounds of its interval."""
         number = len(self.gains)
         drawn = np.random.default_rng(0).integers(number, size=(GAIN_DRAWS, number))
         # Gains are far from normal: a unit that excites the effect gains most of all.
@@ -63,19 +63,19 @@ class Weighed:
 
 @dataclass(frozen=True)
 class LeftOver:
-    """What an effect leaves over: its probability, and its part of the χ² explained."""
+    """Residual pattern beside an effect: its probability, and its share of the χ² explained."""
 
     probability: float
     share: float
 
     @property
     def too_much(self) -> bool:
-        """Whether there must be more than the effect."""
+        """True if there must be more than the effect."""
         return leaves_too_much(self.probability, self.share)
 
 
 def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, ...]:
-    """All refits with one noise, best first."""
+    """Weigh all refits at one noise scale, best first."""
     likeliest = min(refits, key=lambda one: one.fit.surprise)
     scales = likeliest.fit.scales
     before = base.cost(scales)
@@ -105,7 +105,7 @@ def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, 
 def _resampled(
     seen: Screen, refits: Sequence[Refit], criteria: Sequence[float]
 ) -> tuple[list[np.ndarray], list[str]]:
-    """Gains of each unit left out, and the best effect of each resampled trial.
+    """Bootstrap: gains of each unit left out, and the best effect of each resampled trial.
 
     Both to first order; ``criteria`` are what refits came to, by which the order is set right.
     """
@@ -151,14 +151,14 @@ def _resampled(
 
 
 def _penalised(seen: Screen, wanted: Sequence[Candidate]) -> float:
-    """By how much candidates together lower the information criterion, to first order."""
+    """Decrease of BIC with candidates together, to first order."""
     block = [place for candidate in wanted for place in seen.block(candidate)]
     freedom = seen.evidence.freedom(block)
     return seen.evidence.chi2(block) - freedom * float(np.log(seen.readings))
 
 
 def twins(seen: Screen, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
-    """Effects that could do what the one that was refitted does, with at least this cosine."""
+    """Names of effects whose signatures have at least this cosine with the refitted one's."""
     if len(one.wanted) != 1:
         return ()
     (candidate,) = one.wanted
@@ -172,7 +172,7 @@ def twins(seen: Screen, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
 
 
 def _cosine(seen: Screen, one: Refit, other: Candidate) -> float:
-    """Of what the refitted effect changes with what another could do."""
+    """Cosine of the refitted effect's signature with another's."""
     rows = [place for candidate in one.wanted for place in seen.block(candidate)]
     starts = np.concatenate([candidate.start for candidate in one.wanted])
     scale = np.concatenate([candidate.scale for candidate in one.wanted])
@@ -186,7 +186,7 @@ def _nearest(seen: Screen, one: Refit) -> float:
 
 
 def left_over(base: Refit, seen: Screen, one: Refit) -> LeftOver:
-    """What the patterns of the most improbable channel still show beside a refit.
+    """Test of the residual patterns of the most improbable channel beside a refit.
 
     Parameters
     ----------

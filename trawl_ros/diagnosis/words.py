@@ -1,4 +1,4 @@
-"""A diagnosis in sentences, the verdict first."""
+"""Sentences of a diagnosis, the verdict first."""
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.rules import FALSE_ALARMS
@@ -9,7 +9,7 @@ MENTIONED = 3
 
 
 def headline(found: Diagnosis) -> str:
-    """The verdict in one sentence."""
+    """Verdict in one sentence."""
     if found.verdict == 'NOT_TESTABLE':
         return f'Nothing can be said: {found.reason}.'
     if found.verdict == 'NO_DISCREPANCY':
@@ -28,7 +28,7 @@ def headline(found: Diagnosis) -> str:
 
 
 def sentences(found: Diagnosis) -> tuple[str, ...]:
-    """What else there is to say."""
+    """Remarks beside the verdict, one sentence each."""
     said = list(found.remarks)
     best, named, shown = found.best, found.named, found.shown
     if found.verdict == 'NAMED' and named is not None and named.alike:

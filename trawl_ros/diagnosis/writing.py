@@ -1,4 +1,4 @@
-"""Writes a diagnosis into a folder."""
+"""Files of a diagnosis."""
 
 import base64
 from collections.abc import Sequence

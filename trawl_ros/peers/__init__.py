@@ -1,4 +1,4 @@
-"""Other programs that the model is held against, and the wire on which they all agree to meet.
+"""Reference codes that the model is compared with, and the wire for the comparison.
 
 `moordyn` and `moorpy` are not needed to use this package and are imported only when asked for;
 the extra ``peers`` installs them.

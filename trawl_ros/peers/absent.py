@@ -1,4 +1,4 @@
-"""Peers are an extra: a clear sentence where one is not installed."""
+"""Import of reference codes, with a clear sentence where one is not installed."""
 
 from importlib import import_module
 from types import ModuleType
@@ -7,15 +7,15 @@ from trawl_ros.errors import TrawlError
 
 
 class PeerAbsent(TrawlError):
-    """A program to compare with is not installed."""
+    """Reference code that is not installed."""
 
 
 class PeerFailed(TrawlError):
-    """A program to compare with gave up."""
+    """Reference code that gave up."""
 
 
 def peer(name: str) -> ModuleType:
-    """Import the module of a peer.
+    """Import the module of a reference code.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Depth of the lump and pull at the block over time, and how far two such histories are apart."""
+"""Histories of the lump's depth and the block's tension, and the difference of two."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class History:
-    """What a manoeuvre looked like in one program.
+    """History of a manoeuvre in one program.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class History:
 
     @property
     def factor(self) -> float:
-        """How many times faster than real time it was."""
+        """Speed over real time."""
         return float(self.times[-1] - self.times[0]) / self.seconds
 
 

@@ -1,4 +1,4 @@
-"""Hauling, then a turn, as smooth functions of time for any program to follow."""
+"""Manoeuvre of hauling, then a turn, as smooth functions of time for any program to follow."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -11,7 +11,7 @@ TURN_RATE = float(np.radians(0.5))
 
 @dataclass(frozen=True)
 class Pace:
-    """A rate that swells to ``top`` within ``rise`` seconds, stays, and fades as it swelled, so
+    """Smooth ramp: a rate that rises to ``top`` in ``rise`` seconds, stays, and falls likewise, so
     that ``total`` is covered; it starts at ``start`` (s).
 
     It swells as half a cosine wave, for a winch or a rudder gives no jerk that would ring in
@@ -48,7 +48,7 @@ class Pace:
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """What ship and winch do.
+    """Manoeuvre of ship and winch.
 
     Attributes
     ----------

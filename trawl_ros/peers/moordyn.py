@@ -1,4 +1,4 @@
-"""A running system of MoorDyn."""
+"""Running system of MoorDyn."""
 
 import ctypes
 import os
@@ -19,7 +19,7 @@ HEADER = 9
 
 
 class MoorDyn:
-    """One system of lines and points; close it, or use it in a ``with`` statement.
+    """System of lines and points; close it, or use it in a ``with`` statement.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class MoorDyn:
         return np.reshape(force, (-1, 3))
 
     def restart(self, places: np.ndarray, velocities: np.ndarray) -> None:
-        """Put all points, (p, 3) m in their order, and let them move, (p, 3) m/s; those that
+        """Set all points, (p, 3) m in their order, and their velocities, (p, 3) m/s; those that
         are coupled stay where they are. For lines of one segment this is the whole state.
         """
         file = Path(self._folder.name) / 'state'
@@ -86,7 +86,7 @@ class MoorDyn:
         self._module.LoadState(self._system, str(file))
 
     def place(self, point: int) -> np.ndarray:
-        """Where a point (from 0) is, (3,) m."""
+        """Position of a point (from 0), (3,) m."""
         if point not in self._points:
             self._points[point] = self._module.GetPoint(self._system, point + 1)
         return np.array(self._module.GetPointPos(self._points[point]))
@@ -96,7 +96,7 @@ class MoorDyn:
         return float(self._module.GetLineUnstretchedLength(self._line(line)))
 
     def wind(self, line: int, rate: float) -> None:
-        """Let the unstretched length of a line (from 0) change at a rate (m/s) from now on."""
+        """Set the rate (m/s) of change of a line's (from 0) unstretched length."""
         self._module.SetLineUnstretchedLengthVel(self._line(line), rate)
         # MoorDyn 2.7 gives back None without taking a reference to it, and before Python 3.12
         # the process dies when the last one is gone; this puts the reference back.
@@ -129,7 +129,7 @@ class MoorDyn:
 
 @contextmanager
 def silence() -> Iterator[None]:
-    """Keep what a compiled library prints away from the process's output.
+    """Silence the output of a compiled library.
 
     It writes to the file descriptors, past ``sys.stdout``, and has no setting for its banner.
     """

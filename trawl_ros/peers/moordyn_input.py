@@ -1,4 +1,4 @@
-"""MoorDyn's input file from records."""
+"""Input file of MoorDyn from records."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ DEEP = 3000.0
 
 @dataclass(frozen=True)
 class LineType:
-    """A make of line, in MoorDyn's terms.
+    """Line type, in MoorDyn's terms.
 
     ``diameter`` (m) of the displaced volume; ``mass`` in air (kg/m); ``stiffness`` EA (N);
     ``damping`` BA (N s), or a negative share of critical damping; drag across on the diameter,
@@ -29,7 +29,7 @@ class LineType:
 
 @dataclass(frozen=True)
 class Point:
-    """A point: ``coupled`` ones are moved from outside, ``free`` ones by forces.
+    """Point: ``coupled`` ones are moved from outside, ``free`` ones by forces.
 
     ``place`` (3,) in m with z up from the surface, ``mass`` kg, ``volume`` m³, ``drag_area``
     C_D A in m², ``added`` mass as a share of the displaced mass.
@@ -45,7 +45,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Line:
-    """A line between the points ``start`` and ``end``, counted from 0, of the make ``kind``,
+    """Line between the points ``start`` and ``end``, counted from 0, of the type ``kind``,
     counted from 0, with an unstretched ``length`` (m), in ``segments``.
     """
 
@@ -58,7 +58,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Options:
-    """How it is solved: MoorDyn's name of the ``scheme`` and its ``step`` (s), in water of a
+    """Solver options: MoorDyn's name of the ``scheme`` and its ``step`` (s), in water of a
     density (kg/m³) under gravity (m/s²).
     """
 
@@ -71,7 +71,7 @@ class Options:
 def input_file(
     kinds: Sequence[LineType], points: Sequence[Point], lines: Sequence[Line], options: Options
 ) -> str:
-    """The text of an input file (version 2)."""
+    """Text of an input file (version 2)."""
     return '\n'.join(
         [
             '--- MoorDyn ---',

@@ -1,4 +1,4 @@
-"""A gear's ropes and netting as a web of lines in MoorDyn, towed by prescribed doors."""
+"""Web of a gear's ropes and netting as lines in MoorDyn, towed by prescribed doors."""
 
 import time
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ COUPLED = 8
 
 @dataclass(frozen=True)
 class Web:
-    """A web in tow: each bar of a gear is a line of one segment, each node a free point, and
+    """Web in tow: each bar of a gear is a line of one segment, each node a free point, and
     fastening points and blocks are coupled ones.
 
     Attributes
@@ -40,7 +40,7 @@ class Web:
     gravity: float
 
     def started(self, scheme: str, step: float) -> MoorDyn:
-        """The web in MoorDyn, under way."""
+        """Return the web in MoorDyn, under way."""
         options = Options(scheme, step, self.density, self.gravity)
         text = input_file(self.kinds, self.points, self.lines, options)
         system = MoorDyn(text, self.places[-COUPLED:], self.velocities[-COUPLED:])
@@ -49,7 +49,7 @@ class Web:
 
 
 def web_of(model: GearModel, state: State, tow: Tow, damping: float) -> Web:
-    """The web of a gear in a steady state.
+    """Return the web of a gear in a steady state.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def _columns(bars: BarProperties) -> np.ndarray:
 
 
 def _line_type(row: np.ndarray, density: float, damping: float) -> LineType:
-    """A bar's own areas, on the diameter of what it displaces."""
+    """Line type with a bar's own areas, on the diameter of its displaced volume."""
     stiffness, mass, volume, across, along, added, added_along = (float(x) for x in row)
     diameter = float(np.sqrt(4.0 * volume / np.pi))
     return LineType(

@@ -1,4 +1,4 @@
-"""The towed wire in MoorDyn."""
+"""Towed wire in MoorDyn."""
 
 import time
 from itertools import pairwise
@@ -21,7 +21,7 @@ SETTLING = 2500.0
 
 
 class MoorDynWire:
-    """The wire in MoorDyn; it starts straight, towed along x.
+    """Towed wire in MoorDyn; it starts straight, towed along x.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class MoorDynWire:
         self._system = MoorDyn(text, self._block, wire.speed * np.array([1.0, 0.0, 0.0]))
 
     def settle(self, duration: float = SETTLING) -> Towed:
-        """Tow straight on, and say where that ends."""
+        """Tow straight on; return the final state."""
         velocity = self._wire.speed * np.array([1.0, 0.0, 0.0])
         force = np.zeros((1, 3))
         for _ in range(round(duration / self._coupling)):

@@ -1,4 +1,4 @@
-"""The steady towed wire in MoorPy: a catenary under its weight and mean drag.
+"""Steady towed wire in MoorPy: a catenary under its weight and mean drag.
 
 The wire stands still in a current. MoorPy takes the drag on a line's last shape as constant
 along it, so a solution is repeated until that drag no longer changes.
@@ -22,7 +22,7 @@ ROUNDS = 50
 
 
 class MoorPyWire:
-    """The wire and its lump as one line between a fixed and a free point.
+    """Towed wire with its lump in MoorPy, as one line between a fixed and a free point.
 
     Raises
     ------
@@ -55,7 +55,7 @@ class MoorPyWire:
         self._system.initialize()
 
     def solve(self, length: float | None = None) -> Towed:
-        """The steady state, from the last one as a start; with another ``length`` (m) if given.
+        """Solve the steady state, starting from the last; with another ``length`` (m) if given.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The towed wire in this package's own model, advanced by its own time stepper."""
+"""Towed wire in this package's own model, advanced by its own time stepper."""
 
 import time
 from dataclasses import replace
@@ -40,7 +40,7 @@ def own_model(wire: TowedWire, segments: int) -> GearModel:
 
 
 def own_steady(wire: TowedWire, model: GearModel) -> tuple[State, Towed]:
-    """The steady tow along x with the block at the origin.
+    """Solve the steady tow along x with the block at the origin.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def own_history(model: GearModel, start: State, manoeuvre: Manoeuvre, step: floa
 
 
 def tows_of(manoeuvre: Manoeuvre, step: float) -> tuple[list[Tow], np.ndarray]:
-    """What the manoeuvre imposes at the end of each step, from time 0 on, and those times."""
+    """Towing boundaries of a manoeuvre at the end of each step, from time 0 on, and those times."""
     count = round(manoeuvre.duration / step)
     finer = int(np.ceil(step / TRACK_STEP))
     times = step * np.arange(count + 1)

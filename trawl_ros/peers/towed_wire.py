@@ -1,4 +1,4 @@
-"""The wire on which programs are compared: its properties, and its steady state as known."""
+"""Towed wire of the comparisons: its properties and its steady state."""
 
 from dataclasses import dataclass
 from math import pi
@@ -6,7 +6,7 @@ from math import pi
 
 @dataclass(frozen=True)
 class TowedWire:
-    """A wire towed at its upper end with a lump at its lower end.
+    """Wire towed at its upper end with a lump at its lower end.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ WIRE = TowedWire()
 
 @dataclass(frozen=True)
 class Towed:
-    """Where the lump hangs, m below and astern of the block, and the pull at the block, N."""
+    """Steady state: lump's place, m below and astern of the block, and tension there, N."""
 
     depth: float
     lag: float

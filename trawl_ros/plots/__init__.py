@@ -1,1 +1,1 @@
-"""What a bag says of a tow, as pictures."""
+"""Figures of a tow from a bag."""

@@ -1,4 +1,4 @@
-"""The tow as a short film: the gear from above and from the side, and the sonar's picture."""
+"""Animation of a tow: the gear from above and from the side, and the sonar's picture."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -23,14 +23,14 @@ DPI = 75
 
 @dataclass(frozen=True)
 class Frame:
-    """What one frame shows."""
+    """Frame of the animation."""
 
     shape: GearShape
     picture: SonarPicture | None
 
 
 def frame_times(tow: Tow) -> list[float]:
-    """Times (s) of the frames, evenly from the start to the end."""
+    """Times (s) of the frames, even from the start to the end."""
     frames = int(np.clip(tow.duration_s / LEAST_APART_S + 1, 1, MOST_FRAMES))
     return [float(time) for time in np.linspace(0.0, tow.duration_s, frames)]
 

@@ -1,4 +1,4 @@
-"""The gear from above, from the side and from behind."""
+"""Figures of the gear from above, from the side and from behind."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -93,7 +93,7 @@ def lay_out(whole: Extent, *, width: float, right: float) -> Views:
 
 
 def extent(shapes: Sequence[GearShape], *, rear: bool = False) -> Extent:
-    """What views have to show, fish only if they are near; from behind neither ship nor warps."""
+    """Bounds of the views, with fish only if near; from behind without ship and warps."""
     points = [
         strand.pieces.reshape(-1, 3)
         for shape in shapes

@@ -1,4 +1,4 @@
-"""Every quantity over time: truth as thin dark lines, readings as dots, silence as bars."""
+"""Time histories of every quantity: truth as thin dark lines, readings as dots, silence as bars."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ MANY = 1000
 
 @dataclass(frozen=True)
 class Curve:
-    """A quantity of `Tow` with its label and the colours of readings and truth."""
+    """Curve: a quantity of `Tow` with its label and the colours of readings and truth."""
 
     name: str
     label: str
@@ -42,7 +42,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves that share an axis: ``scale`` times SI is shown, never less than ``least`` of it."""
+    """Panel of curves on one axis: ``scale`` times SI is shown, never less than ``least`` of it."""
 
     label: str
     curves: tuple[Curve, ...]
@@ -87,7 +87,7 @@ PANELS = (
 
 
 def drawn(tow: Tow) -> list[Panel]:
-    """The panels of which the bag holds anything."""
+    """Panels for which the bag holds anything."""
     return [
         panel
         for panel in PANELS
@@ -96,7 +96,7 @@ def drawn(tow: Tow) -> list[Panel]:
 
 
 def left_out(tow: Tow) -> list[str]:
-    """A sentence for all that is missing in the histories, none where nothing is."""
+    """Sentence on all that is missing in the histories, none where nothing is."""
     sentences = []
     shown = drawn(tow)
     if missing := [_plain(panel) for panel in PANELS if panel not in shown]:
@@ -173,7 +173,7 @@ def _draw(axes: Axes, panel: Panel, tow: Tow, marks: dict[str, Line2D | Patch]) 
 
 
 def _label(axes: Axes, panel: Panel) -> None:
-    """What is shown on the left above the panel, the curves' names in their colours beside it."""
+    """Label a panel on the left above, with the curves' names in their colours beside it."""
     what, _, unit = panel.label.partition(' / ')
     text = axes.text(
         0.0, 1.03, f'{what} / {unit}', ha='left', va='bottom', transform=axes.transAxes
@@ -195,7 +195,7 @@ def _shown(series: Series, panel: Panel) -> Series:
 def _limits(
     truth: Sequence[Series], measured: Sequence[Series], least: float
 ) -> tuple[float, float]:
-    """Limits that hold all, unless a few readings are so far out that nothing else is seen."""
+    """Limits that hold all values but far outliers that would hide the rest."""
     true, read = (
         np.concatenate([[], *(series.values[np.isfinite(series.values)] for series in kind)])
         for kind in (truth, measured)
@@ -214,7 +214,7 @@ def _limits(
 
 
 def _dots(axes: Axes, series: Series, colour: str, limits: tuple[float, float]) -> bool:
-    """Draw readings; say whether some lie beyond the axis and are drawn at its edge."""
+    """Draw readings; return True if some lie beyond the axis and are drawn at its edge."""
     many = len(series.values)
     size = float(np.clip(60.0 / np.sqrt(max(many, 1)), 1.2, 4.0))
     dots: dict[str, Any] = {'color': colour, 'ls': '', 'zorder': 2, 'markeredgewidth': 0.0}
@@ -234,7 +234,7 @@ def _dots(axes: Axes, series: Series, colour: str, limits: tuple[float, float]) 
 
 
 def silences(series: Series, duration: float) -> list[tuple[float, float]]:
-    """When nothing came (s, from and to), NaN counting as nothing, before the end too."""
+    """Intervals (s, from and to) without readings, NaN counting as none, before the end too."""
     times = series.times[np.isfinite(series.values)]
     if len(series.times) < 2 or not len(times):
         return [(0.0, duration)] if not len(times) else []
@@ -245,7 +245,7 @@ def silences(series: Series, duration: float) -> list[tuple[float, float]]:
 
 
 def _silences(axes: Axes, spans: Sequence[tuple[float, float]], colour: str, number: int) -> bool:
-    """Draw bars at the panel's foot, one row per curve; say whether there are any."""
+    """Draw bars at the panel's foot, one row per curve; return True if there are any."""
     foot = blended_transform_factory(axes.transData, axes.transAxes)
     for begin, end in spans:
         axes.fill_between(
@@ -256,7 +256,7 @@ def _silences(axes: Axes, spans: Sequence[tuple[float, float]], colour: str, num
 
 
 def _with_gaps(series: Series) -> tuple[np.ndarray, np.ndarray]:
-    """Truth, broken where it was not recorded."""
+    """Truth with gaps where it was not recorded."""
     if len(series.times) < 2:
         return series.times, series.values
     steps = np.diff(series.times)

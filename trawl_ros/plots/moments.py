@@ -1,4 +1,4 @@
-"""What a bag holds nearest to chosen times."""
+"""Moments of a bag: the messages nearest to chosen times."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ MOST_AWAY_S = {GEAR: 10.0, MOUTH: 10.0, POSE: 10.0, SECTION: 10.0, IMAGE: 120.0,
 
 @dataclass(frozen=True)
 class Moment:
-    """The messages nearest to ``time`` (s), by topic."""
+    """Moment: the messages nearest to ``time`` (s), by topic."""
 
     time: float
     messages: Mapping[str, Any]
@@ -29,7 +29,7 @@ class Moment:
 def read_moments(
     path: Path, tow: Tow, times: Sequence[float], namespace: str, topics: Iterable[str]
 ) -> Iterator[Moment]:
-    """Find what is nearest to each of the times (s, rising).
+    """Yield the messages nearest to each of the times (s, rising).
 
     Of each topic no more messages are kept than there are times, and each is decoded only when
     its turn comes.

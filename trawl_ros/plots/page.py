@@ -1,4 +1,4 @@
-"""All pictures of a tow on one page."""
+"""HTML page of all figures of a tow."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ PAGE = 'index.html'
 
 @dataclass(frozen=True)
 class Picture:
-    """A file beside the page, what it shows, and the heading it stands under."""
+    """Picture: a file beside the page, its caption, and the heading it stands under."""
 
     file: str
     caption: str

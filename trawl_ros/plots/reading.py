@@ -1,4 +1,4 @@
-"""A bag as series over time: what was true, and what was measured."""
+"""Series over time from a bag: truth and readings."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -148,7 +148,7 @@ def sample_columns(sample: Sample, depth_at: Callable[[float], float]) -> Column
 
 @dataclass
 class _Rows:
-    """Rows of one topic, never more than `MOST_POINTS` of them."""
+    """Rows of one topic, at most `MOST_POINTS` of them."""
 
     stride: int = 1
     seen: int = 0
@@ -157,7 +157,7 @@ class _Rows:
     columns: list[Columns] = field(default_factory=list)
 
     def due(self) -> bool:
-        """Count a message; say whether it is to be taken."""
+        """Count a message; return True if it is to be taken."""
         self.seen += 1
         return (self.seen - 1) % self.stride == 0
 
@@ -172,7 +172,7 @@ class _Rows:
 
 
 def read_tow(path: Path, depth_at: Callable[[float], float], namespace: str) -> Tow:
-    """Read what pictures need of a bag.
+    """Read the series for the figures of a bag.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is drawn of a tow: series over time, the gear at an instant, a sweep of the sonar."""
+"""Records for drawing: series over time, the gear at an instant, a sweep of the sonar."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ SCHOOLS = 'schools'
 
 @dataclass(frozen=True)
 class Series:
-    """One quantity: times (n,) in s since the tow's start, rising, and values (n,) in SI."""
+    """Series of a quantity: times (n,) in s since the tow's start, rising, and values (n,), SI."""
 
     times: np.ndarray
     values: np.ndarray
 
     def at(self, time: float) -> float:
-        """Value at a time (s), by line from reading to reading; NaN outside and without any."""
+        """Value at a time (s), by linear interpolation; NaN outside and without any."""
         known = np.isfinite(self.values)
         if not known.any():
             return float('nan')
@@ -38,7 +38,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Tow:
-    """A tow over time.
+    """Series of a tow.
 
     Attributes
     ----------
@@ -77,13 +77,13 @@ class Tow:
         return (stamp - self.start) / SECOND
 
     def best(self, name: str) -> Series | None:
-        """A quantity's truth, or else what was measured of it."""
+        """Truth of a quantity, or else its readings."""
         return self.truth.get(name) or self.measured.get(name)
 
 
 @dataclass(frozen=True)
 class Strand:
-    """A part of the gear: pieces (n, 2, 3) of lines, m, each with its colour (n, 3)."""
+    """Strand of the gear: pieces (n, 2, 3) of lines, m, each with its colour (n, 3)."""
 
     name: str
     pieces: np.ndarray
@@ -92,7 +92,7 @@ class Strand:
 
 @dataclass(frozen=True)
 class GearShape:
-    """The gear at ``time`` (s), in the ship's axes: astern, to port, up from between the blocks.
+    """Shape of the gear at ``time`` (s), in the ship's axes: astern, to port, up from the blocks.
 
     ``source`` says in words where it comes from; ``by_tension`` whether colours are tensions.
     """
@@ -105,7 +105,7 @@ class GearShape:
 
 @dataclass(frozen=True)
 class SonarPicture:
-    """A sweep at ``time`` (s) with what was read off it, and what was there.
+    """Sonar sweep at ``time`` (s) with its readings and the truth.
 
     ``height`` and ``width`` are the readings (m, NaN without). ``mouth`` (n, 2) is truth in the
     plane of frame ``sonar`` (x down, y port), m: where ropes and twine pass through it, or

@@ -1,4 +1,4 @@
-"""The gear at a moment, from the best that a bag has: its markers, else truth, else readings."""
+"""Shape of the gear at a moment, from the best source in a bag: markers, truth, or readings."""
 
 import math
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ READING_AWAY_S = 30.0
 
 
 def gear_shape(moment: Moment, tow: Tow, gear: GearRecord) -> GearShape | None:
-    """The gear at a moment; None where the bag says too little to draw anything.
+    """Return the shape of the gear at a moment; None where the bag holds too little to draw it.
 
     ``gear`` gives what straight lines need: distance of the blocks, size of the doors, length
     of the bridles.
@@ -63,7 +63,7 @@ def _from_markers(moment: Moment, tow: Tow) -> GearShape | None:
 
 
 def _strands_of(marker: Any) -> list[Strand]:
-    """A marker as straight pieces: lines as they are, plates and ellipsoids as outlines."""
+    """Strands of a marker: lines as they are, plates and ellipsoids as outlines."""
     points = np.array([[p.x, p.y, p.z] for p in marker.points]).reshape(-1, 3)
     if marker.type == marker.LINE_STRIP:
         pieces = np.stack([points[:-1], points[1:]], axis=1)
@@ -86,14 +86,14 @@ def _strands_of(marker: Any) -> list[Strand]:
 
 
 def _plate(middle: np.ndarray, axes: np.ndarray, size: tuple[float, float]) -> np.ndarray:
-    """The outline (4, 2, 3) of a plate of (length along x, height along z)."""
+    """Outline (4, 2, 3) of a plate of (length along x, height along z)."""
     along, up = 0.5 * size[0] * axes[:, 0], 0.5 * size[1] * axes[:, 2]
     ring = middle + np.array([along + up, along - up, -along - up, -along + up, along + up])
     return np.stack([ring[:-1], ring[1:]], axis=1)
 
 
 def _rings(marker: Any) -> np.ndarray:
-    """An ellipsoid with axes along those of ``map`` as its three sections, (n, 2, 3)."""
+    """Outlines (n, 2, 3) of an ellipsoid with axes along those of ``map``: its three sections."""
     place, size = marker.pose.position, marker.scale
     turn = np.linspace(0.0, 2.0 * np.pi, RING + 1)
     circle = np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn])
@@ -109,7 +109,7 @@ def _rings(marker: Any) -> np.ndarray:
 
 
 def _true_door(tow: Tow, side: str, time: float) -> tuple[np.ndarray, np.ndarray] | None:
-    """Position (3,) in ``map`` and axes (3, 3); the yaw, which nobody draws, as the ship's."""
+    """Position (3,) in ``map`` and axes (3, 3) of a door; its yaw is taken as the ship's."""
     names = [f'{side}_{axis}' for axis in 'xyz']
     if not all(name in tow.truth for name in names) or 'heading' not in tow.truth:
         return None
@@ -198,7 +198,7 @@ def _side(
     gear: GearRecord,
     wings: Sequence[np.ndarray],
 ) -> list[Strand]:
-    """Warp, door and bridles of a side, straight."""
+    """Strands of a side: warp, door and bridles, straight."""
     colour = COLOURS[side]
     plate = _plate(door, axes, (gear.board.chord_m, gear.board.span_m))
     return [
@@ -220,7 +220,7 @@ def _one_colour(name: str, pieces: np.ndarray, colour: str) -> Strand:
 
 
 def _in_ships_axes(strand: Strand, origin: np.ndarray, yaw: float) -> Strand:
-    """From ``map`` to astern, to port, up."""
+    """Transform a strand from ``map`` to the ship's axes: astern, to port, up."""
     ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
     basis = np.array([-ahead, [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
     return Strand(strand.name, (strand.pieces - origin) @ basis.T, strand.colours)

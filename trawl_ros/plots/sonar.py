@@ -1,4 +1,4 @@
-"""A sweep of the trawl sonar as its screen shows it, with the opening that was read off."""
+"""Figure of a trawl sonar's sweep as on its screen, with the opening that was read off."""
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -17,7 +17,7 @@ BACKGROUND, ECHOES = '#101418', 'inferno'
 
 
 def sonar_figure(picture: SonarPicture, name: str) -> Figure:
-    """Draw a sweep in the mouth's plane as one sees it looking ahead: port left, down below."""
+    """Draw a sweep in the mouth's plane, seen looking ahead: port left, down below."""
     figure = Figure(figsize=(7.4, 7.4), layout='constrained')
     axes = figure.subplots()
     prepare(axes, picture)
@@ -50,7 +50,7 @@ def prepare(axes: Axes, picture: SonarPicture) -> None:
 
 
 def draw(axes: Axes, picture: SonarPicture) -> list[Artist]:
-    """The echoes, the reading and the truth."""
+    """Draw echoes, reading and truth."""
     reach = picture.scan.max_range
     drawn: list[Artist] = [
         axes.imshow(
@@ -80,7 +80,7 @@ def draw(axes: Axes, picture: SonarPicture) -> list[Artist]:
 
 
 def _dimensions(axes: Axes, height: float, width: float) -> list[Artist]:
-    """Height and width as they were read off, as arrows of that length."""
+    """Draw height and width as read off, as arrows of that length."""
     middle = -0.5 * height if np.isfinite(height) else 0.0
     arrows = (
         (height, (0.0, 0.0), (0.0, -height), 'height'),

@@ -1,4 +1,4 @@
-"""Colours and axes that all pictures of a tow share."""
+"""Style of all figures of a tow: colours and axes."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +14,7 @@ DPI = 130
 
 
 def quiet(axes: Axes) -> None:
-    """A faint grid and no frame on the right and above."""
+    """Set a faint grid, and no frame on the right and above."""
     axes.grid(color='#e3e6e8', linewidth=0.6)
     axes.set_axisbelow(True)
     axes.spines[['top', 'right']].set_visible(False)
@@ -22,13 +22,13 @@ def quiet(axes: Axes) -> None:
 
 
 def clock(seconds: float) -> str:
-    """A time since the start: ``1:05`` is a minute and five seconds, ``2:00:00`` two hours."""
+    """Format a time since the start: ``1:05`` is a minute and five seconds, ``2:00:00`` 2 h."""
     minutes, rest = divmod(round(float(seconds)), 60)
     hours, minutes = divmod(minutes, 60)
     return f'{hours}:{minutes:02d}:{rest:02d}' if hours else f'{minutes}:{rest:02d}'
 
 
 def compass(yaw: np.ndarray) -> np.ndarray:
-    """ENU yaw (n,) in rad as degrees from north by east, continuous, the mean within a turn."""
+    """Convert ENU yaw (n,), rad, to compass degrees, continuous, with the mean within a turn."""
     degrees = 90.0 - np.degrees(yaw)
     return degrees - 360.0 * np.floor(np.nanmean(degrees) / 360.0) if len(degrees) else degrees

@@ -1,4 +1,4 @@
-"""Sweeps of the trawl sonar at chosen times, with what was true while they went on."""
+"""Sweeps of the trawl sonar at chosen times, with the truth during them."""
 
 import math
 from collections.abc import Sequence
@@ -67,7 +67,7 @@ def read_sweeps(
 
 
 def sweep_of(moment: Moment, tow: Tow) -> Sweep | None:
-    """The image with the scan that belongs to it; None without an image.
+    """Image with the scan that belongs to it; None without an image.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _picture(sweep: Sweep, moment: Moment, tow: Tow) -> SonarPicture:
 
 
 def _mouth(moment: Moment) -> tuple[np.ndarray, bool]:
-    """Truth in the sonar's plane (n, 2): what passes through it, or the ropes turned into it."""
+    """Truth in the sonar's plane (n, 2): its section, or the ropes turned into it."""
     if SECTION in moment.messages:
         through = read_point_cloud(SECTION, moment.messages[SECTION], ('x', 'y'))
         if len(through):

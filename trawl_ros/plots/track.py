@@ -1,4 +1,4 @@
-"""Where the ship went: track over ground, headings, and the current between them."""
+"""Figure of the ship's track: track over ground, headings, and the current."""
 
 import numpy as np
 from matplotlib.axes import Axes

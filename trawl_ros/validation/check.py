@@ -1,4 +1,4 @@
-"""What a case of validation says: figures beside what is expected of them, and pictures."""
+"""Records of a validation case: figures with their targets, drawings and tables."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ Rule = Literal['within', 'relative', 'at_most', 'at_least', 'between']
 
 @dataclass(frozen=True)
 class Check:
-    """One measured figure beside what is expected of it.
+    """Check: a measured figure with its target.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Check:
 
     @property
     def ok(self) -> bool:
-        """Whether the figure is what was expected; NaN never is."""
+        """True if the figure meets its target; NaN never does."""
         if isinstance(self.expected, tuple):
             low, high = self.expected
             return low <= self.measured <= high
@@ -59,7 +59,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure with its file name (no suffix) and what it shows, in a sentence or two."""
+    """Drawing: a figure with its file name (no suffix) and a caption of a sentence or two."""
 
     name: str
     caption: str
@@ -68,7 +68,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text; all rows as long as ``head``."""
+    """Table of text; all rows as long as ``head``."""
 
     caption: str
     head: tuple[str, ...]
@@ -77,7 +77,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case found. ``text`` is a paragraph of plain words for the report."""
+    """Outcome of a case. ``text`` is a paragraph of plain words for the report."""
 
     checks: tuple[Check, ...]
     drawings: tuple[Drawing, ...] = ()
@@ -87,7 +87,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """One case: a name for the command line, a title, and the work.
+    """Case: a name for the command line, a title, and the function that runs it.
 
     ``run(small)`` does it; with ``small`` in seconds and on less, for the test suite.
     """

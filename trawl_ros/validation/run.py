@@ -1,4 +1,4 @@
-"""Runs cases, several at a time, each in a process of its own."""
+"""Runner of cases, several at a time, each in a process of its own."""
 
 import multiprocessing
 import re
@@ -44,7 +44,7 @@ class Finished:
 
     @property
     def ok(self) -> bool:
-        """Whether every check of the case holds."""
+        """True if every check of the case holds."""
         return all(check.ok for check in self.checks)
 
 
@@ -72,7 +72,7 @@ def run_cases(
 
 
 def _apart(name: str, folder: Path, small: bool) -> Finished:
-    """Run one case in a process of its own: a peer that breaks down takes nothing along."""
+    """Run one case in a process of its own, which a crash of a reference code ends alone."""
     with ProcessPoolExecutor(1, mp_context=PROCESS) as process:
         try:
             return process.submit(run_case, name, folder, small=small).result()

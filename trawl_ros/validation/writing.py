@@ -1,4 +1,4 @@
-"""The report of validation as JSON, Markdown and HTML."""
+"""Validation report as JSON, Markdown and HTML."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -55,7 +55,7 @@ def check_record(check: Check) -> dict[str, object]:
 
 
 def expectation(check: Check) -> str:
-    """What is expected, in signs."""
+    """Target of a check in symbols."""
     unit = f' {check.unit}' if check.unit else ''
     if isinstance(check.expected, tuple):
         low, high = check.expected

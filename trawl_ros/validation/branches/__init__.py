@@ -1,1 +1,1 @@
-"""Where steady states exist, and what is said where none does."""
+"""Existence of steady states, and the refusals where there is none."""

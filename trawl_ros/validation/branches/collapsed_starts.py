@@ -1,4 +1,4 @@
-"""Searches that start from a gear which has collapsed: boards flat, crossed, or fallen together."""
+"""Searches that start from a collapsed gear: boards flat, crossed, or fallen together."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ FOLDED = 0.05
 
 @dataclass(frozen=True)
 class Tally:
-    """How many searches from collapsed shapes came to what; ``refused`` by reason."""
+    """Tally of searches from collapsed shapes by outcome; ``refused`` by reason."""
 
     good: int
     refused: Counter[str]
@@ -40,7 +40,7 @@ class Tally:
 
     @property
     def searches(self) -> int:
-        """How many there were."""
+        """Number of searches."""
         return self.good + self.refused.total() + self.other
 
 

@@ -1,4 +1,4 @@
-"""What a map of steady states is asked: that what it shows usable is one branch, the good one."""
+"""Checks of a map of steady states: the usable ones form one branch, the good one."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -29,7 +29,7 @@ GROWING: dict[str, Callable[[Observables], float]] = {
 
 
 def usable(lattices: Sequence[Lattice]) -> list[Answer]:
-    """All answers that may be used."""
+    """Return all usable answers."""
     return [
         answer
         for lattice in lattices
@@ -117,7 +117,7 @@ def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[Check]:
 
 
 def smoothness_checks(lattice: Lattice) -> Iterator[Check]:
-    """Whether a map over speed is of one piece, and what should grow with warp length does."""
+    """Check that a map over speed is smooth, and monotone in warp length where it should be."""
     yield Check(
         'jump',
         'largest change of the attack angle from one usable place to the next',
@@ -150,7 +150,7 @@ def smoothness_checks(lattice: Lattice) -> Iterator[Check]:
 def _neighbouring(
     lattice: Lattice, along: tuple[int, int]
 ) -> Iterator[tuple[Observables, Observables]]:
-    """What is seen at usable places and at their usable neighbours in one direction."""
+    """Observables at usable places and at their usable neighbours in one direction."""
     for (i, j), here in lattice.answers.items():
         there = lattice.answers.get((i + along[0], j + along[1]))
         if there is not None and here.usable is not None and there.usable is not None:

@@ -1,4 +1,4 @@
-"""The lattices that are walked: warp length × speed, and warp length × installation angle."""
+"""Lattices for branch continuation: warp length × speed, and warp length × installation angle."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ ANGLES: tuple[Angle, ...] = ('ε', 'ζ', 'η')
 
 @dataclass(frozen=True)
 class Lattice:
-    """A lattice that was walked: rows are warp lengths (m), columns what ``across`` names."""
+    """Lattice of answers: rows are warp lengths (m), columns are named by ``across``."""
 
     across: str
     lengths: Sequence[float]
@@ -32,7 +32,7 @@ class Lattice:
 
 
 def speed_lattice(model: GearModel, lengths: Sequence[float], speeds: Sequence[float]) -> Lattice:
-    """Walk over warp lengths and speeds."""
+    """Continue steady states over warp lengths and speeds."""
     places = {
         (i, j): Place(model, OperatingPoint(length, length, speed))
         for i, length in enumerate(lengths)
@@ -44,7 +44,7 @@ def speed_lattice(model: GearModel, lengths: Sequence[float], speeds: Sequence[f
 def angle_lattice(
     model: GearModel, lengths: Sequence[float], angle: Angle, degrees: Sequence[float]
 ) -> Lattice:
-    """Walk over warp lengths and one installation angle (°)."""
+    """Continue steady states over warp lengths and one installation angle (°)."""
     turned = []
     for value in degrees:
         installation = np.zeros(3)
@@ -65,7 +65,7 @@ def _walked(
     places: dict[Spot, Place],
     usual: float,
 ) -> Lattice:
-    """Walk from the middle length at the usual speed or angle; every third place also cold."""
+    """Continue from the middle length at the usual speed or angle; every third place also cold."""
     first = len(lengths) // 2, int(np.abs(np.array(columns) - usual).argmin())
     cold = [(i, j) for i, j in places if (i + j) % 3 == 0]
     return Lattice(across, lengths, columns, walk(places, first, cold))

@@ -1,4 +1,4 @@
-"""Maps in colour of what was found where."""
+"""Colour maps of the verdicts over a lattice."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Where the default gear has steady states, and that none of them is a collapsed one."""
+"""Steady states of the default gear over its conditions: existence, and absence of collapse."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ OVERTURNED = np.radians(-20.0)
 
 @dataclass(frozen=True)
 class Size:
-    """How much is looked at."""
+    """Size of the case."""
 
     lengths: Sequence[float]
     speeds: Sequence[float]
@@ -72,7 +72,7 @@ HOPELESS = 500.0, 1.5
 
 
 def run(small: bool) -> Outcome:
-    """Walk the maps and search from collapsed shapes."""
+    """Continue over the maps and search from collapsed shapes."""
     size = SMALL if small else FULL
     gear = load_gear('kaifuha')
     if small:
@@ -111,7 +111,7 @@ def run(small: bool) -> Outcome:
 
 
 def _working(key: str, what: str, lattices: Sequence[Lattice]) -> Check:
-    """Share of usable places where the gear is meant to work."""
+    """Share of usable places in the gear's working range."""
     low, high = WORKING if key == 'working_speeds' else (-INSTALLED, INSTALLED)
     places = [
         (lattice.across, lattice.columns[j], answer)
@@ -138,7 +138,7 @@ def _working(key: str, what: str, lattices: Sequence[Lattice]) -> Check:
 
 
 def _collapsed(model: GearModel, size: Size) -> tuple[list[Check], Table]:
-    """Search from collapsed shapes, where there is a steady state and where there is none."""
+    """Search from collapsed shapes, with and without a steady state at hand."""
     rows = []
     tallies: list[Tally] = []
     goods: list[Equilibrium] = []
@@ -179,7 +179,7 @@ def _row(length: float, speed: float, counted: Tally) -> tuple[str, ...]:
 
 
 def _overturned(model: GearModel, good: Equilibrium) -> Check:
-    """With boards set so far in that they collapse, whatever the start."""
+    """Check that boards set so far in that they collapse are refused, whatever the start."""
     overturned = model.with_board(installation=(OVERTURNED, 0.0, 0.0))
     tow = steady_tow(overturned, good.point)
     collapsed, _, left = relax(overturned, good.state, tow, tolerance=1e-3, time_step=10.0)

@@ -1,4 +1,4 @@
-"""Steady states over a lattice of conditions, each reached from all its neighbours.
+"""Branch continuation of steady states over a lattice, each reached from all its neighbours.
 
 A state that is found is handed to every neighbour as a start, also back to the one it came
 from, so each pair of neighbours is walked in both directions. Some places are solved cold as
@@ -36,7 +36,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Search:
-    """One search: what it found, or the refusal, and the CPU time (s) it took."""
+    """Search for a root: its equilibrium, or the refusal, and the CPU time (s)."""
 
     found: Equilibrium | None
     refusal: NoSteadyState | None
@@ -45,7 +45,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Answer:
-    """What all searches at a place came to.
+    """Answer: outcome of all searches at a place.
 
     ``root`` is the usable one, or else the first that was found, and ``refusal`` says why it
     may not be used. ``usable_roots`` counts usable ones more than `SAME` apart. ``apart`` is the
@@ -69,7 +69,7 @@ class Answer:
 
 
 def search(place: Place, start: Equilibrium | None) -> Search:
-    """Look for a root once."""
+    """Search for a root once."""
     began = time.process_time()
     found, refusal = None, None
     try:
@@ -100,7 +100,7 @@ def neighbours(spot: Spot, places: Mapping[Spot, Place]) -> Iterator[Spot]:
 def walk(
     places: Mapping[Spot, Place], first: Spot, also_cold: Collection[Spot]
 ) -> dict[Spot, Answer]:
-    """Search at every place, from one of them outward.
+    """Continue from one place outward to every other.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def walk(
 
 
 def judged(place: Place, searches: list[Search]) -> Answer:
-    """Sum up the searches at a place: which roots there are, and which of them may be used."""
+    """Summarise the searches at a place: its roots, and those that may be used."""
     roots: list[Equilibrium] = []
     apart = 0.0
     for found in (tried.found for tried in searches if tried.found is not None):

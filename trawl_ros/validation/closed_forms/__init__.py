@@ -1,1 +1,1 @@
-"""Cases whose answer is known without the model."""
+"""Cases with a closed-form solution."""

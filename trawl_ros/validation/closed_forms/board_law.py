@@ -1,4 +1,4 @@
-"""A board alone at random attitudes, against the paper's equations evaluated anew."""
+"""Board alone at random attitudes, against the paper's equations evaluated anew."""
 
 from dataclasses import dataclass, replace
 from math import pi, radians
@@ -77,7 +77,7 @@ def moving_at(
 
 
 def on_paper(gear: GearRecord, model: GearModel, state: State) -> list[PaperBoard]:
-    """The same two boards as the paper sees them: vertices and their velocities."""
+    """The same two boards in the paper's terms: vertices and their velocities."""
     tow = steady_tow(model, OperatingPoint(500.0, 500.0, 2.0))
     points = points_of(model, state, tow)
     places = points.positions[model.nodes : model.nodes + 6].reshape(2, 3, 3)
@@ -196,7 +196,7 @@ def _values(record: BoardRecord) -> np.ndarray:
 
 
 def _continuation_checks(record: BoardRecord) -> list[Check]:
-    """What is promised of the law outside its range, asked of the model."""
+    """Check the continuation of the law outside its range."""
     attack = np.radians(np.linspace(-180.0, 180.0, 3601))
     seen = coefficients_at(_values(record), attack, np.zeros_like(attack))
     ends = np.radians([-40.0, 90.0])

@@ -1,4 +1,4 @@
-"""A wire hanging from one end, and one sagging between two points, against closed forms."""
+"""Hanging wire, and wire sagging between two points, against closed forms."""
 
 from dataclasses import dataclass
 
@@ -33,12 +33,12 @@ CLAIMED = 20
 
 
 def stretch_of_hanging(load: float) -> float:
-    """How much longer (m) a hanging wire is by eq. 20, with a weight at its end (N)."""
+    """Elastic elongation (m) of a hanging wire by eq. 20, with a weight at its end (N)."""
     return (load * HANGING_LENGTH + 0.5 * WEIGHT * HANGING_LENGTH**2) / STIFFNESS
 
 
 def rounded_off() -> float:
-    """What the rounded corner between slack and taut takes off the stretch of a wire, m.
+    """Elongation (m) lost by the rounded corner between slack and taut.
 
     Below w EA of tension a bar is strained by 2 √(w T / EA) - w and not by T / EA; integrated
     over the lower part of a wire that carries nothing but itself.
@@ -67,7 +67,7 @@ class Sagging:
 
 
 def elastic_catenary(points: int) -> Sagging:
-    """The elastic catenary between `START` and `END`, at ``points`` equal pieces.
+    """Elastic catenary between `START` and `END`, at ``points`` equal pieces.
 
     With H the horizontal and V the vertical pull at the start, at the unstretched length s:
     x = H s / EA + H/w (asinh((w s - V) / H) + asinh(V / H)),

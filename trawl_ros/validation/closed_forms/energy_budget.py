@@ -1,4 +1,4 @@
-"""The energy of a gear that is towed and hauled: what was put in is there, or went away."""
+"""Energy budget of a gear that is towed and hauled: work done against energy stored."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -36,13 +36,13 @@ CLAIMED = 0.005
 
 @dataclass(frozen=True)
 class Haul:
-    """How much wire (m) is hauled, and how long (s) the whole manoeuvre lasts."""
+    """Haul: length of wire (m), and duration (s) of the whole manoeuvre."""
 
     wire: float
     seconds: float
 
     def hauled(self, t: float) -> tuple[float, float]:
-        """Wire in (m) and its rate (m/s) at a time: up, steadily on, down, rates as cosines."""
+        """Length hauled (m) and its rate (m/s) at a time, with cosine ramps of the rate."""
         steady = self.wire / RATE - RAMP
         up = min(max(t - BEGIN, 0.0), RAMP)
         down = min(max(t - BEGIN - RAMP - steady, 0.0), RAMP)
@@ -57,7 +57,7 @@ class Haul:
         return float(wire), float(rate)
 
     def boundary(self, tow: Tow, t: float) -> Tow:
-        """What ship and winches impose at a time, on from a steady tow."""
+        """Towing boundary at a time, on from a steady tow."""
         wire, rate = self.hauled(t)
         return replace(
             tow,
@@ -69,7 +69,7 @@ class Haul:
 
 @dataclass(frozen=True)
 class Instant:
-    """The gear in motion at a ``time`` (s), and what ship and winches impose then."""
+    """Gear in motion at a ``time`` (s), and the towing boundary then."""
 
     time: float
     motion: Motion
@@ -92,7 +92,7 @@ class Budget:
 
     @property
     def residual(self) -> np.ndarray:
-        """What is missing in the budget, (k,) J: work done less energy gained."""
+        """Residual of the budget, (k,) J: work done less energy gained."""
         return self.works.sum(1) - self.stores.sum(1)
 
     def work(self, key: str) -> float:
@@ -130,7 +130,7 @@ def budget(model: GearModel, start: Equilibrium, haul: Haul, h: float) -> Budget
 def advanced(
     stepper: Stepper, now: Instant, boundary: Callable[[float], Tow], h: float, halvings: int
 ) -> list[Instant]:
-    """One step on; a step that fails is taken in halves, as a simulation does."""
+    """Advance by one step; a step that fails is taken in halves, as a simulation does."""
     tow = boundary(now.time + h)
     try:
         return [Instant(now.time + h, stepper.step(now.motion, tow, h), tow)]

@@ -1,4 +1,4 @@
-"""Boards that spin where there is neither water nor weight keep energy and angular momentum."""
+"""Free rotation of boards without water and weight: conserved energy and angular momentum."""
 
 from dataclasses import dataclass
 

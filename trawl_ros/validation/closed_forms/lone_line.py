@@ -1,4 +1,4 @@
-"""A line of rope on its own, for the same kernel, assembly and solvers as a whole gear.
+"""Line of rope on its own, for the same kernel, assembly and solvers as a whole gear.
 
 The boards that a gear model always has float beside it: no rope, no area, as heavy as the water
 they displace.

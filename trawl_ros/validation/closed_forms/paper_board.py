@@ -1,4 +1,4 @@
-"""The load on one otter board, written anew from the paper and from what is read into it.
+"""Load on one otter board, written anew from the paper and the continuation of its law.
 
 It shares nothing with `trawl_ros.model.board`: the axes come from the board's three vertices in
 fixed axes (eq. 7-11) instead of a rotation matrix, each side has its own handedness, and what
@@ -23,7 +23,7 @@ ROUNDING = radians(4.0)
 
 
 def _sloping(angles: list[float], slopes: list[float]) -> PPoly:
-    """A curve through the origin, by its slope, which is straight between the given angles."""
+    """Curve through the origin with a piecewise linear slope, straight between the given angles."""
     curve = PPoly.from_spline(make_interp_spline(angles, slopes, k=1)).antiderivative()
     curve.c[-1] -= float(curve(0.0))
     return curve
@@ -46,7 +46,7 @@ FADING = BPoly.from_derivatives(
 
 @dataclass(frozen=True)
 class PaperBoard:
-    """One board under way.
+    """Board in motion, in the paper's terms.
 
     ``a``, ``b``, ``c``: places (3,) of the vertices where warp, upper and lower bridle are
     fastened, m, ``va``, ``vb``, ``vc`` their velocities, m/s; ``rate`` rad/s; ``water`` its
@@ -68,7 +68,7 @@ class PaperBoard:
 
     @property
     def k_d(self) -> float:
-        """1 in the left-handed frames of starboard, -1 in those of port (eq. 8)."""
+        """Handedness of the frame: 1 on starboard (left-handed), -1 on port (eq. 8)."""
         return -1.0 if self.port else 1.0
 
     def axes(self) -> list[np.ndarray]:
@@ -89,7 +89,7 @@ class PaperBoard:
         ]
 
     def relative_flow(self) -> tuple[float, float, float]:
-        """u_x, u_y, u_z of the water against the board (eq. 3, 4)."""
+        """Relative flow u_x, u_y, u_z of the water against the board (eq. 3, 4)."""
         relative = self.water - (self.va + self.vb + self.vc) / 3.0
         x, y, z = (float(relative @ axis) for axis in self.axes())
         return x, y, z
@@ -128,7 +128,7 @@ class PaperBoard:
         return force, -self.k_d * pressure * screw - slowing[0] - slowing[1] - slowing[2]
 
     def _strips(self, u: float) -> tuple[float, float, float]:
-        """Resistance to turning about x, y, z, N m s, added up over strips of the board.
+        """Damping about x, y, z, N m s, summed over strips of the board.
 
         A strip at r meets the flow u at ω r / u more, and lifts with the slope against it.
         """
@@ -144,7 +144,7 @@ class PaperBoard:
 
 
 def _model_axes(a: np.ndarray, b: np.ndarray, c: np.ndarray, k_d: float) -> list[np.ndarray]:
-    """x, y, z of the model frame from its vertices (eq. 7-10)."""
+    """Axes x, y, z of the model frame from its vertices (eq. 7-10)."""
     ac, bc = a - c, b - c
     z = bc / np.linalg.norm(bc)
     normal = np.cross(ac, bc)
@@ -153,7 +153,7 @@ def _model_axes(a: np.ndarray, b: np.ndarray, c: np.ndarray, k_d: float) -> list
 
 
 def attack(ux: float, other: float) -> float:
-    """Eq. 1 (with u_y) and eq. 2 (with u_z), carried on beyond 90° where the arcsine folds."""
+    """Attack angle of eq. 1 (with u_y) and slip of eq. 2 (with u_z), continued beyond 90°."""
     angle = asin(other / sqrt(ux * ux + other * other))
     return angle if ux < 0.0 else copysign(pi, other) - angle
 

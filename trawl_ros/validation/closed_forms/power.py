@@ -1,4 +1,4 @@
-"""Where the power of a gear under way comes from and goes, and what energy it holds.
+"""Power balance of a gear in motion: sources, sinks, and the energy it holds.
 
 With v the velocities, v · (M a) = v · F at every instant: F is the sum of the model's own
 forces and M its mass matrix. Each term of either side is taken from the functions that the solvers
@@ -64,7 +64,7 @@ STORES: Mapping[str, str] = MappingProxyType(
 
 
 def strain_energy(strain: np.ndarray) -> np.ndarray:
-    """Integral of `line.taut`, per EA and unstretched length: eq. 20 with its rounded corner."""
+    """Strain energy: integral of `line.taut`, per EA and unstretched length (eq. 20)."""
     w = SLACK_WIDTH
     corner = (np.clip(strain, -w, w) + w) ** 3 / (12.0 * w)
     above = np.maximum(strain, w)
@@ -73,7 +73,7 @@ def strain_energy(strain: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Ledger:
-    """Reads powers (W) and energies (J) off a moving gear.
+    """Ledger of powers (W) and energies (J) of a moving gear.
 
     ``weightless`` is the same gear without gravity and ``massless`` without mass of its own, so
     that the model's own functions give drag alone and added mass alone.
@@ -104,7 +104,7 @@ class Ledger:
         )
 
     def powers(self, now: Motion, tow: Tow) -> np.ndarray:
-        """Power of everything in `WORKS`, W, positive where it adds to the gear's energy."""
+        """Powers of all terms in `WORKS`, W, positive where they add to the gear's energy."""
         model, state = self.model, now.state
         points = points_of(model, state, tow)
         bars = motion_of(model, points, tow)
@@ -134,7 +134,7 @@ class Ledger:
         return np.array([works[key] for key in WORKS])
 
     def energies(self, state: State, tow: Tow) -> np.ndarray:
-        """Energy of everything in `STORES`, J."""
+        """Energies of all terms in `STORES`, J."""
         model = self.model
         points = points_of(model, state, tow)
         bars = motion_of(model, points, tow)
@@ -157,18 +157,18 @@ class Ledger:
         return np.array([stores[key] for key in STORES])
 
     def drum_power(self, state: State, tow: Tow) -> float:
-        """What winches that took the wire in at the block would do: its pull there, W."""
+        """Power of winches that would take the wire in at the block: its pull there, W."""
         pull = length(block_forces(self.model, state, tow))
         return -float(np.sum(pull * tow.length_rates))
 
     def _place(self, own: Quantity, volume: Quantity, height: np.ndarray) -> np.ndarray:
-        """Energy of weight and buoyancy of masses (kg) at heights (m), J."""
+        """Potential energy of weight and buoyancy of masses (kg) at heights (m), J."""
         water = self.model.water
         heavy = own - water.density * volume
         return water.gravity * (heavy * height + 0.5 * water.density_gradient * volume * height**2)
 
     def _place_per_metre(self, height: np.ndarray) -> np.ndarray:
-        """The same of bars (m,) at heights of their middle, J/m."""
+        """Potential energy of bars (m,) per metre, at heights of their middle, J/m."""
         return self._place(self.model.bars.mass, self.model.bars.volume, height)
 
     def _motion_per_metre(self, points: Points) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""How an error falls as a line is cut finer."""
+"""Order of convergence as a line is cut finer."""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 
 def order(segments: Sequence[int], errors: Sequence[float]) -> float:
-    """Power of the segments' length with which errors fall, by a straight line through logs."""
+    """Order of convergence: slope of the errors over the segments' length, both as logarithms."""
     return -float(np.polyfit(np.log(segments), np.log(errors), 1)[0])
 
 

@@ -1,4 +1,4 @@
-"""A free line that sinks in still water, against the speed at which drag carries its weight."""
+"""Free line that sinks in still water, against the speed at which drag balances its weight."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class Sinking:
 
 
 def terminal(slope: float) -> np.ndarray:
-    """Speeds (2,) m/s along and across a line at which drag carries the weight.
+    """Terminal speeds (2,) m/s along and across a line, at which drag balances its weight.
 
     w sin φ = ½ ρ C_t π d u², w cos φ = ½ ρ C_n d u².
     """

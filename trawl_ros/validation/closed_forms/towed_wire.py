@@ -1,4 +1,4 @@
-"""A towed elastic wire with a lump at its end, against its equation integrated along the wire."""
+"""Towed elastic wire with a lump at its end, against its equation integrated along the wire."""
 
 from dataclasses import dataclass
 

@@ -1,1 +1,1 @@
-"""How the answers settle as time and gear are cut finer."""
+"""Convergence of the solution with time step and mesh."""

@@ -1,4 +1,4 @@
-"""Steady observables of the default gear, cut as it is and finer."""
+"""Steady observables of the default gear and of refined ones."""
 
 from dataclasses import dataclass
 

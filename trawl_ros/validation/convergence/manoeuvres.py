@@ -1,4 +1,4 @@
-"""Two ways of hauling at a chosen time step: with smooth inputs, and as ship and winches do it."""
+"""Manoeuvres of hauling at a chosen time step: with smooth inputs, and with ship and winches."""
 
 from dataclasses import dataclass, replace
 
@@ -35,7 +35,7 @@ class History:
 
 
 def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
-    """What ship and winches impose at a time when both winches haul with one wave of a cosine,
+    """Towing boundary at a time when both winches haul with one wave of a cosine,
     up to their largest speed and back to rest, and the ship gains speed with half of one.
     """
     wave = 2 * np.pi * t / duration

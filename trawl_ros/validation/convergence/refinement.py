@@ -1,4 +1,4 @@
-"""How far the default gear is from the same gear cut finer: warp, bridles, net, and all."""
+"""Mesh convergence of the default gear: warp, bridles, net, and all of them refined."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -131,7 +131,7 @@ def _checks(
 
 
 def _reason(fine: Row, worst: int, k: int, series: Mapping[int, Row]) -> str:
-    """Why the default is not settled, as the series of nets shows it."""
+    """Reason why an observable has not converged, by the series of nets."""
     if fine.name in ('warp', 'bridle'):
         return f'the {fine.name} is cut too coarsely for it.'
     counts = sorted(series)

@@ -1,4 +1,4 @@
-"""How the error of the time stepper falls with its step, on manoeuvres with hauling."""
+"""Order of convergence of the time stepper, on manoeuvres with hauling."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -184,7 +184,7 @@ def _smooth(model: GearModel, size: Size) -> Convergence:
 
 
 def _flapping(model: GearModel, found: Convergence) -> str:
-    """Say which point errs most at the shortest step, and how slack what holds it is."""
+    """Sentence on the point with the largest error at the shortest step, and on its slack lines."""
     worst = int(found.places[-1].argmax())
     if worst >= model.nodes:
         return 'The largest error is that of a board.'

@@ -1,1 +1,1 @@
-"""Section IV of the founding paper, remade."""
+"""Reproduction of section IV of the founding paper."""

@@ -1,4 +1,4 @@
-"""What turns of the boards against their rigging change, in percent and degrees."""
+"""Changes of observables by turned boards, in percent and degrees."""
 
 from collections.abc import Callable, Mapping
 
@@ -66,7 +66,7 @@ class Changes:
         )
 
     def against(self, agree: Callable[[str, float], bool], *quantities: str) -> tuple[float, str]:
-        """How many of the six turns agree, and those that do not with what they change."""
+        """Number of the six turns that agree, and the others with their changes."""
         odd = [turn for turn in self.turned if not agree(*turn)]
         told = '; '.join(
             f'{label(*turn)}: '
@@ -79,5 +79,5 @@ class Changes:
 
 
 def label(name: str, turn: float) -> str:
-    """A turn in signs."""
+    """Label of a turn in symbols."""
     return f'{SYMBOLS[name]} {turn:+g}°'

@@ -1,4 +1,4 @@
-"""A sentence of section IV beside what this model gives."""
+"""Claim of section IV with the model's checks of it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ Expected = float | tuple[float, float]
 
 @dataclass(frozen=True)
 class Claim:
-    """One sentence.
+    """Claim: one sentence with its checks.
 
     Attributes
     ----------
@@ -30,13 +30,13 @@ class Claim:
 
     @property
     def agrees(self) -> str:
-        """Whether the model agrees: yes, no, or in part."""
+        """Agreement of the model in words: yes, no, or in part."""
         held = sum(check.ok for check in self.checks)
         return 'yes' if held == len(self.checks) else 'in part' if held else '**no**'
 
 
 def claim(where: str, says: str, *checks: Check) -> Claim:
-    """A sentence; the checks that hold are noted with where it stands in the paper."""
+    """Make a claim; its checks that hold are noted with the place in the paper."""
     noted = tuple(
         replace(check, note=f'Section {where}: {says}.') if check.ok else check for check in checks
     )
@@ -54,14 +54,14 @@ def part(
     unit: str = '',
     tolerance: float = 0.0,
 ) -> Check:
-    """One measurable part of a sentence; ``reason`` is told when it does not hold."""
+    """Make the check of a measurable part; ``reason`` is told when it does not hold."""
     if isinstance(expected, tuple):
         rule = 'between'
     return Check(key, what, float(measured), expected, tolerance, rule, unit, reason)
 
 
 def claim_table(claims: Sequence[Claim]) -> Table:
-    """All sentences as a table."""
+    """Table of all claims."""
     rows = []
     for one in claims:
         gives = '; '.join(

@@ -1,4 +1,4 @@
-"""What section IV.D claims of 6-DOF and 3-DOF boards beside the sea trial, Fig. 13 to 16."""
+"""Claims of section IV.D on 6-DOF and 3-DOF boards beside the sea trial, Fig. 13 to 16."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ DEPTHS = ('door_depth', 'net_depth')
 
 
 def degree_claims(seen: Comparison) -> list[Claim]:
-    """All sentences on the two kinds of boards."""
+    """Return all claims on the two kinds of boards."""
     return [
         _errors(seen),
         _close(seen),

@@ -1,4 +1,4 @@
-"""What section IV.B claims of the fit and its lines, Fig. 4 and 5."""
+"""Claims of section IV.B on the fit and its lines, Fig. 4 and 5."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ UNLIKE = 10.0
 
 
 def identification_claims(fit: Refit) -> list[Claim]:
-    """All sentences on the fit."""
+    """Return all claims on the fit."""
     return [*_objective(fit), *_slopes(fit), *_deviations(fit)]
 
 

@@ -1,4 +1,4 @@
-"""What section IV.C claims of the gear with turned boards, Fig. 7 to 10."""
+"""Claims of section IV.C on the gear with turned boards, Fig. 7 to 10."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ RESULTS = ('door_spread', 'door_depth', 'vertical_opening', 'warp_tension')
 
 
 def installation_claims(changes: Changes) -> list[Claim]:
-    """All sentences on spread, opening and tension."""
+    """Return all claims on spread, opening and tension."""
     return [_zeta(changes), _spread(changes), _opening(changes), *_signs(changes)]
 
 

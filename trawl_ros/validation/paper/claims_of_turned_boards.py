@@ -1,4 +1,4 @@
-"""What section IV.C claims of α, δ and the depth of turned boards, Fig. 8, 11 and 12."""
+"""Claims of section IV.C on α, δ and the depth of turned boards, Fig. 8, 11 and 12."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from trawl_ros.validation.paper.sweeps import INSTALLATION, TURN
 
 
 def turned_board_claims(changes: Changes) -> list[Claim]:
-    """All sentences on the boards themselves."""
+    """Return all claims on the boards themselves."""
     return [*_epsilon(changes), *_eta(changes), *_depth(changes)]
 
 

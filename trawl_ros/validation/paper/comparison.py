@@ -1,4 +1,4 @@
-"""The gear with 6-DOF boards, with boards as points, and the sample trial, side by side."""
+"""Comparison of 6-DOF boards, boards as points, and the sample trial."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Fig. 13 to 16: boards with six degrees of freedom, boards as points, and the sea trial."""
+"""Reproduction of Fig. 13 to 16: 6-DOF boards, boards as points, and the sea trial."""
 
 import numpy as np
 from matplotlib.figure import Figure

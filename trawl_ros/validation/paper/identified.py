@@ -1,4 +1,4 @@
-"""Fig. 4 and 5: the objective over the iterations, and the lines of lift and drag."""
+"""Reproduction of Fig. 4 and 5: the objective over the iterations, and lift and drag."""
 
 import numpy as np
 from matplotlib.figure import Figure

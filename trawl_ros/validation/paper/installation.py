@@ -1,4 +1,4 @@
-"""Fig. 7 to 12: the gear with its boards turned against their rigging."""
+"""Reproduction of Fig. 7 to 12: the gear with its boards turned against their rigging."""
 
 from collections.abc import Callable, Mapping
 
@@ -58,7 +58,7 @@ def _monotone(
     found: Mapping[str, Mapping[float, Sighting]],
     panel: tuple[str, str, Callable[[Observables], float]],
 ) -> Check:
-    """The paper's curves have no turning point between -5° and 5° of ε."""
+    """Check that the curves are monotone between -5° and 5° of ε, as the paper's are."""
     name, label, read = panel
     values = np.array([read(one.seen) for one in found['epsilon'].values()])
     steps = np.diff(values)

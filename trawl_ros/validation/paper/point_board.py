@@ -1,4 +1,4 @@
-"""The 3-DOF board of Fig. 13 to 16: a point with constant coefficients.
+"""Point board of Fig. 13 to 16: a 3-DOF board with constant coefficients.
 
 A board whose lines all end in its centre of gravity, whose coefficients do not depend on its
 angles and which is held in its attitude is a point with constant lift and drag. Everything else
@@ -22,7 +22,7 @@ FORCES = ('c1', 'c2', 'c3')
 
 
 def point_board(model: GearModel, attack: float, slip: float) -> GearModel:
-    """The gear with boards that are points.
+    """Return the gear with boards that are points.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def point_board(model: GearModel, attack: float, slip: float) -> GearModel:
 def point_observables(
     model: GearModel, near: Equilibrium, attack: float, lean: float = 0.0
 ) -> Observables:
-    """What is seen of a gear from `point_board` at the operating point of ``near``.
+    """Observables of a gear from `point_board` at the operating point of ``near``.
 
     Parameters
     ----------

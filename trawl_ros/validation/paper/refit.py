@@ -1,4 +1,4 @@
-"""The twelve coefficients fitted to all states of the sample trial at once, as in Fig. 4."""
+"""Refit of the twelve coefficients to all states of the sample trial at once, as in Fig. 4."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ STAND_STILL = EstimatorOptions(tolerance=1e9)
 
 
 class _Remembering(Predictor):
-    """Keeps the boards' mean attack angle (rad) of the newest prediction for each input: of the
+    """Predictor that keeps the boards' mean attack angle (rad), newest for each input: of the
     estimate, once the fit has come to rest.
     """
 

@@ -1,4 +1,4 @@
-"""Each sentence of section IV that claims something, beside what this model gives."""
+"""All claims of section IV with the model's checks of them."""
 
 from trawl_ros.validation.check import Case, Outcome
 from trawl_ros.validation.paper.changes import Changes
@@ -18,7 +18,7 @@ from trawl_ros.validation.paper.sweeps import (
 
 
 def run(small: bool) -> Outcome:
-    """Work out everything the sentences speak of."""
+    """Evaluate all claims."""
     model = paper_model(small)
     changes = Changes(installation_sweep(model, FEW_TURNS), faster(model))
     claims = (

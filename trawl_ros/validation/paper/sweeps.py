@@ -68,7 +68,7 @@ class BoardReading:
 
 @dataclass(frozen=True)
 class Sighting:
-    """A steady state: what is seen of the gear, and its port board."""
+    """Sighting: the observables of a steady state, and its port board."""
 
     seen: Observables
     board: BoardReading
@@ -84,7 +84,7 @@ def gear(small: bool) -> GearRecord:
 
 
 def paper_model(small: bool) -> GearModel:
-    """That gear with the coefficients of eq. 37."""
+    """Model of the paper's gear with the coefficients of eq. 37."""
     return build_model(gear(small))
 
 
@@ -140,5 +140,5 @@ def installation_sweep(
 
 
 def faster(model: GearModel) -> Sighting:
-    """The gear as it is, at a somewhat higher speed."""
+    """Sighting of the gear as it is, at a somewhat higher speed."""
     return sighting(model, steady_state(model, WARP_LENGTH, FASTER * SPEED))

@@ -1,4 +1,4 @@
-"""The sample sea trial as the paper uses its own: one row of means for each steady state."""
+"""Sample sea trial in the paper's form: one row of means for each steady state."""
 
 from collections import defaultdict
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Fig. 6: the boards' angles against warp length."""
+"""Reproduction of Fig. 6: the boards' angles against warp length."""
 
 import numpy as np
 from matplotlib.figure import Figure

@@ -1,1 +1,1 @@
-"""Other programs on the same wire."""
+"""Comparison with reference codes on the same wire."""

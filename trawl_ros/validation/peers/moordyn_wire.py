@@ -1,4 +1,4 @@
-"""A towed wire here and in MoorDyn: steady, and through hauling and a turn."""
+"""Towed wire compared with MoorDyn: steady, and through hauling and a turn."""
 
 from collections.abc import Mapping
 from contextlib import closing

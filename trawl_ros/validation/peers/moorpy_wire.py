@@ -1,4 +1,4 @@
-"""A steady towed wire here and in MoorPy."""
+"""Steady towed wire compared with MoorPy."""
 
 from trawl_ros.peers.moorpy_wire import MoorPyWire
 from trawl_ros.peers.own_wire import own_model, own_steady
