@@ -1,5 +1,6 @@
 """The default gear, whole and cut coarsely, and bags of steady tows made without towing."""
 
+import signal
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,10 @@ from trawl_ros.solver.equilibrium import steady_state
 
 SECOND = 1_000_000_000
 LEGS = ((200.0, 2.3), (220.0, 2.3))
+
+
+# A shell that starts tests in the background has them, and all their children, ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from promised.documents import ROOT, TABLE, Document, read_document
+from promised.documents import ROOT, TABLE, Document, Promise, read_document
 from promised.story import NOT_RUN, Story
 
 SLOW_S = 20.0
@@ -60,22 +60,24 @@ def documents() -> list[Document]:
 
 
 @pytest.fixture(scope='session')
-def stories(
-    tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest
-) -> Iterator[dict[str, Story]]:
-    """One story per document; what they took is put into the table if that is asked for."""
-    made = {
+def stories(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Story]:
+    """One story per document."""
+    return {
         document.name: Story(document, tmp_path_factory.mktemp('story'))
         for document in DOCUMENTS
         if document.promises
     }
-    yield made
+
+
+@pytest.fixture
+def story(
+    stories: dict[str, Story], promise: Promise, request: pytest.FixtureRequest
+) -> Iterator[Story]:
+    """That of a command; what it took is put into the table if that is asked for."""
+    found = stories[promise.document]
+    yield found
     if request.config.getoption('--write-promises', default=False):
-        took = {
-            (promise.document, promise.title): seconds
-            for story in made.values()
-            for promise, seconds in story.seconds.items()
-        }
+        took = {(promise.document, step.title): took for step, took in found.seconds.items()}
         TABLE.write_text(table(measured() | took))
 
 

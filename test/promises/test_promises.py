@@ -9,8 +9,8 @@ from promised.story import BESIDE, ENDS, NOT_RUN
 from trawl_ros.cli.main import trawl
 
 
-def test_it_runs(promise, stories):
-    stories[promise.document].run(promise)
+def test_it_runs(promise, story):
+    story.run(promise)
 
 
 def test_every_block_is_run_or_is_a_file_with_a_name(documents):
