@@ -10,7 +10,7 @@ from trawl_ros.bags.reader import summarise
 from trawl_ros.messages.topics import TRUTH, absolute
 from trawl_ros.model.board import COEFFICIENTS
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 SHORT = """\
 description: one steady state and a little more
@@ -24,6 +24,7 @@ truth_rate_hz: 1.0
 """
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_the_chain_loses_nothing_and_ends_with_an_estimate(run, trial, tmp_path):
     trial.write_text(SHORT)

@@ -154,7 +154,7 @@ def test_a_baseline_keeps_the_boards_out_of_it(beside_baseline):
     assert low < 0.15 < high or np.isclose(values['scale'][0], 0.15, atol=0.03)
 
 
-@pytest.mark.parametrize('poor', [POOR, 0.0])
+@pytest.mark.parametrize('poor', [POOR, pytest.param(0.0, marks=pytest.mark.slow)])
 def test_what_was_found_is_not_in_the_baseline(
     beside_baseline, with_cells, hide, poor, monkeypatch
 ):

@@ -57,7 +57,7 @@ def test_without_noise_the_truth_is_found(sea, model, prior):
     assert estimate.active_bounds == ()
 
 
-@pytest.mark.parametrize('noise', [1.0, 3.0])
+@pytest.mark.parametrize('noise', [1.0, pytest.param(3.0, marks=pytest.mark.slow)])
 def test_intervals_cover_the_truth_as_often_as_they_say(sea, model, prior, noise):
     inside, departures = [], []
     for seed in range(40):

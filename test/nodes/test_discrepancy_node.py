@@ -18,7 +18,7 @@ from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 from trawl_ros.solver.equilibrium import steady_state  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 97
 LEGS = ((300.0, 2.4), (450.0, 2.1), (600.0, 2.4), (600.0, 2.1))

@@ -17,7 +17,7 @@ from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.identification_node import SAMPLES, IdentificationNode  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 114
 LEG_S = 48

@@ -29,7 +29,7 @@ from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 84
 ROOT = Path(__file__).parents[2]

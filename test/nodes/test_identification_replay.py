@@ -24,7 +24,7 @@ from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 113
 START = 1000 * SECOND
@@ -121,7 +121,9 @@ def same(listener, expected):
         np.testing.assert_allclose(covariance, one.covariance, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize('rate', [0.0, 40.0, 100.0])
+@pytest.mark.parametrize(
+    'rate', [0.0, *(pytest.param(rate, marks=pytest.mark.slow) for rate in (40.0, 100.0))]
+)
 def test_at_every_rate_each_window_brings_what_it_brings_offline(replay, bag, offline, rate):
     played = replay()
     played.node()
@@ -146,6 +148,7 @@ def test_the_order_in_which_topics_arrive_changes_nothing(replay, samples, offli
     same(played.listener, offline)
 
 
+@pytest.mark.slow
 def test_a_bag_that_loops_begins_anew_with_the_same_estimates(replay, bag, offline):
     played = replay()
     node = played.node()
@@ -189,6 +192,7 @@ def test_a_node_ended_in_mid_tow_goes_on_where_it_was(replay, bag, offline, tmp_
     assert node._resets == 0
 
 
+@pytest.mark.slow
 def test_a_node_that_is_killed_goes_on_after_its_last_window(replay, bag, offline, tmp_path):
     played = replay(state=str(tmp_path / 'state'))
     graph, listener = played.graph, played.listener

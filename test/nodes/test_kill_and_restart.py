@@ -10,7 +10,7 @@ from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 104
 WATCHED = {
@@ -33,6 +33,9 @@ LISTENERS = {'bag_recorder': ('bag', 'recorded until'),
 """Status and key in which each listener says how far it has come."""
 
 NEEDED = ['bag_recorder', *INSTRUMENTS]
+
+QUICK = ('winch_node', 'bag_recorder')
+"""A source and a listener; all others come back in the same way."""
 
 
 class Lookout(TrawlNode):
@@ -116,7 +119,13 @@ def tow(open_graph, gear_path, tmp_path_factory):
         yield tow
 
 
-@pytest.mark.parametrize('node', [*INSTRUMENTS, *MODES, *LISTENERS])
+@pytest.mark.parametrize(
+    'node',
+    [
+        node if node in QUICK else pytest.param(node, marks=pytest.mark.slow)
+        for node in (*INSTRUMENTS, *MODES, *LISTENERS)
+    ],
+)
 def test_a_node_that_is_killed_comes_back_to_work_and_stops_nobody(tow, node):
     tow.processes.kill(node)
     tow.start(node)

@@ -29,7 +29,7 @@ from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 from trawl_ros.scenario.run import Trial  # noqa: E402
 from trawl_ros.scenario.scenario import load_scenario  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 80
 INSTRUMENTS = (WinchNode, DoorSensorNode, TrawlSonarNode, VesselNode)

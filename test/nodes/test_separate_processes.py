@@ -18,7 +18,7 @@ from trawl_ros.messages.diagnostics import read_statuses  # noqa: E402
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 DOMAIN = 87
 INSTRUMENTS = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
@@ -110,6 +110,7 @@ def tow(start, open_graph, scenario_path, tmp_path):
         return SimpleNamespace(path=path, ends=ends, published=monitor.published())
 
 
+@pytest.mark.slow
 def test_a_tow_is_recorded_whole_and_every_process_ends_cleanly(tow):
     for name, (code, output) in tow.ends.items():
         assert code == 0, f'{name}: {output}'

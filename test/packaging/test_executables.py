@@ -37,10 +37,11 @@ NODES = (
     'discrepancy_node',
 )
 DOMAINS = (*range(70, 80), 81)
+QUICK = ('sim_node', 'winch_node')
 START_S = 60.0  # the bound for a machine busy with other tests; one to three seconds are usual
 END_S = 20.0
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 
 def small_bag(path: Path) -> Path:
@@ -82,7 +83,13 @@ def diagnostics(domain: int) -> Iterator[tuple[SingleThreadedExecutor, list[Diag
 
 
 # All nodes end in one way of the same code, so each signal is tried on half of them.
-@pytest.mark.parametrize(('node', 'end'), list(zip(NODES, cycle((signal.SIGINT, signal.SIGTERM)))))
+@pytest.mark.parametrize(
+    ('node', 'end'),
+    [
+        pytest.param(*case, marks=() if case[0] in QUICK else pytest.mark.slow)
+        for case in zip(NODES, cycle((signal.SIGINT, signal.SIGTERM)))
+    ],
+)
 def test_starts_publishes_and_ends_cleanly(workspace, node, end, tmp_path, monkeypatch):
     domain = DOMAINS[NODES.index(node)]
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')

@@ -14,7 +14,7 @@ from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.studies.soak import Plan, run_soak
 from trawl_ros.studies.soak_rows import soak_rows
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.ros
 
 CONSOLE = error_console()
 
@@ -23,6 +23,7 @@ def shown(title, total_s):
     return TimeProgress(title, total_s, CONSOLE)
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_a_quarter_of_an_hour_at_sea(coarse_gear, tmp_path):
     plan = Plan(hours=0.25, gear=str(coarse_gear), real_time_s=5.0, truth_rate_hz=0.5)

@@ -28,6 +28,7 @@ def lattice(model: GearModel) -> Lattice:
     return speed_lattice(model, (300.0, 500.0), (1.4, 2.1))
 
 
+@pytest.mark.slow
 def test_every_check_of_the_small_map_holds() -> None:
     outcome = CASE.run(True)
     assert [check.key for check in outcome.checks if not check.ok] == []

@@ -12,6 +12,7 @@ from trawl_ros.validation.convergence.time_step import CASE, convergence
 from trawl_ros.validation.writing import check_record
 
 
+@pytest.mark.slow
 def test_every_check_of_the_small_case_holds() -> None:
     outcome = CASE.run(True)
     assert [check.key for check in outcome.checks if not check.ok] == []
