@@ -47,6 +47,7 @@ DEFINITION_VALUES = Limit(
 DEFINITION_DEPTH = Limit(20, 'levels', 'types within types')
 BAG_TOPICS = Limit(5000, 'topics', 'a bag')
 BAG_FIELDS = Limit(20_000, 'fields', 'all definitions of a bag that are not those of ROS 2 Jazzy')
+NAME = Limit(1000, 'characters', 'name of a topic, type or file in a bag')
 BAG_FILES = Limit(1000, 'files', 'a bag')
 CHUNK_BYTES = Limit(256 << 20, 'bytes', 'a chunk, record or message of a bag, unpacked')
 MESSAGE_OBJECTS = Limit(4_000_000, '', 'strings, records and their values in one message')

@@ -15,7 +15,10 @@ from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
-MAX_CHUNK_BYTES = 256 << 20
+from trawl_ros.bags.allowance import Allowance
+from trawl_ros.limits import CHUNK_BYTES
+
+MAX_CHUNK_BYTES = CHUNK_BYTES.value
 """Largest chunk (and largest single record) that is read; writers make them of about 1 MB."""
 
 DAMAGE = (
@@ -45,24 +48,30 @@ def parse_records(data: bytes) -> Iterator[object]:
     return StreamReader(io.BytesIO(data), skip_magic=True, emit_chunks=True).records
 
 
-def open_chunk(record: bytes) -> list[Record]:
+def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
     """Give schemas, channels and messages of a chunk, in the order in which they stand there.
 
     Parameters
     ----------
     record
         The whole record with opcode and length.
+    allowed
+        What may be taken out of the file.
 
     Raises
     ------
     Damaged
         If the record is no chunk, too large, or fails its checksum.
+    BagError
+        If more is in it than is allowed.
     """
     try:
         chunk = next(parse_records(record))
         if not isinstance(chunk, Chunk):
             raise Damaged('no chunk starts there')
         plain = _decompress(chunk)
+        allowed.take_bytes(len(plain))
+        allowed.take_records(plain)
         if chunk.uncompressed_crc and zlib.crc32(plain) != chunk.uncompressed_crc:
             raise Damaged('its checksum does not match')
         bare = Chunk(
@@ -112,7 +121,7 @@ def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
         while part := reader.read(_STEP):
             size += len(part)
             if size > limit:
-                raise Damaged('it becomes larger than the free space on the disk for it')
+                raise Damaged(f'it becomes more than {limit} bytes, for which there is no room')
             plain.write(part)
         packed.seek(0)
         _check_size(packed.read(_FRAME_START), size)

@@ -15,6 +15,7 @@ from mcap.opcode import Opcode
 from mcap.records import Message, Statistics
 from mcap.writer import MCAP0_MAGIC
 
+from trawl_ros.bags.allowance import Allowance
 from trawl_ros.bags.chunk_index import Piece, is_finished, read_summary
 from trawl_ros.bags.chunks import (
     DAMAGE,
@@ -29,6 +30,8 @@ from trawl_ros.bags.descriptions import Descriptions
 from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.bags.walk import RECORD_START, walk
 from trawl_ros.errors import BagError
+from trawl_ros.foreign import open_file
+from trawl_ros.limits import BAG_WAITING, LATEST_STAMP
 
 _CHUNK_HEAD = struct.Struct('<QQQII')
 """First and last time, size, checksum, and length of the compression's name behind it."""
@@ -74,14 +77,15 @@ class McapFile:
         """Whether the file ends as a finished one does."""
         self.chunk_compressions: set[str] = set()
         """How chunks are compressed ('' for not at all)."""
-        with self._open() as stream:
+        with open_file(path, BagError) as stream:
             self._size = stream.seek(0, 2)
+            allowed = Allowance(path, self._size)
             self._check_start(stream)
             indexed = self._by_index(stream)
             self.indexed = indexed is not None
-            pieces = sorted(self._by_scan(stream) if indexed is None else indexed)
+            pieces = sorted(self._by_scan(stream, allowed) if indexed is None else indexed)
             self._pieces = self._without_copies(stream, pieces)
-            self._describe(stream)
+            self._describe(stream, allowed)
 
     @property
     def damaged_chunks(self) -> int:
@@ -121,32 +125,43 @@ class McapFile:
         Chunks are opened as their time comes, so that memory holds only those that overlap.
         """
         waiting: list[tuple[int, int, int, Message]] = []
+        held = 0
         lost_channels: Counter[int] = Counter()
-        with self._open() as stream:
+        late: Counter[str] = Counter()
+        allowed = Allowance(self.path, self._size)
+        with open_file(self.path, BagError) as stream:
             for piece in [*self._pieces, None]:
                 while waiting and (piece is None or waiting[0][0] < piece.start):
                     message = heapq.heappop(waiting)[3]
+                    held -= len(message.data)
                     described = self._known.find(message.channel_id)
                     if described is None:
                         lost_channels[message.channel_id] += 1
                         continue
+                    if message.log_time > LATEST_STAMP.value:
+                        late[described[0]] += 1
+                        continue
                     yield Stored(described[0], described[1].type, message)
                 if piece is None:
                     break
-                for place, record in enumerate(self._load(stream, piece) or ()):
+                for place, record in enumerate(self._load(stream, piece, allowed) or ()):
                     if isinstance(record, Message):
+                        held += len(record.data)
                         heapq.heappush(waiting, (record.log_time, piece.offset, place, record))
+                if held > BAG_WAITING.value:
+                    raise BagError(
+                        f'{self.path}: chunks before byte {piece.offset} overlap in time; expected '
+                        f'{BAG_WAITING} at most to be held at once'
+                    )
         for number, count in lost_channels.items():
             self._report(
                 f'{self.path}: {count} messages of channel {number}, whose description was lost, '
                 'were left out'
             )
-
-    def _open(self) -> BinaryIO:
-        try:
-            return self.path.open('rb')
-        except OSError as reason:
-            raise BagError(f'{self.path}: cannot be read ({reason.strerror})') from reason
+        for topic, count in late.items():
+            self._report(
+                f'{self.path}: {count} messages on {topic} have no possible time, and were left out'
+            )
 
     def _check_start(self, stream: BinaryIO) -> None:
         stream.seek(0)
@@ -163,7 +178,10 @@ class McapFile:
             return None
         try:
             summary = read_summary(stream, self._size)
-            if summary and sum(piece.length for piece in summary.pieces or ()) > self._size:
+            pieces = summary.pieces if summary and summary.pieces else ()
+            if any(piece.offset + piece.length > self._size for piece in pieces):
+                raise Damaged('its chunks go beyond the end of the file')
+            if sum(piece.length for piece in pieces) > self._size:
                 raise Damaged('its chunks overlap')
         except DAMAGE as reason:
             self._report(
@@ -179,7 +197,7 @@ class McapFile:
         self.chunk_compressions |= summary.compressions
         return summary.pieces
 
-    def _by_scan(self, stream: BinaryIO) -> list[Piece]:
+    def _by_scan(self, stream: BinaryIO, allowed: Allowance) -> list[Piece]:
         """Go through the file record by record, and open chunks for the channels in them."""
         pieces = []
         for opcode, offset, length in self._walk(stream):
@@ -197,7 +215,7 @@ class McapFile:
                 piece = Piece(0, offset, length)
             else:
                 continue
-            records = self._load(stream, piece)
+            records = self._load(stream, piece, allowed)
             self._known.learn(records or ())
             if opcode == Opcode.CHUNK and records is not None:
                 messages = [record for record in records if isinstance(record, Message)]
@@ -217,12 +235,12 @@ class McapFile:
             )
         return [piece for piece in pieces if piece not in copies]
 
-    def _describe(self, stream: BinaryIO) -> None:
+    def _describe(self, stream: BinaryIO, allowed: Allowance) -> None:
         """Look for channels in chunks as far as the summary does not describe them."""
         for piece in self._pieces if self.indexed else ():
             if not self._known.lacking(self._used):
                 return
-            self._known.learn(self._load(stream, piece) or ())
+            self._known.learn(self._load(stream, piece, allowed) or ())
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Give opcode, offset and length of each record before the end of data."""
@@ -236,7 +254,7 @@ class McapFile:
         self.passed_bytes += count
         self._report(f'{self.path}: {sentence}')
 
-    def _load(self, stream: BinaryIO, piece: Piece) -> list[Record] | None:
+    def _load(self, stream: BinaryIO, piece: Piece, allowed: Allowance) -> list[Record] | None:
         """Read a piece; None, with a report, if it is damaged."""
         try:
             if piece.length > MAX_CHUNK_BYTES:
@@ -249,7 +267,7 @@ class McapFile:
             if inner + RECORD_START.size != piece.length:
                 raise Damaged('its length is not what the index says')
             if opcode == Opcode.CHUNK:
-                records = open_chunk(data)
+                records = open_chunk(data, allowed)
             else:
                 records = [r for r in (next(parse_records(data)),) if isinstance(r, Record)]
         except DAMAGE as reason:

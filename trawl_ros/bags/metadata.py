@@ -7,16 +7,16 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import yaml
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from trawl_ros.bags.qos import dump_profiles, parse_profiles
 from trawl_ros.bags.stored import Definition
 from trawl_ros.errors import BagError
 from trawl_ros.foreign import open_file, short
-from trawl_ros.limits import METADATA_BYTES, METADATA_DEPTH, METADATA_VALUES
+from trawl_ros.limits import METADATA_BYTES, METADATA_DEPTH, METADATA_VALUES, NAME
 from trawl_ros.schema import validated
 
 FILE_NAME = 'metadata.yaml'
@@ -31,13 +31,16 @@ _Dumper: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
 _Loader: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 
 
+_Name = Annotated[str, StringConstraints(max_length=NAME.value)]
+
+
 class _Lenient(BaseModel):
     model_config = ConfigDict(frozen=True, extra='ignore')
 
 
 class _TopicMetadata(_Lenient):
-    name: str
-    type: str
+    name: _Name
+    type: _Name
     # A text up to version 8, a list from there on.
     offered_qos_profiles: Any = ''
     type_description_hash: str = ''
@@ -52,14 +55,14 @@ class BagMetadata(_Lenient):
     """What a reader needs of ``rosbag2_bagfile_information``."""
 
     version: int
-    storage_identifier: str
-    relative_file_paths: tuple[str, ...]
+    storage_identifier: _Name
+    relative_file_paths: tuple[_Name, ...]
     message_count: int
     topics_with_message_count: tuple[_TopicCount, ...] = ()
-    compression_format: str = ''
-    compression_mode: str = ''
+    compression_format: _Name = ''
+    compression_mode: _Name = ''
     custom_data: dict[str, str] | None = None
-    ros_distro: str = ''
+    ros_distro: _Name = ''
     starting_time: dict[str, int] = {}
     duration: dict[str, int] = {}
 

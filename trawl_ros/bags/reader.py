@@ -18,6 +18,7 @@ from trawl_ros.bags.sources import BagFacts, open_source
 from trawl_ros.bags.stored import Definition
 from trawl_ros.bags.summary import BagSummary, count_topics
 from trawl_ros.errors import BagError, MessageError
+from trawl_ros.foreign import reading
 from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 
@@ -77,7 +78,8 @@ class Bag:
         self.problems: list[str] = []
         self._namespace = namespace
         self._lenient = lenient
-        self._source = open_source(self.path, self._report, lenient=lenient)
+        with reading(self.path, BagError):
+            self._source = open_source(self.path, self._report, lenient=lenient)
         self.topics = {topic: definition.type for topic, definition in self.definitions().items()}
         self.custom_data = self._source.custom_data
         self._types = BagTypes()
@@ -138,9 +140,11 @@ class Bag:
     def as_stored(self) -> Iterator[RawMessage]:
         """Give all messages undecoded and unchecked, whatever their types; there may be none."""
         read = 0
-        for topic, type_name, message in self._source.messages():
-            read += 1
-            yield RawMessage(topic, type_name, message.log_time, message.publish_time, message.data)
+        with reading(self.path, BagError, lambda: f'after {read} messages'):
+            for topic, type_name, message in self._source.messages():
+                read += 1
+                times = message.log_time, message.publish_time
+                yield RawMessage(topic, type_name, *times, message.data)
         stated = self._source.stated_count
         if read and stated is not None and stated > read:
             self._report(f'{self.path}: {read} of {stated} messages could be read')

@@ -17,11 +17,11 @@ from trawl_ros.bags.rosbag2_keys import lacking
 from trawl_ros.bags.stored import Definition, Stored
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.errors import BagError
+from trawl_ros.foreign import reading
 
 SUFFIX = '_repaired'
 
 _NUMBERED = re.compile(r'(?P<stem>.*)_(?P<number>\d+)')
-_LATEST = 2**63
 _SECOND = 1_000_000_000
 
 
@@ -71,7 +71,8 @@ def repair_bag(
         If there is no bag of MCAP files, nothing of it can be saved, or the new one cannot be
         written.
     """
-    damaged = _Damaged(path)
+    with reading(path, BagError):
+        damaged = _Damaged(path)
     place = path.resolve()
     target = out or place.parent / f'{place.stem if place.is_file() else place.name}{SUFFIX}'
     if damaged.is_sound():
@@ -117,7 +118,7 @@ class _Damaged:
         self.problems: list[str] = []
         self.read: Counter[str] = Counter()
         self._types: dict[str, Definition] = {}
-        self._metadata = None if path.is_file() else self._load_metadata()
+        self._metadata = self._load_metadata() if path.is_dir() else None
         self._check_kind()
         self.files = [file for name in self._names() if (file := self._open(name))]
         if not self.files:
@@ -167,7 +168,7 @@ class _Damaged:
         for stored in file.messages():
             topic, time = stored.topic, stored.message.log_time
             definition = self._types.setdefault(topic, said[topic])
-            if not stored.type or stored.type != definition.type or time >= _LATEST:
+            if not stored.type or stored.type != definition.type:
                 left_out[topic] += 1
                 continue
             if not definition.qos and stated.get(topic):
@@ -177,8 +178,8 @@ class _Damaged:
             yield definition, stored
         for topic, count in left_out.items():
             self._report(
-                f'{file.path}: {count} messages on {topic} have no type, another type than the '
-                'rest, or no possible time, and were left out'
+                f'{file.path}: {count} messages on {topic} have no type, or another type than '
+                'the rest, and were left out'
             )
 
     def lost(self, saved: Mapping[str, int]) -> dict[str, int]:
@@ -224,7 +225,7 @@ class _Damaged:
 
     def _names(self) -> list[Path]:
         """The bag's files in the order in which they were written."""
-        if self.path.is_file():
+        if not self.path.is_dir():
             return [self.path]
         there = sorted(self.path.glob('*.mcap'), key=_place)
         if self._metadata is None:

@@ -1,29 +1,29 @@
 """Where a bag's messages come from: its files, whatever their storage, and its metadata."""
 
 import heapq
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Protocol
 
 from mcap.records import Message
 
-from trawl_ros.bags.chunks import Damaged, inflate, inflate_file
+from trawl_ros.bags.allowance import Allowance
+from trawl_ros.bags.chunks import Damaged, inflate
 from trawl_ros.bags.database import Database
 from trawl_ros.bags.mcap_file import McapFile
 from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata
 from trawl_ros.bags.stored import Definition, Stored
+from trawl_ros.bags.unpacked import Unpacked
 from trawl_ros.errors import BagError
+from trawl_ros.foreign import one_line
+from trawl_ros.limits import BAG_FILES, BAG_TOPICS, NAME
 
 Report = Callable[[str], None]
 Found = tuple[str, str, Message]
 """Topic, type and message."""
 
 SUFFIXES = ('.mcap', '.db3')
-SPARE_BYTES = 1 << 30
-"""What is left free on the disk when a compressed file is unpacked."""
 
 
 class StorageFile(Protocol):
@@ -71,27 +71,6 @@ class BagFacts:
     sizes: dict[str, int]
 
 
-class Unpacked:
-    """Files that rosbag2 compressed as a whole, unpacked into a folder that goes with this."""
-
-    def __init__(self, packed: list[Path]) -> None:
-        self.packed = packed
-        self._folder = TemporaryDirectory()
-        self.plain = [self._unpack(path, Path(self._folder.name)) for path in packed]
-
-    @staticmethod
-    def _unpack(path: Path, folder: Path) -> Path:
-        plain = folder / path.stem
-        try:
-            with path.open('rb') as source, plain.open('xb') as target:
-                inflate_file(source, target, shutil.disk_usage(folder).free - SPARE_BYTES)
-        except Damaged as reason:
-            raise BagError(f'{path}: cannot be unpacked ({reason})') from reason
-        except OSError as reason:
-            raise BagError(f'{path}: cannot be unpacked ({reason.strerror})') from reason
-        return plain
-
-
 class Source:
     """The files of a bag as one stream, beside what ``metadata.yaml`` says of them.
 
@@ -115,6 +94,7 @@ class Source:
         self._packed = _mode(metadata) == 'message'
         # Goes, with the files in it, when the source does.
         self._unpacked = unpacked
+        self._check_topics()
 
     @property
     def facts(self) -> BagFacts:
@@ -164,11 +144,14 @@ class Source:
         """Give all messages in the order of their log times."""
         streams = (file.messages() for file in self.files)
         lost = 0
+        size = sum(path.stat().st_size for path in self._paths)
+        allowed = Allowance(self.files[0].path, size)
         for stored in heapq.merge(*streams, key=lambda stored: stored.message.log_time):
             message = stored.message
             if self._packed:
                 try:
                     message = replace(message, data=inflate(message.data))
+                    allowed.take_bytes(len(message.data))
                 except Damaged:
                     lost += 1
                     continue
@@ -188,6 +171,17 @@ class Source:
             for key in sorted(stated.keys() | counts.keys())
             if stated.get(key, 0) != counts.get(key, 0)
         ]
+
+    def _check_topics(self) -> None:
+        topics = self.types()
+        if len(topics) > BAG_TOPICS.value:
+            raise BagError(f'{self.files[0].path}: {len(topics)} topics; expected {BAG_TOPICS}')
+        for name in sorted(name for pair in topics for name in pair):
+            if len(name) > NAME.value or not name.isprintable():
+                raise BagError(
+                    f'{self.files[0].path}: a topic or type {one_line(name, 50)!r}; expected a '
+                    f'name of {NAME} that can be printed'
+                )
 
     def _counts(self) -> dict[tuple[str, str], int] | None:
         total: dict[tuple[str, str], int] = {}
@@ -221,7 +215,7 @@ def open_source(path: Path, report: Report, *, lenient: bool = False) -> Source:
     """
     if not path.exists():
         raise BagError(f'{path}: no such bag')
-    if path.is_file():
+    if not path.is_dir():
         return Source([_open_file(path, report)], None, report)
     metadata = _metadata(path, report, lenient)
     if metadata is None:
@@ -238,6 +232,11 @@ def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: boo
     files = [path / Path(name).name for name in metadata.relative_file_paths]
     if not files:
         raise BagError(f'{path / FILE_NAME}: names no file; expected at least one')
+    if len(files) > BAG_FILES.value or len(files) > len(set(files)):
+        raise BagError(
+            f'{path / FILE_NAME}: names {len(files)} files; expected each once, and {BAG_FILES} '
+            'at most'
+        )
     for file in [file for file in files if not file.is_file()]:
         sentence = f'{path}: {FILE_NAME} names {file.name}, which is not there'
         if not lenient or files == [file]:
