@@ -48,3 +48,15 @@ def test_who_begins_to_listen_while_time_is_set_back_joins_the_new_run(joiner):
     assert joiner.add('right', 1, 'r1') == {'left': 'l1', 'right': 'r1'}
     assert joiner.add('right', 2, 'r2') is None
     assert joiner.add('left', 2, 'l2') == {'left': 'l2', 'right': 'r2'}
+
+
+@pytest.mark.parametrize('order', ['ab', 'ba'])
+@pytest.mark.parametrize('false', [-7, 7])
+def test_a_single_false_stamp_parts_no_topics_for_ever(order, false):
+    joiner = Joiner(['a', 'b'])
+    for stamp in range(10):
+        for topic in order:
+            joiner.add(topic, stamp, topic)
+    joiner.add('a', 9 + false, 'false')
+    found = [joiner.add(topic, stamp, topic) for stamp in range(10, 20) for topic in order]
+    assert sum(one is not None for one in found) >= 9

@@ -11,6 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from trawl_ros.cli.files import FILE, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.errors import RosMissing
 from trawl_ros.files import empty_folder
 from trawl_ros.gear.load import load_gear
 from trawl_ros.reporting import number
@@ -229,6 +230,32 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
         console.print('stopped; no report is written')
         raise SystemExit(INTERRUPTED) from None
     _say(rows, out / COUNTERS_REPORT, console)
+
+
+@command.command('hostile')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the file of an earlier report.')
+@click.option('--messages', default=100_000, show_default=True,
+              type=click.IntRange(100, 100_000_000), help='Hostile messages.')  # fmt: skip
+@click.option('--seed', default=1, show_default=True, type=click.IntRange(0, 2**31),
+              help='Of all draws.')  # fmt: skip
+def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
+    """Send messages that make no sense to each subscription of each node.
+
+    Nodes run in this process and get the bytes as from the middleware. Writes
+    hostile_messages.json.
+    """
+    try:
+        from trawl_ros.studies.hostile.report import REPORT as HOSTILE_REPORT
+        from trawl_ros.studies.hostile.report import write_hostile
+        from trawl_ros.studies.hostile.study import STEPS, run_hostile
+    except ImportError as reason:
+        raise RosMissing('the study of hostile messages', reason) from reason
+    empty_folder(out, force=force)
+    console = error_console()
+    with _counted('attacking', STEPS, console) as step:
+        found = run_hostile(messages, seed, step)
+    _say(write_hostile(out, found, seed), out / HOSTILE_REPORT, console)
 
 
 @command.command('discrepancy')

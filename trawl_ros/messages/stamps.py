@@ -5,6 +5,8 @@ from typing import Any
 from rosbags.typesys.stores.ros2_jazzy import builtin_interfaces__msg__Time as Time
 from rosbags.typesys.stores.ros2_jazzy import std_msgs__msg__Header as Header
 
+from trawl_ros.errors import MessageError
+
 SECOND = 1_000_000_000
 
 
@@ -15,8 +17,17 @@ def to_time(stamp: int) -> Time:
 
 
 def from_time(time: Any) -> int:
-    """Turn a ``builtin_interfaces/Time`` into nanoseconds."""
-    return int(time.sec) * SECOND + int(time.nanosec)
+    """Turn a ``builtin_interfaces/Time`` into nanoseconds.
+
+    Raises
+    ------
+    MessageError
+        If there are more nanoseconds than a second has.
+    """
+    nanoseconds = int(time.nanosec)
+    if nanoseconds >= SECOND:
+        raise MessageError(f'a stamp with {nanoseconds} ns; expected less than {SECOND}')
+    return int(time.sec) * SECOND + nanoseconds
 
 
 def header(stamp: int, frame: str) -> Header:

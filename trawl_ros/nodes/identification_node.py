@@ -46,7 +46,7 @@ from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.outcome import Outcome
 from trawl_ros.nodes.parameters import Flag, Text
 from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.rewinding import Rewinding
+from trawl_ros.nodes.rewinding import BACK_NS, Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.nodes.window_parameters import WINDOW_SPECS, window_options
@@ -114,7 +114,7 @@ class IdentificationNode(TrawlNode):
             self.listen(topic, self._feeder(topic), CONSUMER)
         self._jump = self.get_clock().create_jump_callback(
             JumpThreshold(
-                min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False
+                min_forward=None, min_backward=Duration(nanoseconds=-BACK_NS), on_clock_change=False
             ),
             post_callback=lambda jump: self._reset('/clock was set back'),
         )

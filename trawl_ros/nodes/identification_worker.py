@@ -165,7 +165,7 @@ class IdentificationWorker(Thread):
             case _:
                 self._attempt('estimating', lambda: self._use(work))
                 self._dealt += 1
-                self._dealt_with(self._reached.stamp)
+                self._attempt('reporting', lambda: self._dealt_with(self._reached.stamp))
 
     def _look(self) -> None:
         if self.outcome.finished is None:

@@ -18,8 +18,8 @@ from trawl_ros.nodes.source import Source
 FAR_NS = 60 * SECOND
 """Stamps further than this from the last on their topic may be false; a slow topic's are not."""
 
-FAR_CLOCK_NS = 86_400 * SECOND
-"""The same for /clock, which players of bags may set as they like."""
+FAR_CLOCK_NS = 10 * SECOND
+"""The same for /clock, which goes on in small steps."""
 
 _LARGE: dict[str, Limit] = {
     'sensor_msgs/msg/Image': IMAGE_BYTES,

@@ -19,6 +19,7 @@ from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.fields import not_finite
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.topics import INSTRUMENTS
@@ -30,6 +31,9 @@ from trawl_ros.nodes.qos import CONSUMER, STREAM
 from trawl_ros.nodes.sync import Consumers, Progress
 from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.scenario.surroundings import build_surroundings
+
+SEABED = 'truth/seabed'
+"""Not a number where a scenario has no seabed."""
 
 
 @dataclass(frozen=True)
@@ -174,6 +178,9 @@ class InstrumentNode(TrawlNode, ABC):
 
     def _look_at(self, topic: str) -> None:
         def take(message: Any) -> None:
+            wrong = topic != SEABED and not_finite(message)
+            if wrong:
+                raise MessageError(f'{topic}: {min(wrong)} is not finite; expected numbers')
             stamp = stamp_of(message)
             complete = self._joiner.add(topic, stamp, message)
             if complete is None:

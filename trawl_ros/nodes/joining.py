@@ -41,22 +41,26 @@ class Joiner:
         found[topic] = message
         if len(found) < len(self._topics):
             if len(self._waiting) > LONGEST_WAIT:
-                self._give_up(min(self._waiting))
+                # The one that waits longest: what false stamps have left behind may be ahead.
+                self._give_up(next(iter(self._waiting)))
             return None
         for older in [other for other in self._waiting if other < key]:
             self._give_up(older)
         return self._waiting.pop(key)
 
     def _run_of(self, topic: str, stamp: int) -> int:
-        """The run a message belongs to: the topic's own, or the newest if only that awaits it.
+        """The run a message belongs to: the topic's own, unless only another awaits it.
 
         Who begins to listen while time is set back may hear the end of the run before on some
-        topics only, and their numbers would differ for ever.
+        topics only, and a single false stamp looks as if time were set back on its topic: their
+        numbers would differ for ever.
         """
-        own, newest = self._runs[topic], max(self._runs.values())
-        awaited = topic not in self._waiting.get((newest, stamp), {topic: None})
-        if awaited and (own, stamp) not in self._waiting:
-            self._runs[topic] = newest
+        own = self._runs[topic]
+        awaiting = [
+            run for (run, at), found in self._waiting.items() if at == stamp and topic not in found
+        ]
+        if awaiting and own not in awaiting and (own, stamp) not in self._waiting:
+            self._runs[topic] = max(awaiting)
         return self._runs[topic]
 
     def _give_up(self, key: tuple[int, int]) -> None:

@@ -1,0 +1,33 @@
+"""Fields of a message and of all messages within it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+
+def fields_of(message: Any) -> Iterator[tuple[Any, str]]:
+    """Give all fields of a message and of those within it, each with who has it."""
+    for name in getattr(message, '__dataclass_fields__', ()):
+        value = getattr(message, name)
+        if hasattr(value, '__dataclass_fields__'):
+            yield from fields_of(value)
+        elif isinstance(value, list) and value and hasattr(value[0], '__dataclass_fields__'):
+            yield message, name
+            for one in value:
+                yield from fields_of(one)
+        elif not name.isupper():
+            yield message, name
+
+
+def not_finite(message: Any) -> set[str]:
+    """Name the fields of a message in which there is a number that is not finite."""
+    found = set()
+    for owner, name in fields_of(message):
+        value = getattr(owner, name)
+        numbers = (
+            isinstance(value, float) or getattr(getattr(value, 'dtype', None), 'kind', '') == 'f'
+        )
+        if numbers and not np.all(np.isfinite(value)):
+            found.add(f'{type(owner).__name__}.{name}')
+    return found
