@@ -1,5 +1,6 @@
 """Whatever arrives, a node counts it, says in a line why it is not used, and lives on."""
 
+import contextlib
 import itertools
 
 import numpy as np
@@ -13,6 +14,7 @@ from trawl_ros.messages.stamps import SECOND, header
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.incoming import Incoming, Leaps, believing_clock, decoding
 from trawl_ros.nodes.source import Source
+from trawl_ros.studies.hostile.mutations import hostile
 
 JOINTS = 'sensor_msgs/msg/JointState'
 WINCH = 'winch/joint_states'
@@ -134,6 +136,8 @@ class TestSource:
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+from rclpy.impl.implementation_singleton import rclpy_implementation  # noqa: E402
+
 from trawl_ros.nodes.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
 
@@ -194,3 +198,22 @@ def test_a_negative_clock_ends_no_node(pair):
     graph.until(lambda: refused(ear, '/clock') == 1)
     talker.send(*clock_message(101 * SECOND))
     graph.until(lambda: ear.now() == 101 * SECOND)
+
+
+@pytest.mark.ros
+def test_bytes_that_are_no_message_come_through_the_middleware_and_end_no_node(pair):
+    graph, talker, ear, heard = pair
+    sound = {WINCH: winch_command(SECOND, 1.0, 2.0)[1], '/clock': clock_message(102 * SECOND)[1]}
+    rng = np.random.default_rng(3)
+    for number in range(200):
+        for topic, message in sound.items():
+            # Some the middleware sends for nobody.
+            with contextlib.suppress(rclpy_implementation.RCLError):
+                talker.send_bytes(topic, hostile(serialize(message), message.__msgtype__, rng))
+        if number % 10 == 0:
+            graph.rest(0.01)
+    graph.settle()
+    assert ear.exit_code is None
+    before = len(heard)
+    talker.send(WINCH, sound[WINCH])
+    graph.until(lambda: len(heard) > before)
