@@ -20,6 +20,8 @@ from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.runtime import run
 
 class Tried(TrawlNode):
+    DRAINS = True
+
     def __init__(self, **kwargs):
         super().__init__('tried', **kwargs)
         print('up', flush=True)

@@ -122,7 +122,7 @@ class Monitor:
             parameter_overrides=[in_simulated_time],
         )
         # What it notices of clocks and types the nodes themselves have in their logs.
-        self._node.get_logger().set_level(LoggingSeverity.ERROR)
+        self._node.get_logger().set_level(LoggingSeverity.FATAL)
         self._node.listen(DIAGNOSTICS, self._heard.take, CONSUMER)
         self.listen_to_more(self._node)
         self._executor = SingleThreadedExecutor(context=self._context)

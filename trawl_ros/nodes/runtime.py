@@ -134,7 +134,8 @@ def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
     try:
         while not stop.wishes and node.exit_code is None:
             executor.spin_once(timeout_sec=WAKE_S)
-        if node.DRAINS:
+        # Who has failed, as at a full disk, would only fail at what is under way as well.
+        if node.DRAINS and not node.exit_code:
             _drain(executor, node, stop)
     finally:
         node.destroy_node()
