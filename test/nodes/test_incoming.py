@@ -217,3 +217,10 @@ def test_bytes_that_are_no_message_come_through_the_middleware_and_end_no_node(p
     before = len(heard)
     talker.send(WINCH, sound[WINCH])
     graph.until(lambda: len(heard) > before)
+
+
+@pytest.mark.ros
+def test_nothing_is_asked_of_the_middleware_while_it_hands_over_what_got_lost(pair):
+    """Of a lost message it told one thread with a lock held that another one waited for."""
+    _, _, ear, _ = pair
+    assert not any(list(entry.event_handlers) for entry in ear.subscriptions)
