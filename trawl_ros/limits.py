@@ -59,6 +59,8 @@ BAG_WAITING = Limit(512 << 20, 'bytes', 'chunks that overlap in time, so that al
 BAG_OPERATIONS = Limit(
     50_000_000, 'steps of SQLite', 'reading a database, and 20 more per byte of the file'
 )
+RECOVERED_CHANNELS = Limit(500, 'topics', 'a file of a bag whose lost descriptions are looked for')
+RECOVERED_RECORDS = Limit(2000, '', 'descriptions of topics taken out of damaged parts of a file')
 METADATA_BYTES = Limit(4_000_000, 'bytes', 'metadata.yaml of a bag')
 METADATA_VALUES = Limit(500_000, 'values', 'metadata.yaml, aliases written out')
 METADATA_DEPTH = Limit(20, 'levels', 'nesting of metadata.yaml')

@@ -174,17 +174,6 @@ def test_without_the_chunk_that_describes_the_topics_the_index_does(
     assert raw(bag_path)[0] == messages[120:]
 
 
-def test_messages_of_which_nothing_says_what_they_are_are_left_out(
-    bag_path, mcap_path, raw, rewrite
-):
-    rewrite(mcap_path)
-    flip_byte(mcap_path, middle_of_chunk(mcap_path, 0))
-    cut = middle_of_chunk(mcap_path, 3)
-    mcap_path.write_bytes(mcap_path.read_bytes()[:cut])
-    with pytest.raises(BagError, match='120 messages of channel 1, whose description was lost'):
-        raw(bag_path)
-
-
 def test_a_chunk_that_claims_an_absurd_size_takes_no_memory(bag_path, mcap_path, raw):
     whole = bytearray(mcap_path.read_bytes())
     (header,) = struct.unpack_from('<Q', whole, 9)

@@ -35,6 +35,7 @@ DAMAGE = (
 Record = Schema | Channel | Message
 
 _STEP = 1 << 20
+_SMALL_STEP = 1 << 10
 _FRAME_START = 64
 """Bytes of a compressed frame that hold its header."""
 
@@ -87,6 +88,29 @@ def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
         raise
     except DAMAGE as reason:
         raise Damaged(str(reason) or 'its records are cut short') from reason
+
+
+def salvage(record: bytes) -> bytes:
+    """Unpack a damaged chunk as far as that goes; what comes out may be wrong anywhere."""
+    parts: list[bytes] = []
+    try:
+        chunk = next(parse_records(record))
+        if not isinstance(chunk, Chunk):
+            return b''
+        if chunk.compression == '':
+            return chunk.data
+        unpack = (
+            lz4.frame.open(io.BytesIO(chunk.data))
+            if chunk.compression == 'lz4'
+            else _unpacker(chunk.data)
+        )
+        left = min(chunk.uncompressed_size, MAX_CHUNK_BYTES)
+        while left > 0 and (part := unpack.read(min(left, _SMALL_STEP))):
+            parts.append(part)
+            left -= len(part)
+    except (*DAMAGE, EOFError):
+        pass
+    return b''.join(parts)
 
 
 def inflate(data: bytes) -> bytes:

@@ -6,13 +6,14 @@ through record by record as far as it goes.
 
 import heapq
 import struct
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from mcap.opcode import Opcode
-from mcap.records import Message, Statistics
+from mcap.records import Header, Message, Statistics
 from mcap.writer import MCAP0_MAGIC
 
 from trawl_ros.bags.allowance import Allowance
@@ -26,8 +27,10 @@ from trawl_ros.bags.chunks import (
     parse_records,
 )
 from trawl_ros.bags.copies import find_copies
-from trawl_ros.bags.descriptions import Descriptions
-from trawl_ros.bags.stored import Definition, Stored
+from trawl_ros.bags.descriptions import Descriptions, read_remains
+from trawl_ros.bags.mcap_output import LIBRARY
+from trawl_ros.bags.recovery import recover, sample_messages
+from trawl_ros.bags.stored import Definition, StatedTopics, Stored
 from trawl_ros.bags.walk import RECORD_START, walk
 from trawl_ros.errors import BagError
 from trawl_ros.foreign import open_file
@@ -36,6 +39,7 @@ from trawl_ros.limits import BAG_WAITING, LATEST_STAMP
 _CHUNK_HEAD = struct.Struct('<QQQII')
 """First and last time, size, checksum, and length of the compression's name behind it."""
 _COMPRESSION_BYTES = 16
+_HEADER_BYTES = 256
 _MESSAGE_HEAD = struct.Struct('<HIQ')
 
 
@@ -48,6 +52,8 @@ class McapFile:
         The file.
     report
         Takes a sentence for each thing that is wrong but can be lived with.
+    stated
+        What the bag's metadata say of topics, should the file have lost it.
 
     Attributes
     ----------
@@ -63,14 +69,19 @@ class McapFile:
     storage = 'mcap'
     distro = ''
 
-    def __init__(self, path: Path, report: Callable[[str], None]) -> None:
+    def __init__(
+        self, path: Path, report: Callable[[str], None], stated: StatedTopics | None = None
+    ) -> None:
         self.path = path
         self._report = report
+        self._stated = stated
         self._known = Descriptions()
         self._used: set[int] = set()
         """Channels that have messages."""
         self._statistics: Statistics | None = None
-        self._damaged: set[int] = set()
+        self._damaged: dict[int, int] = {}
+        """Lengths of damaged chunks by their offsets."""
+        self._library = ''
         self.passed_bytes = 0
         """Bytes between records, or behind the last one, that make no sense."""
         self.complete = False
@@ -96,13 +107,13 @@ class McapFile:
     def definitions(self) -> dict[str, Definition]:
         """What is known of each topic's messages; the first channel of a topic counts."""
         found: dict[str, Definition] = {}
-        for topic, definition in self._known.all():
+        for topic, definition in self._known.all().values():
             found.setdefault(topic, definition)
         return found
 
     def types(self) -> set[tuple[str, str]]:
         """Give all (topic, type) there are."""
-        return {(topic, definition.type) for topic, definition in self._known.all()}
+        return {(topic, definition.type) for topic, definition in self._known.all().values()}
 
     def counts(self) -> dict[tuple[str, str], int] | None:
         """Give the number of messages by (topic, type) as the file states it; None if it does not.
@@ -170,6 +181,9 @@ class McapFile:
             raise BagError(f'{self.path}: the file is empty; expected an MCAP file')
         if magic != MCAP0_MAGIC:
             raise BagError(f'{self.path}: starts with {magic!r}; expected an MCAP file')
+        with suppress(*DAMAGE):
+            header = next(parse_records(stream.read(_HEADER_BYTES)))
+            self._library = header.library if isinstance(header, Header) else ''
 
     def _by_index(self, stream: BinaryIO) -> tuple[Piece, ...] | None:
         """Find the chunks by the summary; None where it is missing, damaged or without index."""
@@ -241,6 +255,29 @@ class McapFile:
             if not self._known.lacking(self._used):
                 return
             self._known.learn(self._load(stream, piece, allowed) or ())
+        if lost := self._known.lacking(self._used):
+            self._recover(stream, lost)
+
+    def _recover(self, stream: BinaryIO, lost: list[int]) -> None:
+        """Tell channels by evidence that nothing sound describes."""
+        allowed = Allowance(self.path, self._size)
+        chunks = (self._load(stream, piece, allowed) or [] for piece in self._pieces)
+        found = recover(
+            sample_messages(chunks, lost),
+            [*self._known.records(), *read_remains(stream, self._damaged, self._size)],
+            {n: topic for n, (topic, _) in self._known.all().items() if n not in lost},
+            self._stated,
+            in_order=self._library == LIBRARY,
+        )
+        reasons: defaultdict[str, list[str]] = defaultdict(list)
+        for number, channel in found.items():
+            self._known.add(number, channel.topic, channel.said)
+            reasons[channel.why].append(channel.topic)
+        for why, topics in reasons.items():
+            self._report(
+                f'{self.path}: descriptions of {len(topics)} channels were lost; these are taken '
+                f'for {", ".join(topics)}, {why}'
+            )
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Give opcode, offset and length of each record before the end of data."""
@@ -271,7 +308,7 @@ class McapFile:
             else:
                 records = [r for r in (next(parse_records(data)),) if isinstance(r, Record)]
         except DAMAGE as reason:
-            self._damaged.add(piece.offset)
+            self._damaged[piece.offset] = piece.length
             self._report(
                 f'{self.path}: the chunk at byte {piece.offset} is damaged ({reason}) '
                 'and was stepped over'

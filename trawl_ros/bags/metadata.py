@@ -13,7 +13,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from trawl_ros.bags.qos import dump_profiles, parse_profiles
-from trawl_ros.bags.stored import Definition
+from trawl_ros.bags.stored import Definition, StatedTopics
 from trawl_ros.errors import BagError
 from trawl_ros.foreign import open_file, short
 from trawl_ros.limits import METADATA_BYTES, METADATA_DEPTH, METADATA_VALUES, NAME
@@ -80,6 +80,26 @@ class BagMetadata(_Lenient):
             key = (entry.topic_metadata.name, entry.topic_metadata.type)
             found[key] = found.get(key, 0) + entry.message_count
         return {key: count for key, count in found.items() if count}
+
+    def stated(self) -> StatedTopics:
+        """Give what is said of each topic, for files in which it was lost."""
+        offered = self.offered()
+        said = [entry.topic_metadata for entry in self.topics_with_message_count]
+        topics = tuple(
+            (
+                topic.name,
+                Definition(
+                    topic.type,
+                    'cdr',
+                    '',
+                    b'',
+                    qos=offered.get(topic.name, ''),
+                    type_hash=topic.type_description_hash,
+                ),
+            )
+            for topic in said
+        )
+        return StatedTopics(topics, len(self.relative_file_paths))
 
     def offered(self) -> dict[str, str]:
         """Give by topic what its publishers offered, as text; left out where it makes no sense."""

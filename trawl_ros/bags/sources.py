@@ -13,7 +13,7 @@ from trawl_ros.bags.chunks import Damaged, inflate
 from trawl_ros.bags.database import Database
 from trawl_ros.bags.mcap_file import McapFile
 from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata
-from trawl_ros.bags.stored import Definition, Stored
+from trawl_ros.bags.stored import Definition, StatedTopics, Stored
 from trawl_ros.bags.unpacked import Unpacked
 from trawl_ros.errors import BagError
 from trawl_ros.foreign import one_line
@@ -246,7 +246,9 @@ def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: boo
     unpacked = Unpacked(files) if _mode(metadata) == 'file' else None
     if unpacked:
         files = unpacked.plain
-    source = Source([_open_file(file, report) for file in files], metadata, report, unpacked)
+    stated = metadata.stated()
+    opened = [_open_file(file, report, stated) for file in files]
+    source = Source(opened, metadata, report, unpacked)
     for disagreement in source.disagreements():
         if not lenient:
             raise BagError(
@@ -291,5 +293,5 @@ def _mode(metadata: BagMetadata | None) -> str:
     return '' if mode == 'none' else mode
 
 
-def _open_file(path: Path, report: Report) -> StorageFile:
-    return Database(path, report) if path.suffix == '.db3' else McapFile(path, report)
+def _open_file(path: Path, report: Report, stated: StatedTopics | None = None) -> StorageFile:
+    return Database(path, report) if path.suffix == '.db3' else McapFile(path, report, stated)

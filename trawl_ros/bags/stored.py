@@ -28,3 +28,14 @@ class Definition:
     text: bytes
     qos: str = ''
     type_hash: str = ''
+
+
+@dataclass(frozen=True)
+class StatedTopics:
+    """What ``metadata.yaml`` says of topics, in its order; definitions come without their text.
+
+    ``files`` is how many files these are in.
+    """
+
+    topics: tuple[tuple[str, Definition], ...]
+    files: int
