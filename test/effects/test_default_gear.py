@@ -21,8 +21,10 @@ def affected(gear, tmp_path_factory):
     return load_gear(path)
 
 
-def test_it_has_a_steady_state(affected):
-    assert steady_state(build_model(affected), 500.0, 2.1).observables.door_spread > 100.0
+def test_its_steady_state_has_the_effect(gear, affected):
+    without = steady_state(build_model(gear), 500.0, 2.1).observables
+    there = steady_state(build_model(affected), 500.0, 2.1).observables
+    assert there.warp_tension > 1.1 * without.warp_tension
 
 
 def test_it_is_towed_with_the_effect(gear, affected):

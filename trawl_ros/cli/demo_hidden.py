@@ -1,77 +1,109 @@
-"""The last act of the demo: something is hidden in a trial, found, named, and repaired."""
+"""Last act of the demo: tows in a current that the model lacks, diagnosed, named, and repaired.
 
+All of it goes through the commands that a user has, each a process of its own.
+"""
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.table import Table
 
-from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose
-from trawl_ros.diagnosis.words import headline, sentences
-from trawl_ros.diagnosis.writing import MODEL, write_diagnosis
+from trawl_ros.diagnosis.writing import MODEL
 from trawl_ros.errors import TrawlError
-from trawl_ros.files import write_json
-from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.studies.discrepancy.study import FINER
-from trawl_ros.studies.discrepancy.trials.making import make
-from trawl_ros.studies.discrepancy.trials.tows import FULL
-from trawl_ros.studies.discrepancy.trials.trial import Spec
+from trawl_ros.parallel import cores
 
-HIDDEN = Spec('inside', 0, ('current_shear',), 5.0, (1.0,), plant=1)
-"""A curved shear, which is not the form that the catalogue gives it."""
+BASELINE = 'baseline'
+TOWS = ('tow_1', 'tow_2', 'tow_3')
+"""Bags, each of the scenario of its name with ``hidden_`` before it."""
 
-SEED = 6
+FOUND = 'diagnosis'
+AGAIN = 'diagnosis_of_repaired'
+
+NO_DISCREPANCY, DISCREPANCY = 0, 10
+"""Exit codes of ``trawl diagnose``."""
+
+
+class Commands:
+    """Runs ``trawl`` commands in a folder; leaving the context ends those that still run.
+
+    Parameters
+    ----------
+    folder
+        Where they run; what they are given is relative to it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._running: list[subprocess.Popen[str]] = []
+
+    def run(self, *words: str, expected: int = 0) -> str:
+        """Run a command to its end, and give what it printed.
+
+        Raises
+        ------
+        TrawlError
+            With what the command said, if it ends with another code than expected.
+        """
+        process = subprocess.Popen(
+            [sys.executable, '-c', 'from trawl_ros.cli.main import main; main()', *words],
+            cwd=self._folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self._running.append(process)
+        out, said = process.communicate()
+        if process.returncode != expected:
+            raise TrawlError(
+                f'{self._folder}: trawl {" ".join(words)} ended with {process.returncode}, '
+                f'expected {expected}: {(said or out).strip()}'
+            )
+        return out
+
+    def __enter__(self) -> 'Commands':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for process in self._running:
+            if process.poll() is None:
+                process.terminate()
 
 
 def hidden_effect(folder: Path, console: Console) -> None:
-    """Hide an effect in a trial of a finer plant, diagnose it, and again with the repair.
+    """Tow in water that the model does not know, diagnose the bags, and again with the repair.
 
-    Writes the reports into ``folder``, and prints both verdicts.
+    Writes bags and reports into ``folder``, and prints the commands and what they find.
+
+    Raises
+    ------
+    TrawlError
+        If a command fails, the current is not found, or the repaired gear leaves something over.
     """
-    # The name of its gear is that of the plan, whatever the demo has towed.
-    gear = 'kaifuha'
-    with console.status('hiding an effect in a trial of a finer gear'):
-        key, made = make(HIDDEN, gear, FINER, SEED)
-    if made is None:
-        raise TrawlError(f'{folder}: no trial could be made: {key.why_not}')
-    tows = [f'tow {number + 1}' for number in range(len(FULL.tows))]
-    baseline = frozenset(range(FULL.baseline))
-    with console.status('diagnosing it') as status:
-        found = diagnose(FINER.model(gear), made.windows, tows, baseline, status.update)
-        write_diagnosis(found, (), folder)
-        again = None
-        if found.repair is not None:
-            repaired = load_gear(folder / MODEL)
-            again = diagnose(repaired, made.windows, tows, baseline, status.update)
-    write_json(folder / 'key.json', key.record(), indent=2)
-    _print(found, again)
-    click.echo(f'{folder}: report.html, {MODEL}, and key.json, which the diagnosis has not seen')
+    folder.mkdir(parents=True, exist_ok=True)
+    bags = (BASELINE, *TOWS)
+    diagnose = ('diagnose', *TOWS, '--baseline', BASELINE, '--out')
+    with ThreadPoolExecutor(cores()) as pool, Commands(folder) as commands:
+        towing = [_shown('tow', f'hidden_{bag}', '--out', bag) for bag in bags]
+        with console.status('towing in a current that the model does not know'):
+            try:
+                list(pool.map(lambda words: commands.run(*words), towing))
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+        with console.status('diagnosing'):
+            found = commands.run(*_shown(*diagnose, FOUND), expected=DISCREPANCY)
+        click.echo(found)
+        repaired = ('--gear', f'{FOUND}/{MODEL}')
+        with console.status('diagnosing with the repaired gear'):
+            again = commands.run(*_shown(*diagnose, AGAIN, *repaired), expected=NO_DISCREPANCY)
+        click.echo(again)
 
 
-def _print(found: Diagnosis, again: Diagnosis | None) -> None:
-    console = Console(highlight=False, soft_wrap=True)
-    hidden = HIDDEN.effects[0].replace('_', ' ')
-    console.print(
-        f'A trial of {len(FULL.tows)} tows in which {hidden} is hidden. {found.verdict}. '
-        f'{headline(found)}',
-        markup=False,
-    )
-    for sentence in sentences(found):
-        console.print(sentence, markup=False)
-    if found.shown is not None and found.shown.after is not None:
-        table = Table(title='Errors on tows that decided nothing, in those of the instruments')
-        table.add_column('', style='bold')
-        for heading in ('before', 'after'):
-            table.add_column(heading, justify='right')
-        before, after = found.shown.before, found.shown.after
-        for name, expected in before.expected.items():
-            if name in CHANNELS:
-                ratios = (part.rms[name] / expected for part in (before, after))
-                table.add_row(name.replace('_', ' '), *(f'{ratio:.2f}' for ratio in ratios))
-        console.print(table)
-    if again is not None:
-        console.print(
-            f'With the repaired gear, of the same tows: {again.verdict}. {headline(again)}',
-            markup=False,
-        )
+def _shown(*words: str) -> Sequence[str]:
+    click.echo(f'$ trawl {" ".join(words)}')
+    return words

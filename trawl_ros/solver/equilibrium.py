@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.effects.acting import acting
+from trawl_ros.effects.effect import Situation, sense
 from trawl_ros.errors import NoSteadyState
 from trawl_ros.model.board import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
@@ -150,12 +152,13 @@ def steady_state(
     Parameters
     ----------
     model
-        From `build_model`.
+        From `build_model`; effects of its gear file act, also those on what counters and log
+        show.
     warp_length
-        Unstretched length from the block to the board, m; one for both sides or (port,
-        starboard).
+        Unstretched length from the block to the board, m, as the counters show it; one for both
+        sides or (port, starboard).
     speed
-        Through the water at the surface, m/s.
+        Through the water at the surface, m/s, as the log shows it.
     heading
         ENU yaw, rad; matters when there is a current.
     start
@@ -169,7 +172,12 @@ def steady_state(
         There is none, it is unstable, the gear breaks the surface, or a board works outside
         the range of its law.
     """
-    port, starboard = np.broadcast_to(np.asarray(warp_length, float), 2)
+    port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
+    effects = acting(model.gear)
+    if effects:
+        at = Situation((port, starboard, float(speed)), heading, sense(heading))
+        port, starboard, speed = effects.towed(np.array(at.inputs), at)
+        model = effects.gear(model, at)
     point = OperatingPoint(float(port), float(starboard), float(speed), float(heading))
     return require_usable(model, find_equilibrium(model, point, start, near=near))
 
