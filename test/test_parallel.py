@@ -3,6 +3,7 @@
 import math
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -59,8 +60,22 @@ def test_a_worker_that_dies_names_its_task() -> None:
 
 def test_an_address_without_a_scheduler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr('trawl_ros.parallel.PATIENCE_S', 0.2)
-    with pytest.raises(TrawlError, match='no Dask scheduler answers there, expected'):
+    with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
         list(run_tasks(abs, {'first': 1}, scheduler='tcp://127.0.0.1:9'))
+
+
+@pytest.mark.parametrize('address', ['foo', 'file:///etc/passwd', 'tls://127.0.0.1:9'])
+def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
+    with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+        list(run_tasks(abs, {'first': 1}, scheduler=address))
+
+
+def test_one_that_listens_and_says_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('trawl_ros.parallel.PATIENCE_S', 0.2)
+    with socket.create_server((LOCALHOST, 0)) as silent:
+        address = f'tcp://{LOCALHOST}:{silent.getsockname()[1]}'
+        with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+            list(run_tasks(abs, {'first': 1}, scheduler=address))
 
 
 SLEEPERS = """

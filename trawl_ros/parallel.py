@@ -4,6 +4,7 @@ What a task gives depends on the task alone (randomness comes from a seed in it)
 are handed over by the task's place, so it does not matter where and when each one was run.
 """
 
+import asyncio
 import logging
 import os
 import signal
@@ -14,6 +15,8 @@ from typing import Any, TypeVar
 
 from dask import config
 from distributed import Client, KilledWorker, LocalCluster, as_completed
+from distributed.comm.core import connect
+from distributed.security import Security
 
 from trawl_ros.errors import TrawlError, sentence_of
 
@@ -21,7 +24,7 @@ TaskT = TypeVar('TaskT')
 ResultT = TypeVar('ResultT')
 
 LOCALHOST = '127.0.0.1'
-PATIENCE_S = 20.0
+PATIENCE_S = 5.0
 """How long a scheduler has to answer."""
 
 QUIET = {
@@ -52,7 +55,9 @@ def run_tasks(
         By name; tasks and results can be pickled.
     scheduler
         Address of a Dask cluster, such as ``tcp://10.0.0.5:8786``, whose workers have this package
-        installed. None runs processes of this machine, which listen on it alone.
+        installed; for ``tls://`` keys are those of Dask's configuration (``distributed.comm.tls``).
+        It runs code and sends pickles, so it must be trusted. None runs processes of this
+        machine, which listen on it alone.
     workers
         Number of these processes; as many as there are cores, or tasks if these are fewer, if None.
 
@@ -134,13 +139,27 @@ def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
 
 
 def _connected(address: str) -> Client:
+    log = logging.getLogger('distributed')
+    before = log.level
     try:
+        log.setLevel(logging.CRITICAL + 1)
+        # Dask's client tries for much longer, and waits for ever for one that says nothing.
+        asyncio.run(asyncio.wait_for(_shake_hands(address), PATIENCE_S + 1.0))
         return Client(address, timeout=PATIENCE_S, set_as_default=False)
-    except (OSError, ValueError) as reason:
+    except Exception as reason:
+        # What Dask raises here is of many kinds; none of them is this program's fault.
+        said = str(reason).splitlines()[:1] or [type(reason).__name__]
         raise TrawlError(
-            f'{address}: no Dask scheduler answers there, expected an address such as '
-            f'tcp://10.0.0.5:8786 ({reason})'
+            f'{address}: no Dask scheduler answers there ({said[0]}), expected an address such as '
+            'tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured with'
         ) from reason
+    finally:
+        log.setLevel(before)
+
+
+async def _shake_hands(address: str) -> None:
+    keys = Security().get_connection_args('client')
+    (await connect(address, timeout=PATIENCE_S, **keys)).abort()
 
 
 @contextmanager

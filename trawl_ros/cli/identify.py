@@ -48,7 +48,9 @@ TABLE_WIDTH = 100
 @click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
 @click.option(
     '--scheduler', help='Address of a Dask cluster that reads the bags, which it must see under '
-    'the same paths; without it, processes of this machine do.',
+    'the same paths; without it, processes of this machine do. It runs code and must be '
+    'trusted; tls:// takes '
+    "the keys of Dask's configuration.",
 )  # fmt: skip
 @click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
 def command(

@@ -1,8 +1,12 @@
 """The command ``trawl``: one file per sub-command, loaded when it is called."""
 
+import os
 import signal
+import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from io import TextIOWrapper
+from pathlib import Path
 from types import FrameType, MappingProxyType
 from typing import Any
 
@@ -61,7 +65,44 @@ class Trawl(click.Group):
         try:
             return super().invoke(ctx)
         except TrawlError as error:
-            raise click.ClickException(str(error)) from error
+            raise click.ClickException(printable(str(error))) from error
+
+    def main(self, *args: Any, **options: Any) -> Any:
+        """Run it all; what the system refuses ends with one sentence and exit code 1.
+
+        That is a full disk, also behind the standard output, a folder that is read-only or gone.
+        """
+        try:
+            return super().main(*args, **options)
+        except OSError as error:
+            click.echo(f'Error: {printable(refusal(error))}', err=True)
+            _forget_output()
+            sys.exit(1)
+
+
+def printable(text: str) -> str:
+    """Replace what a terminal would obey, since names come from foreign files; lines stay."""
+    return ''.join(sign if sign.isprintable() or sign == '\n' else '?' for sign in text)
+
+
+def refusal(error: OSError) -> str:
+    """Say what the system refused: the file, where it names one, and the reason."""
+    reason = error.strerror or str(error) or type(error).__name__
+    try:
+        Path.cwd()
+    except OSError:
+        return f'the working folder: {reason}, expected one that is still there'
+    return f'{error.filename}: {reason}' if error.filename else reason
+
+
+def _forget_output() -> None:
+    """Drop what the standard output did not take, which else would be tried again at the end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 @click.group(cls=Trawl, context_settings={'help_option_names': ['-h', '--help']})
@@ -76,6 +117,10 @@ def trawl() -> None:
 def main(args: Sequence[str] | None = None) -> None:
     """Run ``trawl``; being terminated ends it as orderly as Ctrl-C does."""
     signal.signal(signal.SIGTERM, _interrupt)
+    for stream in (sys.stdout, sys.stderr):
+        # Names of files may hold bytes that are no text.
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors='backslashreplace')
     trawl.main(args=args, prog_name='trawl')
 
 

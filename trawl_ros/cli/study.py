@@ -161,7 +161,11 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
 @click.option('--tows', default=IdentificationPlan.tows, show_default=True,
               type=click.IntRange(1, IdentificationPlan.tows), help='In a trial.')  # fmt: skip
-@click.option('--scheduler', help='Address of a Dask cluster that makes the trials.')
+@click.option(
+    '--scheduler',
+    help='Address of a Dask cluster that makes the trials. It runs code '
+    "and must be trusted; tls:// takes the keys of Dask's configuration.",
+)
 @click.option('--small', is_flag=True, help='Trials only: neither a planned trial, nor a replay, '
               'nor the node in real time.')  # fmt: skip
 @click.option('--live-s', default=IdentificationPlan.live_s, show_default=True,
@@ -283,7 +287,7 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
 @click.option('--scheduler', help='Address of a Dask cluster, which must see --out under the '
-              'same path.')  # fmt: skip
+              'same path. It runs code and must be trusted.')  # fmt: skip
 def discrepancy(
     out: Path,
     force: bool,
