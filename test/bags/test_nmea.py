@@ -289,3 +289,19 @@ def test_no_garbled_log_crashes(run, tmp_path):
         path = tmp_path / f'{number}.nmea'
         path.write_bytes(garbled)
         import_nmea(path, MAPPING, tmp_path / f'bag{number}')
+
+
+@pytest.mark.parametrize(
+    ('changed', 'why'),
+    [
+        (('5730.5000', '9959.4000'), 'latitude beyond -90 to 90 degrees'),
+        (('15215.2500', '100000.0000'), 'longitude beyond -180 to 180 degrees'),
+        ((',N,', ',X,'), 'hemisphere other than N or S and E or W'),
+        (('090.0', '720.0'), 'compass angle beyond -180 to 360 degrees'),
+        (('3.9', '9999.0'), 'speed beyond 0 to 60 m/s'),
+    ],
+)
+def test_what_cannot_be_is_left_out_by_its_reason(run, changed, why):
+    said, found = run([RMC, RMC.replace('103851', '103852').replace(*changed)])
+    assert [count for reason, count in said.left_out.items() if reason.endswith(why)] == [1]
+    assert sum(map(len, found.values())) == 3

@@ -17,6 +17,7 @@ from trawl_ros.bags.log_clock import ClockReader
 from trawl_ros.bags.log_layout import BadRow, Row, read_rows
 from trawl_ros.bags.log_mapping import Column, LogMapping, TopicMapping, Water, load_mapping
 from trawl_ros.bags.log_numbers import hemisphere_sign, parse_degrees, parse_number
+from trawl_ros.bags.possible import impossible, impossible_compass
 from trawl_ros.bags.units import UNITS
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.errors import LogError
@@ -193,11 +194,26 @@ class _Reading:
             if stamp is not None and (
                 sample := _sample(topic, stamp, readings, entry, self._mapping.water)
             ):
+                self._refuse_impossible(row, topic, entry, sample, readings)
                 self._last[topic] = readings
                 found.append(sample)
         if not found:
             self.left[NO_READING] += 1
         return found
+
+    def _refuse_impossible(
+        self, row: Row, topic: str, entry: TopicMapping, sample: Sample, readings: dict[str, float]
+    ) -> None:
+        angles = [value for field, value in readings.items() if field.startswith('compass_')]
+        why = impossible(sample) or next(
+            filter(None, (impossible_compass(math.degrees(angle)) for angle in angles)), None
+        )
+        if why:
+            columns = ' and '.join(repr(source.column) for source in entry.fields.values())
+            raise BadRow(
+                f'{row.path}: line {row.line}, column {columns}: found a {why} for {topic}',
+                f'column {columns}: {why}',
+            )
 
     def _stamp(self, row: Row, number: int) -> int | None:
         clock, reader = self._clocks[number]

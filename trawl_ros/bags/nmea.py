@@ -17,6 +17,7 @@ from trawl_ros.bags.log_clock import ClockReader
 from trawl_ros.bags.nmea_mapping import NmeaMapping, load_nmea_mapping
 from trawl_ros.bags.nmea_readings import NoReading, SampleAt, reading
 from trawl_ros.bags.nmea_times import SentenceTimes, spread
+from trawl_ros.bags.possible import impossible
 from trawl_ros.errors import LogError
 from trawl_ros.instruments.samples import Sample
 
@@ -178,9 +179,12 @@ class _Listening:
             entry = self._mapping.topics[topic]
             try:
                 sample = reading(topic, sentence, entry, self._mapping)
-            except (NoReading, AttributeError):
+                if why := impossible(sample(0)):
+                    raise NoReading(why)
+            except (NoReading, AttributeError) as reason:
                 # An attribute that is not there is a field that the sentence is too short for.
-                self.left[f'{kind} without a valid reading for {topic}'] += 1
+                why = f': {reason}' if isinstance(reason, NoReading) and reason.args else ''
+                self.left[f'{kind} without a valid reading for {topic}{why}'] += 1
                 continue
             moment = len(self._times.moments) - 1
             heard[topic].append(_Heard(talker, kind, stamp, moment, sample))

@@ -8,6 +8,7 @@ import numpy as np
 
 from trawl_ros.bags.import_log import compass_yaw, course_velocity
 from trawl_ros.bags.nmea_mapping import NmeaMapping, NmeaTopic
+from trawl_ros.bags.possible import impossible_compass
 from trawl_ros.bags.units import UNITS
 from trawl_ros.instruments.samples import (
     FixSample,
@@ -68,6 +69,8 @@ def _fix(sentence: Any, std: float) -> SampleAt:
             _valid(bool(set(sentence.posMode) - {'N'}))
         case _:
             _valid(sentence.status == 'A')
+    if sentence.NS not in ('N', 'S') or sentence.EW not in ('E', 'W'):
+        raise NoReading('hemisphere other than N or S and E or W')
     latitude, longitude = _number(sentence.lat), _number(sentence.lon)
     return lambda stamp: FixSample(stamp, latitude, longitude, std)
 
@@ -80,7 +83,7 @@ def _over_ground(sentence: Any) -> SampleAt:
         _valid(getattr(sentence, 'posMode', '') != 'N')
         speed, course = _speed(sentence.sogn, sentence.sogk), sentence.cogt
     # A receiver that stands still gives no course.
-    direction = 0.0 if speed == 0.0 and course == '' else math.radians(_number(course))
+    direction = 0.0 if speed == 0.0 and course == '' else math.radians(_compass(course))
     velocity = course_velocity(speed, direction)
     return lambda stamp: VelocitySample(stamp, 'ground', velocity, math.nan)
 
@@ -101,9 +104,9 @@ def _through_water(sentence: Any) -> SampleAt:
 def _heading(sentence: Any, std: float) -> SampleAt:
     if sentence.msgID == 'THS':
         _valid(sentence.mi != 'V')
-        true = _number(sentence.headt)
+        true = _compass(sentence.headt)
     else:
-        true = _number(sentence.headingT)
+        true = _compass(sentence.headingT)
     return lambda stamp: HeadingSample(stamp, compass_yaw(math.radians(true)), std)
 
 
@@ -132,6 +135,13 @@ def _number(value: Any) -> float:
     if not isinstance(value, int | float) or not math.isfinite(value):
         raise NoReading
     return float(value)
+
+
+def _compass(value: Any) -> float:
+    degrees = _number(value)
+    if why := impossible_compass(degrees):
+        raise NoReading(why)
+    return degrees
 
 
 def _valid(valid: bool) -> None:

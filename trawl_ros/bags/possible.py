@@ -1,0 +1,61 @@
+"""Bounds of what instruments of a ship can report; a value beyond them is no reading."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from trawl_ros.instruments.samples import (
+    AttitudeSample,
+    FixSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
+
+DEEPEST_M = 12_000.0
+FASTEST_M_S = 60.0
+MOST_PA = 1.3e8
+MOST_N = 1e7
+COMPASS_DEG = (-180.0, 360.0)
+"""Loggers write compass angles from 0 to 360 or from -180 to 180."""
+
+
+def impossible(sample: Sample) -> str | None:
+    """Say what a sample has that cannot be, with the bounds; None where all can be.
+
+    NaN stands for no reading, and passes.
+    """
+    for what, value, low, high, unit in _bounded(sample):
+        if value < low or value > high:
+            return f'{what} beyond {low:g} to {high:g} {unit}'
+    return None
+
+
+def impossible_compass(degrees: float) -> str | None:
+    """Say that a compass angle (degrees) cannot be; None where it can."""
+    low, high = COMPASS_DEG
+    return None if low <= degrees <= high else f'compass angle beyond {low:g} to {high:g} degrees'
+
+
+def _bounded(sample: Sample) -> Iterator[tuple[str, float, float, float, str]]:
+    match sample:
+        case FixSample():
+            yield 'latitude', sample.latitude, -90.0, 90.0, 'degrees'
+            yield 'longitude', sample.longitude, -180.0, 180.0, 'degrees'
+        case VelocitySample():
+            yield 'speed', float(np.linalg.norm(sample.velocity)), 0.0, FASTEST_M_S, 'm/s'
+        case RangeSample():
+            yield 'distance', sample.distance, -DEEPEST_M, DEEPEST_M, 'm'
+        case PressureSample():
+            yield 'pressure', sample.pressure, -MOST_PA, MOST_PA, 'Pa'
+        case AttitudeSample():
+            for what, value in (('pitch', sample.pitch), ('roll', sample.roll)):
+                yield what, math.degrees(value), -360.0, 360.0, 'degrees'
+        case WinchSample():
+            for length in sample.lengths:
+                yield 'warp length', length, -DEEPEST_M, DEEPEST_M, 'm'
+            for tension in sample.tensions:
+                yield 'tension', tension, -MOST_N, MOST_N, 'N'
