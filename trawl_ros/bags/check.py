@@ -6,6 +6,7 @@ is. A bag without findings is sound.
 
 from array import array
 from collections.abc import Collection
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
@@ -14,8 +15,10 @@ from rosbags.interfaces import Qos, QosDurability, QosReliability
 
 from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
+from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.errors import BagError
+from trawl_ros.errors import BagError, MessageError
+from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.topics import (
     COMMANDS,
@@ -71,8 +74,11 @@ def check_bag(
     wanted = _required(required, namespace)
     bag = Bag(path, namespace=namespace, lenient=True)
     records = {topic: _Record(stamp_reader(bag, topic)) for topic in bag.topics}
+    sources = {absolute(name, namespace): _Source(name) for name in SAMPLE_TOPICS}
     for message in bag.as_stored():
         records[message.topic].take(message)
+        if message.topic in sources:
+            sources[message.topic].take(bag, message)
     offered = bag.offered()
     topics = [
         _topic_check(topic, bag.topics[topic], record, _words(offered[topic]), namespace)
@@ -83,6 +89,11 @@ def check_bag(
         known = find_topic(seen.topic, namespace)
         if known is not None:
             findings += _against_contract(seen, known, offered[seen.topic], records[seen.topic])
+    findings += [
+        Finding('source', topic, f'has two sources, for {source.why}; expected one')
+        for topic, source in sources.items()
+        if source.why
+    ]
     there = {seen.topic for seen in topics if seen.count}
     for name in sorted(wanted - there):
         findings.append(Finding('missing', name, 'is required, and has no message'))
@@ -136,6 +147,22 @@ class _Record:
 
     def intervals(self) -> list[int]:
         return [after - before for before, after in zip(self.times, self.times[1:])]
+
+
+@dataclass
+class _Source:
+    """Whether one instrument gives the readings of a topic, and if not, why that is known."""
+
+    name: str
+    why: str = ''
+    watch: SourceWatch = field(default_factory=SourceWatch)
+
+    def take(self, bag: Bag, message: RawMessage) -> None:
+        # Once it is known nothing more is decoded.
+        with suppress(BagError, MessageError):
+            if not self.why:
+                sample = to_sample(self.name, bag.decode(message))
+                self.why = self.watch.take(message.channel, sample)
 
 
 def _required(names: Collection[str], namespace: str) -> set[str]:

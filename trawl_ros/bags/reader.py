@@ -24,23 +24,25 @@ from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 @dataclass(frozen=True)
 class RawMessage:
-    """A message as it lies in the bag: full topic name, type, times in ns, CDR bytes."""
+    """A message as it lies in the bag: full topic name, type, times in ns, CDR bytes, channel."""
 
     topic: str
     type: str
     log_time: int
     publish_time: int
     data: bytes
+    channel: int = 0
 
 
 @dataclass(frozen=True)
 class Received:
-    """A decoded message: full topic name, type, log time (ns), and the message."""
+    """A decoded message: full topic name, type, log time (ns), the message, and its channel."""
 
     topic: str
     type: str
     log_time: int
     message: Any
+    channel: int = 0
 
 
 class Bag:
@@ -144,7 +146,7 @@ class Bag:
             for topic, type_name, message in self._source.messages():
                 read += 1
                 times = message.log_time, message.publish_time
-                yield RawMessage(topic, type_name, *times, message.data)
+                yield RawMessage(topic, type_name, *times, message.data, message.channel_id)
         stated = self._source.stated_count
         if read and stated is not None and stated > read:
             self._report(f'{self.path}: {read} of {stated} messages could be read')
@@ -172,7 +174,7 @@ class Bag:
             except MessageError:
                 failed[raw.topic] += 1
                 continue
-            yield Received(raw.topic, raw.type, raw.log_time, message)
+            yield Received(raw.topic, raw.type, raw.log_time, message, raw.channel)
         for topic, count in failed.items():
             self._report(
                 f'{self.path}: {count} messages on {topic} are not a {self.topics[topic]} '

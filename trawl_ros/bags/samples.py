@@ -5,8 +5,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.reader import Bag
-from trawl_ros.errors import MessageError
+from trawl_ros.errors import BagError, MessageError
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.messages.topics import absolute
@@ -20,7 +21,8 @@ class SampleStream:
     """The samples of bags, in the order of log times within each.
 
     A bag that does not begin after the one before is moved in time to follow it: tows stay
-    apart, whatever their clocks said.
+    apart, whatever their clocks said. A bag with two sources on one topic is refused: which of
+    them is right cannot be known, and an estimate of both would be of neither.
 
     Attributes
     ----------
@@ -51,13 +53,20 @@ class SampleStream:
         names = {absolute(name, self.namespace): name for name in SAMPLE_TOPICS}
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
+        watches = {name: SourceWatch() for name in SAMPLE_TOPICS}
         for received in bag.messages(names):
             name = names[received.topic]
             try:
-                yield to_sample(name, received.message)
+                sample = to_sample(name, received.message)
             except MessageError as reason:
                 refused[name] += 1
                 reasons.setdefault(name, str(reason))
+                continue
+            if why := watches[name].take(received.channel, sample):
+                raise BagError(
+                    f'{path}: {received.topic} has two sources, for {why}; expected one instrument'
+                )
+            yield sample
         self.problems += bag.problems
         for name, count in refused.items():
             self.problems.append(
