@@ -5,10 +5,10 @@ from pathlib import Path
 from types import MappingProxyType
 
 from hostile.target import Files, Target
-from hostile.targets import yaml_files
+from hostile.targets import bag_files, yaml_files
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
-    {target.name: target for module in (yaml_files,) for target in module.TARGETS}
+    {target.name: target for module in (yaml_files, bag_files) for target in module.TARGETS}
 )
 
 CORPUS = Path(__file__).parents[1] / 'corpus'
