@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.errors import MessageError
+from trawl_ros.foreign import short
 from trawl_ros.instruments.samples import (
     AttitudeSample,
     FixSample,
@@ -54,7 +55,16 @@ def to_sample(topic: str, message: Any) -> Sample:
         raise MessageError(
             f'{topic}: not a topic with samples; expected one of {", ".join(SAMPLE_TOPICS)}'
         )
-    return _READERS[topic](topic, message)
+    try:
+        return _READERS[topic](topic, message)
+    except MessageError:
+        raise
+    # Of another type, or of this one as somebody else defines it.
+    except Exception as reason:
+        kind = getattr(message, '__msgtype__', type(message).__name__)
+        raise MessageError(
+            f'{topic}: a {kind} without what its readings are taken from ({short(reason)})'
+        ) from reason
 
 
 def door_truth(
