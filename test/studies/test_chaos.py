@@ -85,6 +85,10 @@ def test_no_estimate_is_well_where_the_reason_is_said():
     assert missed(tow(estimate={'windows': '0', 'reason': 'no steady window'})) == []
 
 
+def test_a_tow_on_which_no_recorder_was_cut_short_has_lost_nothing():
+    assert missed(tow(recordings=[Recording(Path('bag0'), messages=5)])) == []
+
+
 def test_the_worst_of_the_kills_counts():
     killed = [Recording(Path('bag'), 'killed', 9.0, lost, 100, 1) for lost in (0.2, 1.3, 0.1)]
     assert missed(tow(), kills=Kills(tuple(killed), 3.0)) == ['lost before the kill']

@@ -55,6 +55,8 @@ def _bags(recordings: Sequence[Recording]) -> list[Row]:
 
 
 def _lost(cut: Sequence[Recording], what: str) -> list[Row]:
+    if not cut:
+        return []
     lost = [recording.lost_s for recording in cut if not recording.problem]
     note = (
         f'wall time by which the first truth that is not in the bag was heard before, the worst of '
