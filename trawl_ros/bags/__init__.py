@@ -1,1 +1,1 @@
-"""Bags of messages: written, read (also damaged ones), and made from logs of others."""
+"""Bags of messages: writing, reading (also of damaged ones), and import of foreign logs."""

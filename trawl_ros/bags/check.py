@@ -1,4 +1,4 @@
-"""Whether a bag is sound: what is in it held against what it says of itself, and the contract.
+"""Check of a bag: its content against its own metadata, and against the topic contract.
 
 A finding is something that whoever uses the bag has to know of; a note only says what the bag
 is. A bag without findings is sound.
@@ -54,7 +54,7 @@ few seconds, a clock that is off takes more. A sweep of the sonar may take its t
 def check_bag(
     path: str | Path, *, namespace: str = NAMESPACE, required: Collection[str] = ()
 ) -> BagCheck:
-    """Read through a bag and hold it against what it says of itself, and the contract.
+    """Check a bag by reading through all of it.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def check_bag(
 
 @dataclass
 class _Record:
-    """Times of one topic's messages, as they come."""
+    """Record of one topic's times, in order of arrival."""
 
     stamp_in: StampReader | None
     times: 'array[int]' = field(default_factory=lambda: array('q'))
@@ -277,13 +277,13 @@ def _missing(there: set[str], namespace: str) -> dict[str, tuple[str, ...]]:
 
 
 def _words(profiles: tuple[Qos, ...]) -> str:
-    """Say in words what was offered, e.g. ``reliable, volatile, last 100``."""
+    """Describe the offered QoS, e.g. ``reliable, volatile, last 100``."""
     said = dict.fromkeys(describe_qos(profile) for profile in profiles)
     return '; '.join(said)
 
 
 def describe_qos(profile: Qos) -> str:
-    """Say a profile in words, e.g. ``reliable, volatile, last 100``."""
+    """Describe a QoS profile, e.g. ``reliable, volatile, last 100``."""
     words = [
         profile.reliability.name.lower().replace('_', ' '),
         profile.durability.name.lower().replace('_', ' '),

@@ -1,4 +1,4 @@
-"""What a check of a bag gives."""
+"""Records of a bag's check."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,7 @@ from trawl_ros.bags.sources import BagFacts
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing found: a word for scripts, the topic ('' for the bag), and a sentence."""
+    """Finding: a word for scripts, the topic ('' for the bag), and a sentence."""
 
     kind: str
     topic: str
@@ -17,7 +17,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class TopicCheck:
-    """What one topic of a bag looks like.
+    """Check of one topic of a bag.
 
     ``group`` is '' for a topic of somebody else. Rates are in Hz, log times in ns; ``lag_s`` is
     the least and greatest log time after the header's stamp. What cannot be told is None.
@@ -40,7 +40,7 @@ class TopicCheck:
 
 @dataclass(frozen=True)
 class BagCheck:
-    """All that was found out about a bag."""
+    """Check of a bag."""
 
     path: Path
     facts: BagFacts
@@ -54,5 +54,5 @@ class BagCheck:
 
     @property
     def sound(self) -> bool:
-        """Whether nothing was found."""
+        """True without any finding."""
         return not self.findings

@@ -1,4 +1,4 @@
-"""The summary at the end of an MCAP file, by which its chunks are found."""
+"""Summary section of an MCAP file, with the index of its chunks."""
 
 import zlib
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ _TAIL_BYTES = FOOTER_SIZE + len(MCAP0_MAGIC)
 
 @dataclass(frozen=True, order=True)
 class Piece:
-    """A chunk, or a message outside of chunks: earliest log time (ns), offset and length."""
+    """Chunk, or message outside of chunks: earliest log time (ns), offset and length."""
 
     start: int
     offset: int
@@ -24,7 +24,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Summary:
-    """What the end of a file says of it.
+    """Summary of a file.
 
     ``pieces`` is None where it does not say where all messages are, ``channels`` those that have
     messages. ``records`` are all of it; writers may have left any of them out.
@@ -38,7 +38,7 @@ class Summary:
 
 
 def is_finished(stream: BinaryIO, size: int) -> bool:
-    """Say whether a file ends as a finished one does."""
+    """True if a file ends as a finished one does."""
     stream.seek(max(size - len(MCAP0_MAGIC), 0))
     return size >= len(MCAP0_MAGIC) + _TAIL_BYTES and stream.read() == MCAP0_MAGIC
 

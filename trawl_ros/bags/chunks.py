@@ -1,4 +1,4 @@
-"""One chunk of an MCAP file, taken apart with care.
+"""Chunk of an MCAP file, decoded with checks of sizes and checksums.
 
 Sizes are checked before memory is taken, and checksums before anything is believed.
 """
@@ -41,7 +41,7 @@ _FRAME_START = 64
 
 
 class Damaged(ValueError):
-    """Bytes that are not what they say they are; the text says how."""
+    """Damaged bytes; the text says how."""
 
 
 def parse_records(data: bytes) -> Iterator[object]:
@@ -154,7 +154,7 @@ def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
 
 
 def _check_size(start: bytes, size: int) -> None:
-    """Compare with what the frame says; its reader takes one that is cut short for the end."""
+    """Compare with the size in the frame; its reader takes one that is cut short for the end."""
     stated = zstandard.get_frame_parameters(start).content_size
     if stated != zstandard.CONTENTSIZE_UNKNOWN and size < stated:
         raise Damaged(f'it should become {stated} bytes and becomes {size}')

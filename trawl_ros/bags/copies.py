@@ -1,4 +1,4 @@
-"""Chunks that stand in an MCAP file twice, as where a damaged disk gives a block once more."""
+"""Duplicate chunks of an MCAP file, as where a damaged disk gives a block once more."""
 
 import hashlib
 from collections import defaultdict

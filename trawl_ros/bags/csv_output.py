@@ -1,4 +1,4 @@
-"""CSV whose text no spreadsheet takes for a formula."""
+"""CSV output whose text no spreadsheet takes for a formula."""
 
 import csv
 import re
@@ -10,7 +10,7 @@ _NUMBER = re.compile(r'[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf|nan)', re.I
 
 
 class CsvOutput:
-    """Rows of a CSV file: comma, lines that end with LF.
+    """CSV writer of rows: comma, lines that end with LF.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class CsvOutput:
         self._writer.writerow([harmless(cell) for cell in cells])
 
     def write(self, line: str) -> None:
-        """Take a line as the module `csv` made it."""
+        """Write a line from the module `csv`."""
         self._stream.write(f'{line[:-2]}\n')
 
 

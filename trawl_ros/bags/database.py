@@ -1,4 +1,4 @@
-"""One SQLite file of rosbag2: the storage of Foxy to Humble by default, and of later ones by wish.
+"""SQLite file of rosbag2: the storage of Foxy to Humble by default, and of later ones by choice.
 
 A database is read as it lies there, without its ``metadata.yaml``: that is compared elsewhere.
 """
@@ -37,7 +37,7 @@ _READ = 'SELECT topic_id, timestamp, data FROM messages WHERE length(data) <= ? 
 
 
 class Database:
-    """An SQLite file of a bag, opened for reading.
+    """SQLite file of a bag, opened for reading.
 
     Parameters
     ----------
@@ -75,12 +75,12 @@ class Database:
 
     @property
     def indexed(self) -> bool:
-        """Whether messages can be found without going through the file: always so here."""
+        """True: messages are always found by the database's index."""
         return True
 
     @property
     def definitions(self) -> dict[str, Definition]:
-        """What is known of each topic's messages."""
+        """Definition of each topic's messages."""
         return dict(self._definitions)
 
     def types(self) -> set[tuple[str, str]]:
@@ -214,6 +214,6 @@ class Database:
 
 
 def _authorise(action: int, first: str | None, second: str | None, *_: str | None) -> int:
-    """Allow reading, and no other function than those that are asked for here."""
+    """Authorise reading, and no other function than those that are asked for here."""
     allowed = action in _ALLOWED or (action == sqlite3.SQLITE_FUNCTION and second in _FUNCTIONS)
     return sqlite3.SQLITE_OK if allowed else sqlite3.SQLITE_DENY

@@ -1,4 +1,4 @@
-"""Decoders by the definitions that a bag carries: they, not ours, say how its bytes lie.
+"""Decoders by the definitions that a bag carries: they, not ours, fix the layout of its bytes.
 
 A database of Foxy to Humble carries none. There the distribution is found by trying: a type that
 changed has another size, and a decoder takes nothing that is too short or too long.
@@ -28,14 +28,14 @@ _WITHOUT_DEFINITIONS = (Stores.ROS2_HUMBLE, Stores.ROS2_GALACTIC, Stores.ROS2_FO
 
 
 class BagTypes:
-    """The types of a bag as its definitions say them, or as ROS 2 does where there are none."""
+    """Types of a bag by its definitions, or by ROS 2's where there are none."""
 
     def __init__(self) -> None:
         self._stores: dict[tuple[str, str, bytes], Typestore | BagError] = {}
         self._fields = 0
 
     def decoder(self, topic: str, definition: Definition) -> Decoder:
-        """Make what turns the bytes of a topic into messages.
+        """Make the decoder of a topic's bytes.
 
         Raises
         ------
@@ -112,13 +112,13 @@ def _text(name: str) -> bytes:
 
 @cache
 def _most_bytes(name: str, store: Typestore = STORE) -> float:
-    """How large a message may be, so that it turns into no more objects than it may."""
+    """Largest size of a message that stays within the limit of objects."""
     density = objects_per_byte(store.fielddefs, name)
     return MESSAGE_OBJECTS.value / density if density else math.inf
 
 
 class _Trying:
-    """Decodes by the first distribution whose definition fits, and stays with that."""
+    """Decoder by the first distribution whose definition fits, which it keeps."""
 
     def __init__(self, name: str, store: Typestore) -> None:
         self._stores = [store]

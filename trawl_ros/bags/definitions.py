@@ -80,7 +80,7 @@ def make_store(types: Typesdict) -> Typestore:
 
 
 def objects_per_byte(types: Typesdict, name: str) -> float:
-    """Give how many Python objects a message of a type may turn into, at most, per byte."""
+    """Bound of the Python objects per byte that a message of a type may become."""
     return _Sizes(types).density(name)
 
 
@@ -118,14 +118,14 @@ class _IdlParser(IDLParser):
 
 
 class _Sizes:
-    """Sizes of types, of which some hold others."""
+    """Sizes of types, nested ones included."""
 
     def __init__(self, types: Typesdict) -> None:
         self._types = types
         self._known: dict[str, tuple[int, int]] = {}
 
     def check(self, root: str) -> None:
-        """Refuse what cannot be made a codec of."""
+        """Refuse a type of which no codec can be made."""
         count = sum(len(fields) for _, fields in self._types.values())
         if count > DEFINITION_FIELDS.value:
             raise _beyond(f'{count} fields', DEFINITION_FIELDS)
@@ -144,7 +144,7 @@ class _Sizes:
             raise _beyond(f'messages of {size} bytes', CHUNK_BYTES)
 
     def density(self, root: str) -> float:
-        """Give the most objects per byte in sequences of objects, in all that a type holds."""
+        """Largest number of objects per byte in sequences of objects, in all of a type."""
         self._size(root, 0)
         most = 0.0
         for name in self._known:
@@ -162,7 +162,7 @@ class _Sizes:
         return [const[0] for const in consts] + [field for field, _ in fields]
 
     def _own(self, name: str) -> int:
-        """How often code stands for the elements of a type's arrays."""
+        """Number of times that code is repeated for the elements of a type's arrays."""
         return sum(
             count
             for kind, inner, what, count in map(_taken_apart, self._fields(name))
@@ -173,7 +173,7 @@ class _Sizes:
         return [field for _, field in self._types[name][1]]
 
     def _size(self, name: str, depth: int) -> tuple[int, int]:
-        """Bytes that a message has at least, and values in it without those in sequences."""
+        """Least size of a message in bytes, and values in it without those in sequences."""
         if name in self._known:
             return self._known[name]
         if depth > DEFINITION_DEPTH.value:
@@ -200,7 +200,7 @@ class _Sizes:
 
 
 def _taken_apart(field: FieldDesc) -> tuple[Nodetype, Nodetype, Any, int]:
-    """Give kind of a field, then kind and type of what it consists of, and how many."""
+    """Split a field: its kind, then kind and type of its elements, and their number."""
     kind: Any
     detail: Any
     kind, detail = field
@@ -211,7 +211,7 @@ def _taken_apart(field: FieldDesc) -> tuple[Nodetype, Nodetype, Any, int]:
 
 
 def _is_plain(kind: Nodetype, what: Any) -> bool:
-    """Whether an array of such elements is one array of numbers."""
+    """True if an array of such elements is one array of numbers."""
     return kind is Nodetype.BASE and what[0] != 'string'
 
 

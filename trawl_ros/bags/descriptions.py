@@ -1,4 +1,4 @@
-"""Schemas and channels of an MCAP file: which topic and type a channel's messages have."""
+"""Schemas and channels of an MCAP file: topic and type of each channel's messages."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -25,7 +25,7 @@ _TAIL_BYTES = 16 << 20
 
 
 class Descriptions:
-    """What is known of channels by their numbers; of two that differ the first one counts."""
+    """Descriptions of channels by their numbers; of two that differ the first one counts."""
 
     def __init__(self) -> None:
         self._schemas: dict[int, Schema] = {}
@@ -34,7 +34,7 @@ class Descriptions:
         self._added: dict[int, tuple[str, Definition]] = {}
 
     def learn(self, records: Iterable[object]) -> None:
-        """Take schemas and channels from among records."""
+        """Register schemas and channels among records."""
         for record in records:
             if isinstance(record, Schema):
                 self._schemas.setdefault(record.id, record)
@@ -57,7 +57,7 @@ class Descriptions:
         return self._made.get(number)
 
     def lacking(self, numbers: Collection[int]) -> list[int]:
-        """Give those channels that are not described, or whose type is not."""
+        """Return those channels that are not described, or whose type is not."""
         return [number for number in sorted(numbers) if not self._describes(number)]
 
     def all(self) -> dict[int, tuple[str, Definition]]:
@@ -76,7 +76,7 @@ class Descriptions:
 
 
 def definition(channel: Channel, schema: Schema | None) -> Definition:
-    """Say of a channel what is said of messages whatever the storage."""
+    """Definition of a channel, in the form common to all storages."""
     return Definition(
         type=schema.name if schema else '',
         message_encoding=channel.message_encoding,

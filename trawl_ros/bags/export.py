@@ -1,4 +1,4 @@
-"""Bags as CSV: one file per topic, for spreadsheets and data frames."""
+"""CSV export of bags: one file per topic, for spreadsheets and data frames."""
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -29,7 +29,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class ExportedTopic:
-    """What became of a topic: its file (None if none), rows, and what is not in it, and why."""
+    """Exported topic: its file (None if none), rows, and the fields left out, with reasons."""
 
     topic: str
     file: Path | None
@@ -39,7 +39,7 @@ class ExportedTopic:
 
 @dataclass(frozen=True)
 class Exported:
-    """What an export made of a bag, and what was wrong with the bag."""
+    """Result of an export, and the problems of the bag."""
 
     topics: tuple[ExportedTopic, ...]
     problems: tuple[str, ...]
@@ -108,7 +108,7 @@ def export_bag(
 
 @dataclass(frozen=True)
 class _Table:
-    """How a topic becomes a file: its layout, columns, and those of 32 bits."""
+    """Table of a topic's file: its layout, columns, and those of 32 bits."""
 
     file_name: str
     layout: Layout
@@ -139,7 +139,7 @@ def _wanted(bag: Bag, names: Collection[str], namespace: str) -> list[str]:
 
 
 def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]:
-    """Find the columns of each topic: of those that vary, by looking at all of their messages."""
+    """Return the columns of each topic: of those that vary, by reading all of their messages."""
     layouts: dict[str, Layout] = {}
     known: dict[str, tuple[bool, frozenset[str]]] = {}
     for topic in wanted:
@@ -167,7 +167,7 @@ def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]
 
 
 def _file_names(topics: Collection[str]) -> dict[str, str]:
-    """Name the files after the topics; no name leads anywhere, and none stands twice."""
+    """Name the files after the topics, safe as paths and unique."""
     names: dict[str, str] = {}
     for topic in sorted(topics):
         base = re.sub(r'[^A-Za-z0-9_]+', '.', topic).strip('.') or 'topic'

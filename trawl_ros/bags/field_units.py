@@ -1,4 +1,4 @@
-"""Units of the fields of messages, for those who read them as columns."""
+"""Units of the fields of messages, for columns of tables."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Messages as flat rows: one column per number or text, named by the path of its field.
+"""Flattening of messages into rows: one column per number or text, named by the path of its field.
 
 A time gives two columns, ``_s`` for reading and plotting and ``_ns`` for exactness; the elements
 of an array are counted from 0 in brackets: ``position[1]``.
@@ -26,7 +26,7 @@ Place = tuple[int, ...]
 
 @dataclass(frozen=True, order=True)
 class Column:
-    """A column: where it stands, its name, and its field's path without element numbers.
+    """Column: its steps, its name, and its field's path without element numbers.
 
     ``steps`` are the names and numbers by which a message's value is reached.
     """
@@ -52,7 +52,7 @@ class Column:
 
 @dataclass
 class Layout:
-    """The columns of a topic, and the arrays that do not go into columns.
+    """Layout of a topic's table: its columns, and the arrays that do not go into columns.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Layout:
     left_out: dict[str, str] = field(default_factory=dict)
 
     def learn(self, message: Any) -> None:
-        """Take up the columns of a message; an array too long for them stays out for good."""
+        """Add the columns of a message; an array too long for them stays out for good."""
         self.columns.update(self._walk(message, (), '', '', ()))
         if self.left_out:
             self.columns = {column for column in self.columns if not self._is_out(column.path)}
@@ -155,7 +155,7 @@ def singles(store: Typestore, type_name: str) -> frozenset[str]:
 
 
 def varies(store: Typestore, type_name: str) -> bool:
-    """Whether messages of a type may differ in their columns, as sequences make them."""
+    """True if messages of a type may differ in their columns, as sequences make them."""
     return any(base == 'sequence' for _, base in _leaves(store, type_name, ''))
 
 

@@ -1,4 +1,4 @@
-"""When the content of a stored message was so: the stamp of its header, by the bag's own types."""
+"""Header stamps of stored messages, read by the bag's own types."""
 
 import struct
 from collections.abc import Callable
@@ -15,7 +15,7 @@ _TIMES = {0: struct.Struct('>iI'), 1: struct.Struct('<iI')}
 
 
 def stamp_reader(bag: Bag, topic: str) -> StampReader | None:
-    """Make what reads the stamp (ns) off a topic's bytes without decoding the rest.
+    """Make the reader of the stamp (ns) in a topic's bytes, without decoding the rest.
 
     Returns
     -------

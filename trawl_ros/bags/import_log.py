@@ -1,4 +1,4 @@
-"""CSV logs of others become bags, by a mapping from columns to topics.
+"""Import of foreign CSV logs as bags, by a mapping from columns to topics.
 
 Everything is read before anything is written: a log with a mistake in its last line leaves no
 half a bag.
@@ -44,7 +44,7 @@ NO_READING = 'no reading, or none that is new'
 
 @dataclass(frozen=True)
 class Imported:
-    """What an import made of a log.
+    """Result of an import.
 
     ``rows`` were read, ``counts`` are messages by full topic name, ``left_out`` says how many
     rows gave none, by reason.
@@ -101,7 +101,7 @@ def write_samples(
     bag_path: str | Path,
     told: Callable[[], tuple[int, Mapping[str, int]]],
 ) -> Imported:
-    """Write what a log says as a bag, in the order of time.
+    """Write the samples of a log as a bag, in the order of time.
 
     Parameters
     ----------
@@ -136,18 +136,18 @@ def write_samples(
 
 
 def compass_yaw(compass: float) -> float:
-    """Turn an angle clockwise from north into one counter-clockwise from east, -π to π."""
+    """Convert an angle clockwise from north into one counter-clockwise from east, -π to π."""
     return math.remainder(math.pi / 2 - compass, 2 * math.pi)
 
 
 def course_velocity(speed: float, course: float) -> np.ndarray:
-    """Turn a speed and a compass course (rad) into a velocity (3,) in ``map``."""
+    """Convert a speed and a compass course (rad) into a velocity (3,) in ``map``."""
     yaw = compass_yaw(course)
     return speed * np.array([math.cos(yaw), math.sin(yaw), 0.0])
 
 
 class _Reading:
-    """Goes through a log once, and counts."""
+    """Single pass through a log, with counts."""
 
     def __init__(self, path: Path, mapping: LogMapping, leave_out: bool) -> None:
         self.rows = 0
@@ -261,7 +261,7 @@ def _number(text: str) -> float | None:
 
 
 def listed(left_out: Mapping[str, int]) -> str:
-    """Say in a line what was left out, and why."""
+    """List in a line the rows left out, and why."""
     return '; '.join(f'{count}: {reason}' for reason, count in left_out.items())
 
 
@@ -272,7 +272,7 @@ def _sample(
     entry: TopicMapping,
     water: Water | None,
 ) -> Sample | None:
-    """Put together the sample of a topic; None if there is no reading for it."""
+    """Assemble the sample of a topic; None if there is no reading for it."""
     missing = [math.isnan(value) for value in readings.values()]
     std = 0.0 if entry.std is None else entry.std.si()
     if all(missing) if topic == 'winch/joint_states' else any(missing):

@@ -1,4 +1,4 @@
-"""Times as logs have them: which columns say when a row was taken, and how to read that."""
+"""Time columns of logs, and the formats by which they are read."""
 
 import re
 from collections.abc import Mapping
@@ -52,7 +52,7 @@ _DATED = ('%Y', '%y', '%j', '%d', '%x', '%c')
 
 
 class Clock(Record):
-    """When a row was taken: its columns, joined by one blank, read by a format.
+    """Clock of a log: the time columns of a row, joined by one blank, read by a format.
 
     ``format`` is one of strptime's, or one of `WORDS`. Times without a zone of their own are
     ``utc_offset_h`` ahead of UTC, or in ``zone``, an IANA name. ``date`` is the day of the first
@@ -107,7 +107,7 @@ class Clock(Record):
 
 
 class ClockReader:
-    """Reads the times of a log in the order of its rows.
+    """Reader of the times of a log in the order of its rows.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class ClockReader:
         self._start = self._iso(clock.start) if clock.start else 0
 
     def read(self, text: str) -> int:
-        """Turn what stands in the columns into a stamp, ns since 1970-01-01 UTC.
+        """Convert the text of the columns into a stamp, ns since 1970-01-01 UTC.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Tables as loggers write them: separators, decimal commas, lines above the names, long tables."""
+"""Layout of loggers' tables: separators, decimal commas, lines above the names, long tables."""
 
 import codecs
 import csv
@@ -23,14 +23,14 @@ _NAMED = {'tab': '\t'}
 
 
 class Long(Record):
-    """A table with one reading per row: columns that say which it is, and its value."""
+    """Long table with one reading per row: columns of its quantity and its value."""
 
     name: str
     value: str
 
 
 class Layout(Record):
-    """How a log lies in its file.
+    """Layout of a log in its file.
 
     ``separator`` is one character, ``tab``, or ``blanks`` for any number of them. ``skip_lines``
     are above the line of column names, ``skip_after_names`` (such as a line of units) below it.
@@ -66,7 +66,7 @@ class Layout(Record):
 
 
 class BadRow(LogError):
-    """A row that cannot be used; ``reason`` says why, without its line."""
+    """Row that cannot be used; ``reason`` says why, without its line."""
 
     def __init__(self, message: str, reason: str) -> None:
         super().__init__(message)
@@ -75,7 +75,7 @@ class BadRow(LogError):
 
 @dataclass(frozen=True)
 class Row:
-    """A row of a log: its file, line, and cells by column name."""
+    """Row of a log: its file, line, and cells by column name."""
 
     path: Path
     line: int
@@ -139,7 +139,7 @@ def read_rows(
 
 
 class _Lines:
-    """The lines of a log, bounded in length, without comments; knows where it stands."""
+    """Lines of a log, bounded in length, without comments, with their numbers."""
 
     def __init__(self, path: Path, stream: TextIO, layout: Layout) -> None:
         self.number = 0
@@ -217,7 +217,7 @@ def _joined(
     needed: Mapping[str, str],
     keys: Sequence[str],
 ) -> Iterator[Row | BadRow]:
-    """Put the readings of one instant, which follow each other, into one row."""
+    """Join the readings of one instant, which follow each other, into one row."""
     seen: set[str] = set()
     instant: dict[str, str] = {}
     cells: dict[str, str] = {}

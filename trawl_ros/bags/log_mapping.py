@@ -1,4 +1,4 @@
-"""Mappings: YAML files that say which column of a CSV log is which reading, in which unit."""
+"""Mapping files of CSV logs: column and unit of each reading."""
 
 from pathlib import Path
 from typing import Annotated
@@ -63,7 +63,7 @@ _TOGETHER = (
 
 
 class Quantity(Record):
-    """A number with its unit."""
+    """Quantity: a number with its unit."""
 
     value: float
     unit: str
@@ -74,7 +74,7 @@ class Quantity(Record):
 
 
 class Column(Record):
-    """Where a reading comes from: (cell x scale + offset) in the unit.
+    """Column of a reading: (cell x scale + offset) in the unit.
 
     ``hemisphere`` names a column with N, S, E or W for a latitude or longitude.
     """
@@ -86,28 +86,28 @@ class Column(Record):
     hemisphere: str | None = None
 
     def si(self, cell: float) -> float:
-        """Turn what stands in the cell into SI units."""
+        """Convert the cell into SI units."""
         return (cell * self.scale + self.offset) * UNITS[self.unit][1]
 
 
 class Water(Record):
-    """By which depths become absolute pressures: surface + density x gravity x depth."""
+    """Conversion of depths into absolute pressures: surface + density x gravity x depth."""
 
     density_kg_m3: Annotated[float, Field(gt=900, lt=1100)]
     gravity_m_s2: Annotated[float, Field(gt=9.7, lt=9.9)] = 9.80665
     surface_pressure_pa: Annotated[float, Field(gt=8e4, lt=1.2e5)] = 101_325.0
 
     def pressure(self, depth: float) -> float:
-        """Turn a depth (m) into an absolute pressure (Pa)."""
+        """Convert a depth (m) into an absolute pressure (Pa)."""
         return self.surface_pressure_pa + self.depth_to_difference(depth)
 
     def depth_to_difference(self, depth: float) -> float:
-        """Turn a difference in depth (m) into one in pressure (Pa)."""
+        """Convert a difference in depth (m) into one in pressure (Pa)."""
         return self.density_kg_m3 * self.gravity_m_s2 * depth
 
 
 class TopicMapping(Record):
-    """The readings of one topic by field, and what its messages state beside them.
+    """Mapping of one topic: its readings by field, and the errors its messages state.
 
     ``clock`` is the topic's own where its times stand in columns of their own. With
     ``changes_only`` a reading that is the same as in the row before gives no message: many
@@ -123,7 +123,7 @@ class TopicMapping(Record):
 
 
 class LogMapping(Record):
-    """A whole mapping.
+    """Mapping of a whole log.
 
     ``only`` gives by column the texts of rows that are used; ``missing`` the texts, in lower case,
     that stand for no reading, where ``-999`` also stands for ``-999.00``.
@@ -141,7 +141,7 @@ class LogMapping(Record):
         return [self.clock, *(entry.clock for entry in self.topics.values() if entry.clock)]
 
     def needed(self) -> dict[str, str]:
-        """Name the columns that must be there, each with what wants it."""
+        """Name the columns that must be there, each with the key that needs it."""
         wanted: dict[str, str] = {}
         for topic, entry in self.topics.items():
             for field in entry.fields.values():

@@ -1,4 +1,4 @@
-"""Numbers as they stand in cells: decimal commas, positions in degrees and minutes."""
+"""Number formats of cells: decimal commas, positions in degrees and minutes."""
 
 import math
 import re
@@ -63,7 +63,7 @@ def parse_degrees(text: str, decimal: Literal['.', ','] = '.') -> float:
 
 
 def hemisphere_sign(text: str) -> float:
-    """Turn N, S, E or W into a sign.
+    """Sign of N, S, E or W.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""One MCAP file: what is in it and where, also when it was cut short or damaged.
+"""MCAP file opened for reading, also when it was cut short or damaged.
 
 A sound file is read by the index at its end. Where that is missing or wrong, the file is gone
 through record by record as far as it goes.
@@ -44,7 +44,7 @@ _MESSAGE_HEAD = struct.Struct('<HIQ')
 
 
 class McapFile:
-    """An MCAP file opened for reading.
+    """MCAP file opened for reading.
 
     Parameters
     ----------
@@ -100,12 +100,12 @@ class McapFile:
 
     @property
     def damaged_chunks(self) -> int:
-        """How many chunks failed so far; complete once all messages were read."""
+        """Number of damaged chunks so far; complete once all messages were read."""
         return len(self._damaged)
 
     @property
     def definitions(self) -> dict[str, Definition]:
-        """What is known of each topic's messages; the first channel of a topic counts."""
+        """Definition of each topic's messages; the first channel of a topic counts."""
         found: dict[str, Definition] = {}
         for topic, definition in self._known.all().values():
             found.setdefault(topic, definition)
@@ -280,7 +280,7 @@ class McapFile:
             )
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
-        """Give opcode, offset and length of each record before the end of data."""
+        """Yield opcode, offset and length of each record before the end of data."""
         for found in walk(stream, self._size, self._step_over):
             if found[0] != Opcode.DATA_END:
                 yield found

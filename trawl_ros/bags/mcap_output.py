@@ -1,4 +1,4 @@
-"""One MCAP file as it is written: chunks with checksums, channels, and an index at its end.
+"""MCAP file for writing: chunks with checksums, channels, and an index at its end.
 
 Messages cannot be read without the descriptions of their channels. These stand in a later chunk
 again, so that no two damages, small as they may be, cost a whole file.
@@ -23,7 +23,7 @@ LIBRARY = 'trawl_ros'
 
 
 class McapOutput:
-    """A new MCAP file; a reader finds its header there at once.
+    """New MCAP file; a reader finds its header there at once.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class McapOutput:
         return number
 
     def _repeat_descriptions(self) -> None:
-        """Begin a chunk with what chunks before it have described, where that is due.
+        """Begin a chunk with the descriptions in earlier chunks, where that is due.
 
         It is in the chunk after one that described something new, and `REPEAT_BYTES` later.
         """

@@ -52,7 +52,7 @@ class _TopicCount(_Lenient):
 
 
 class BagMetadata(_Lenient):
-    """What a reader needs of ``rosbag2_bagfile_information``."""
+    """Content of ``rosbag2_bagfile_information`` that a reader needs."""
 
     version: int
     storage_identifier: _Name
@@ -68,7 +68,7 @@ class BagMetadata(_Lenient):
 
     @property
     def span(self) -> tuple[int, int] | None:
-        """First and last log time (ns) as stated; None where that is not done."""
+        """First and last log time (ns) as stated; None where they are not."""
         start = self.starting_time.get('nanoseconds_since_epoch')
         lasts = self.duration.get('nanoseconds')
         return None if start is None or lasts is None else (start, start + lasts)
@@ -102,7 +102,7 @@ class BagMetadata(_Lenient):
         return StatedTopics(topics, len(self.relative_file_paths))
 
     def offered(self) -> dict[str, str]:
-        """Give by topic what its publishers offered, as text; left out where it makes no sense."""
+        """Offered QoS by topic, as text; left out where it is not valid."""
         found = {}
         for entry in self.topics_with_message_count:
             topic = entry.topic_metadata
@@ -114,7 +114,7 @@ class BagMetadata(_Lenient):
 
 @dataclass(frozen=True)
 class FileEntry:
-    """A file of a bag: name, messages, first and last log time (ns; None without messages)."""
+    """File of a bag: name, messages, first and last log time (ns; None without messages)."""
 
     name: str
     count: int
@@ -127,7 +127,7 @@ class FileEntry:
 
 @dataclass(frozen=True)
 class TopicEntry:
-    """A topic of a bag: full name, what the bag says of it, messages."""
+    """Topic of a bag: full name, its definition, messages."""
 
     name: str
     said: Definition
@@ -181,7 +181,7 @@ def dump_metadata(
 
 
 def _extent(files: Sequence[FileEntry]) -> dict[str, Any]:
-    """When files begin, how long they last, and how many messages are in them."""
+    """Start, duration and message count of files."""
     spans = [file.span for file in files if file.span]
     start = min((first for first, _ in spans), default=_NEVER)
     end = max((last for _, last in spans), default=_NEVER)
@@ -210,7 +210,7 @@ def load_metadata(path: Path) -> BagMetadata:
 
 
 def read_information(path: Path) -> Any:
-    """Read what stands under ``rosbag2_bagfile_information``, as it is.
+    """Read the node ``rosbag2_bagfile_information``, unchecked.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Logs of NMEA 0183 become bags: what the ship's own sensors say on their serial lines."""
+"""Import of NMEA 0183 logs as bags: sentences of the ship's sensors on serial lines."""
 
 import re
 from collections import Counter, defaultdict
@@ -66,7 +66,7 @@ def import_nmea(
 
 @dataclass(frozen=True)
 class _Heard:
-    """A reading: of whom, its own stamp (ns) or None, and the number of the moment before it."""
+    """Reading: its talker, its own stamp (ns) or None, and the number of the moment before it."""
 
     talker: str
     kind: str
@@ -76,7 +76,7 @@ class _Heard:
 
 
 class _Listening:
-    """Goes through a log once, and counts."""
+    """Single pass through a log, with counts."""
 
     def __init__(self, path: Path, mapping: NmeaMapping, leave_out: bool) -> None:
         self.lines = 0
@@ -119,7 +119,7 @@ class _Listening:
         return [sample for topic, found in heard.items() for sample in self._chosen(topic, found)]
 
     def _lines(self) -> Iterator[tuple[str, bytes]]:
-        """Give what stands in front of each sentence, and the sentence."""
+        """Yield the text in front of each sentence, and the sentence."""
         try:
             with self._path.open('rb') as stream:
                 while line := stream.readline(MAX_LINE):
@@ -190,7 +190,7 @@ class _Listening:
             heard[topic].append(_Heard(talker, kind, stamp, moment, sample))
 
     def _chosen(self, topic: str, found: list[_Heard]) -> list[Sample]:
-        """Keep one kind of sentence from one talker, and give each its time."""
+        """Select one kind of sentence from one talker, and give each its time."""
         entry = self._mapping.topics[topic]
         there = {one.kind for one in found}
         kind = next(name for name in entry.sentences if name in there)

@@ -1,4 +1,4 @@
-"""Mappings for NMEA 0183: which sentences tell which topic, and where their times come from."""
+"""Mapping files of NMEA 0183 logs: sentences of each topic, and source of their times."""
 
 from datetime import date
 from pathlib import Path
@@ -25,13 +25,13 @@ SENTENCES = {
 
 
 class RecorderClock(Clock):
-    """How the recorder writes the time in front of each sentence."""
+    """Clock of the recorder, which writes a time in front of each sentence."""
 
     columns: tuple[str, ...] = ('time in front of the sentence',)
 
 
 class NmeaTopic(Record):
-    """How a topic comes about.
+    """Mapping of one topic.
 
     Of ``sentences`` the first one that the log has is used, so that a position that comes in
     three kinds of sentence gives one message. ``talkers`` (such as ``HE`` for a gyro) says who is
@@ -46,7 +46,7 @@ class NmeaTopic(Record):
 
 
 class NmeaMapping(Record):
-    """A whole mapping.
+    """Mapping of a whole log.
 
     ``time`` says whether stamps are those in the sentences (the date from RMC or ZDA, or
     ``date`` for the first of them) or those that a recorder put in front. ``keel_depth`` is how
@@ -103,7 +103,7 @@ class _File(Record):
 
 
 def is_nmea(path: str | Path) -> bool:
-    """Whether a mapping is one for NMEA 0183.
+    """True if a mapping is one for NMEA 0183.
 
     Raises
     ------

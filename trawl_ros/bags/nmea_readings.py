@@ -1,4 +1,4 @@
-"""What a sentence of NMEA 0183 says about the ship, as a sample without its time."""
+"""Conversion of NMEA 0183 sentences into samples without their times."""
 
 import math
 from collections.abc import Callable
@@ -26,11 +26,11 @@ SampleAt = Callable[[int], Sample]
 
 
 class NoReading(ValueError):
-    """A sentence that says of itself, or shows by empty fields, that it has no valid reading."""
+    """Sentence without a valid reading, by its status or by empty fields."""
 
 
 def reading(topic: str, sentence: Any, entry: NmeaTopic, mapping: NmeaMapping) -> SampleAt:
-    """Turn a parsed sentence into the sample of a topic.
+    """Convert a parsed sentence into the sample of a topic.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""When a sentence of NMEA 0183 was so, where only some of them say it.
+"""Times of NMEA 0183 sentences, of which only some state one.
 
 A sentence with a time has that; the date comes from RMC or ZDA. One without has the time said
 last; where the same comes several times before the next time is said, as headings do, they
@@ -18,7 +18,7 @@ _DAY = timedelta(days=1)
 
 
 class SentenceTimes:
-    """Follows the times that sentences say.
+    """Clock that follows the times in sentences.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class SentenceTimes:
         """Stamps (ns) in the order in which they were said, each once."""
 
     def hear(self, sentence: Any) -> int | None:
-        """Take up a sentence; give its own stamp (ns), None if it says none."""
+        """Update by a sentence; return its own stamp (ns), None if it has none."""
         said = self._said(sentence)
         if said is None:
             return None
@@ -73,7 +73,7 @@ class SentenceTimes:
 
 
 def spread(moments: list[int], heard: list[tuple[int, Any]]) -> list[int]:
-    """Give stamps to what was heard without a time.
+    """Assign stamps to sentences without a time.
 
     Parameters
     ----------

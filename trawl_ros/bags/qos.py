@@ -1,4 +1,4 @@
-"""The quality of service that publishers offered, as bags carry it from one graph to the next.
+"""Offered quality of service (QoS), as bags carry it from one graph to the next.
 
 Records and parser are those of ``rosbags``, which knows both forms: up to version 8 a list in a
 string, with numbers, and from version 9 on a plain list, with words.
@@ -32,7 +32,7 @@ _Dumper: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
 
 
 def project_profile(latched: bool) -> Qos:
-    """What the project's own publishers offer."""
+    """QoS profile of the project's own publishers."""
     return Qos(
         history=QosHistory.KEEP_LAST,
         depth=1 if latched else 100,

@@ -1,4 +1,4 @@
-"""Bags read in the order of log times: folders, single MCAP files, and damaged ones.
+"""Reader of bags in the order of log times: folders, single MCAP files, and damaged ones.
 
 What is readable is used; what is wrong with the rest is said in `Bag.problems`.
 """
@@ -46,7 +46,7 @@ class Received:
 
 
 class Bag:
-    """A bag opened for reading.
+    """Bag opened for reading.
 
     Parameters
     ----------
@@ -89,25 +89,25 @@ class Bag:
 
     @property
     def facts(self) -> BagFacts:
-        """What the bag is: storage, version, compression, sizes."""
+        """Facts on the bag: storage, version, compression, sizes."""
         return self._source.facts
 
     @property
     def damaged_chunks(self) -> int:
-        """Chunks that failed their checksum or make no sense; complete once all was read."""
+        """Number of chunks with a wrong checksum or content; complete once all was read."""
         return sum(file.damaged_chunks for file in self._source.files)
 
     @property
     def files_without_index(self) -> list[Path]:
-        """Files in which messages are found only by going through them."""
+        """Files without index, which are scanned for messages."""
         return [file.path for file in self._source.files if not file.indexed]
 
     def definitions(self) -> dict[str, Definition]:
-        """Give by full topic name what the bag says of its messages."""
+        """Return the definitions by full topic name."""
         return self._source.definitions
 
     def offered(self) -> dict[str, tuple[Qos, ...]]:
-        """Give by full topic name the QoS that its publishers offered; empty where unknown.
+        """Return by full topic name the QoS that its publishers offered; empty where unknown.
 
         Profiles that cannot be understood are said in `problems` and count as unknown.
         """
@@ -182,7 +182,7 @@ class Bag:
             )
 
     def decode(self, raw: RawMessage) -> Any:
-        """Decode a message that `raw` gave: who looks at few of many leaves the others.
+        """Decode a message from `raw`: for callers who need few of many.
 
         Raises
         ------
@@ -208,7 +208,7 @@ class Bag:
         return self._types.store(topic, self._source.definitions[topic])
 
     def summary(self) -> BagSummary:
-        """Read through the whole bag and count what is there."""
+        """Count all messages by reading through the whole bag."""
         topics = count_topics(
             (message.topic, message.type, message.log_time, len(message.data))
             for message in self.as_stored()
@@ -285,5 +285,5 @@ def read_messages(
 
 
 def summarise(path: str | Path, *, lenient: bool = False) -> BagSummary:
-    """Count what is in a bag; see `Bag.summary`."""
+    """Summarise the content of a bag; see `Bag.summary`."""
     return Bag(path, lenient=lenient).summary()

@@ -1,4 +1,4 @@
-"""A new bag from one that was cut short or damaged, or whose metadata are missing or wrong.
+"""Repair of a bag that was cut short or damaged, or whose metadata are missing or wrong.
 
 The damaged bag is only read. All that passes its checksum goes into the new one, which has
 indexes and metadata again; what is known to have been there and is not, is counted.
@@ -27,7 +27,7 @@ _SECOND = 1_000_000_000
 
 @dataclass(frozen=True)
 class Repair:
-    """What came of a repair.
+    """Result of a repair.
 
     ``out`` is None where the bag was sound and nothing was written. ``saved`` and ``lost`` give
     messages by full topic name; ``lost`` are those that metadata or indexes had counted.
@@ -44,7 +44,7 @@ class Repair:
 
     @property
     def whole(self) -> bool:
-        """Whether nothing can have been lost of what was in the files."""
+        """True if nothing can have been lost of the files' content."""
         return not self.lost and not self.unread
 
 
@@ -54,7 +54,7 @@ def repair_bag(
     *,
     progress: Callable[[float], None] = lambda done_s: None,
 ) -> Repair:
-    """Write what can be saved of a bag of MCAP files into a new one, file for file.
+    """Write all readable messages of a bag of MCAP files into a new one, file for file.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def repair_bag(
 
 
 class _Damaged:
-    """The bag as it is, and what is found wrong with it."""
+    """Damaged bag, and the faults found in it."""
 
     def __init__(self, path: Path) -> None:
         if not path.exists():
@@ -129,16 +129,16 @@ class _Damaged:
 
     @property
     def custom_data(self) -> dict[str, str]:
-        """Text by key, as far as the metadata have it."""
+        """Custom data of the metadata: text by key."""
         return dict((self._metadata and self._metadata.custom_data) or {})
 
     @property
     def unread(self) -> bool:
-        """Whether bytes were passed over; complete once all was read."""
+        """True if bytes were skipped; complete once all was read."""
         return any(file.passed_bytes or file.damaged_chunks for file in self.files)
 
     def is_sound(self) -> bool:
-        """Say whether there is nothing to find fault with, for which all of it is read."""
+        """True if the bag has no fault, for which all of it is read."""
         indexed = all(file.complete and file.indexed for file in self.files)
         if self._metadata is None or self.problems or not indexed:
             return False
@@ -160,7 +160,7 @@ class _Damaged:
     def messages(
         self, file: McapFile, progress: Callable[[float], None] = lambda done_s: None
     ) -> Iterator[tuple[Definition, Stored]]:
-        """Give what can be saved of a file, each with what the bag is to say of its topic."""
+        """Yield the readable messages of a file, each with the definition of its topic."""
         said = file.definitions
         stated = self._metadata.offered() if self._metadata else {}
         left_out: Counter[str] = Counter()
@@ -183,7 +183,7 @@ class _Damaged:
             )
 
     def lost(self, saved: Mapping[str, int]) -> dict[str, int]:
-        """Give by topic how many messages metadata or indexes have counted that are not saved."""
+        """Number of messages by topic that metadata or indexes count and that are not saved."""
         by_metadata: Counter[str] = Counter()
         for (topic, _), count in (self._metadata.counts() if self._metadata else {}).items():
             by_metadata[topic] += count
@@ -258,6 +258,6 @@ class _Damaged:
 
 
 def _place(path: Path) -> tuple[str, int]:
-    """Stem and number of a file, for trial_10 comes after trial_9."""
+    """Stem and number of a file, by which trial_10 comes after trial_9."""
     found = _NUMBERED.fullmatch(path.stem)
     return (found['stem'], int(found['number'])) if found else (path.stem, 0)

@@ -1,4 +1,4 @@
-"""What rosbag2 demands of a ``metadata.yaml``, and whether one has it.
+"""Keys of ``metadata.yaml`` that rosbag2 requires, and the check for them.
 
 Keys, kinds and the version that brought each are those of the decoders in
 ``rosbag2_storage/include/rosbag2_storage/yaml.hpp`` and ``rosbag2_storage/src/rosbag2_storage/
@@ -100,7 +100,7 @@ TIME: Mapping[str, tuple[int, _Check]] = MappingProxyType(
 
 
 def lacking(information: Any) -> list[str]:
-    """Name what rosbag2 would miss, by path.
+    """Name the keys that rosbag2 would miss, by path.
 
     Parameters
     ----------

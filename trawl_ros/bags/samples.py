@@ -1,4 +1,4 @@
-"""Samples of one or several bags as one stream, with what could not be used."""
+"""Stream of samples from one or several bags, with the messages it rejects."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -18,7 +18,7 @@ BETWEEN_BAGS = 3_600_000_000_000
 
 @dataclass
 class SampleStream:
-    """The samples of bags, in the order of log times within each.
+    """Stream of the samples of bags, in the order of log times within each.
 
     A bag that does not begin after the one before is moved in time to follow it: tows stay
     apart, whatever their clocks said. A bag with two sources on one topic is refused: which of

@@ -1,4 +1,4 @@
-"""Where a bag's messages come from: its files, whatever their storage, and its metadata."""
+"""Source of a bag's messages: its files, whatever their storage, and its metadata."""
 
 import heapq
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ SUFFIXES = ('.mcap', '.db3')
 
 
 class StorageFile(Protocol):
-    """One file of a bag, whatever the storage."""
+    """Storage file of a bag, whatever the storage."""
 
     path: Path
     chunk_compressions: set[str]
@@ -36,15 +36,15 @@ class StorageFile(Protocol):
 
     @property
     def indexed(self) -> bool:
-        """Whether messages can be found without going through the file."""
+        """True if messages can be found without a scan of the file."""
 
     @property
     def damaged_chunks(self) -> int:
-        """How many chunks failed so far."""
+        """Number of damaged chunks so far."""
 
     @property
     def definitions(self) -> dict[str, Definition]:
-        """What is known of each topic's messages."""
+        """Definition of each topic's messages."""
 
     def types(self) -> set[tuple[str, str]]:
         """Give all (topic, type) there are."""
@@ -58,7 +58,7 @@ class StorageFile(Protocol):
 
 @dataclass(frozen=True)
 class BagFacts:
-    """What a bag is, beside its messages.
+    """Facts on a bag, beside its messages.
 
     ``version`` (of the metadata) is None and ``distro`` '' where the bag does not say;
     ``compression`` is '' for none; ``sizes`` gives bytes by file name.
@@ -72,7 +72,7 @@ class BagFacts:
 
 
 class Source:
-    """The files of a bag as one stream, beside what ``metadata.yaml`` says of them.
+    """Files of a bag as one stream, with the content of ``metadata.yaml``.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ class Source:
 
     @property
     def facts(self) -> BagFacts:
-        """What the bag is."""
+        """Facts on the bag."""
         metadata = self._metadata
         chunks = set[str]().union(*(file.chunk_compressions for file in self.files))
         mode = _mode(metadata)
@@ -117,7 +117,7 @@ class Source:
 
     @property
     def definitions(self) -> dict[str, Definition]:
-        """What is known of each topic's messages."""
+        """Definition of each topic's messages."""
         found: dict[str, Definition] = {}
         for file in self.files:
             for topic, definition in file.definitions.items():
@@ -130,7 +130,7 @@ class Source:
 
     @property
     def stated_count(self) -> int | None:
-        """Number of messages the bag claims to have; None if it does not say."""
+        """Number of messages by the metadata; None if they do not say."""
         counts = self._counts()
         if counts is not None:
             return sum(counts.values())
@@ -160,7 +160,7 @@ class Source:
             self._report(f'{self.files[0].path}: {lost} compressed messages are damaged')
 
     def disagreements(self) -> list[str]:
-        """Say where the metadata and the content disagree; a file cut short says nothing."""
+        """Sentences on disagreements of metadata and content; a file cut short says nothing."""
         counts = self._counts()
         if counts is None or self._metadata is None:
             return []
@@ -195,7 +195,7 @@ class Source:
 
 
 def open_source(path: Path, report: Report, *, lenient: bool = False) -> Source:
-    """Find out what kind of bag lies at a path, and open it.
+    """Detect the kind of bag at a path, and open it.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def _check_kind(path: Path, metadata: BagMetadata) -> None:
 
 
 def _mode(metadata: BagMetadata | None) -> str:
-    """How rosbag2 itself compressed the bag; '' if it did not."""
+    """Mode of rosbag2's own compression of the bag; '' without one."""
     mode = metadata.compression_mode.lower() if metadata else ''
     return '' if mode == 'none' else mode
 

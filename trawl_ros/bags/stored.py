@@ -1,4 +1,4 @@
-"""What a file of a bag gives, whatever its storage: messages, and what it says of them."""
+"""Stored messages and definitions of a bag's file, whatever its storage."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from mcap.records import Message
 
 @dataclass(frozen=True)
 class Stored:
-    """A message as it lies in the file, with its topic and type."""
+    """Stored message of a file, with its topic and type."""
 
     topic: str
     type: str
@@ -16,7 +16,7 @@ class Stored:
 
 @dataclass(frozen=True)
 class Definition:
-    """What a channel says of its messages: encodings, and the definition of the type.
+    """Definition of a channel's messages: encodings, and the text of the type.
 
     ``qos`` is what publishers offered, as `bags.qos` reads it, ``type_hash`` the type's RIHS01;
     each '' where the bag does not say.

@@ -1,4 +1,4 @@
-"""What is in a bag, counted."""
+"""Summary of a bag: counts of its content."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from trawl_ros.messages.stamps import SECOND
 
 @dataclass(frozen=True)
 class TopicSummary:
-    """How many messages of which type a topic has, of how many bytes, from when to when (ns)."""
+    """Summary of a topic: number, type and bytes of its messages, first and last time (ns)."""
 
     topic: str
     type: str
@@ -21,14 +21,14 @@ class TopicSummary:
 
     @property
     def rate(self) -> float | None:
-        """Mean rate in Hz; None where one cannot be told."""
+        """Mean rate, Hz; None where it is undefined."""
         span = self.end - self.start
         return (self.count - 1) * SECOND / span if span > 0 else None
 
 
 @dataclass(frozen=True)
 class BagSummary:
-    """What is in a bag; ``start`` and ``end`` are log times in ns, None without messages."""
+    """Summary of a bag; ``start`` and ``end`` are log times in ns, None without messages."""
 
     path: Path
     topics: tuple[TopicSummary, ...]

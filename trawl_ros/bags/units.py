@@ -1,4 +1,4 @@
-"""Units as logs have them, each with its quantity and its size in SI."""
+"""Units in logs, each with its quantity and its size in SI."""
 
 import math
 
@@ -49,5 +49,5 @@ ton-force (``short_tf`` of 2000 lb, ``long_tf`` of 2240 lb), ``fathom`` the inte
 
 
 def units_of(quantity: str) -> list[str]:
-    """Name the units in which a quantity may be given."""
+    """Return the units of a quantity."""
     return [name for name, (measures, _) in UNITS.items() if measures == quantity]

@@ -1,4 +1,4 @@
-"""From record to record through an MCAP file without an index, also across damage.
+"""MCAP scan: from record to record through a file without an index, also across damage.
 
 Where the chain of records breaks, the next chunk is looked for byte by byte: its header is known
 by lengths that fit each other, and what it holds is believed only if its checksum is right.
@@ -70,7 +70,7 @@ def walk(
 
 
 def next_chunk(stream: BinaryIO, offset: int, size: int) -> int | None:
-    """Find the next place from which on bytes are the header of a chunk; None if there is none."""
+    """Find the next offset at which bytes are the header of a chunk; None if there is none."""
     while offset < size:
         stream.seek(offset)
         window = stream.read(_WINDOW)
@@ -87,7 +87,7 @@ def next_chunk(stream: BinaryIO, offset: int, size: int) -> int | None:
 
 
 def _fits(stream: BinaryIO, opcode: int, offset: int, inner: int) -> bool:
-    """Whether a record's length agrees with what the record itself says of its parts."""
+    """True if a record's length agrees with the lengths of its own parts."""
     if opcode == Opcode.CHUNK:
         stream.seek(offset)
         found = _CHUNK_HEADER.match(stream.read(_LONGEST_HEADER))

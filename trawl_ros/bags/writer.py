@@ -1,4 +1,4 @@
-"""Bags as ``ros2 bag record -s mcap`` leaves them: a folder, ``metadata.yaml``, MCAP files.
+"""Writer of bags as ``ros2 bag record -s mcap``: a folder, ``metadata.yaml``, MCAP files.
 
 The same messages give the same bytes: nothing of the clock, the machine or the path goes in.
 """
@@ -17,7 +17,7 @@ from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 
 class BagWriter:
-    """Writes a new bag; use it as a context manager, or call `close`.
+    """Writer of a new bag; use it as a context manager, or call `close`.
 
     Parameters
     ----------
@@ -86,11 +86,11 @@ class BagWriter:
         return (*(file.name for file in self._finished), self._file.path.name)
 
     def declared(self, topic: str) -> bool:
-        """Whether it is settled what the bag says of a topic."""
+        """True if the definition of a topic is fixed."""
         return topic in self._topics
 
     def declare(self, topic: str, said: Definition) -> None:
-        """Settle what the bag says of a topic, before its first message.
+        """Fix the definition of a topic, before its first message.
 
         Raises
         ------
@@ -158,7 +158,7 @@ class BagWriter:
         self._file = self._next_file()
 
     def flush(self) -> None:
-        """Put all that was written so far within reach of readers.
+        """Flush all messages so far, so that readers find them.
 
         Ends the chunk in progress and brings ``metadata.yaml`` up to date, so that a process
         killed later leaves at least this much. Chunks that end early compress less well: once
@@ -238,7 +238,7 @@ class BagWriter:
 
 
 def describe(type_name: str, qos: str) -> Definition:
-    """Say of a topic what a bag has to: the definition of its type, its hash, and offered QoS.
+    """Return the definition for a topic: its type's text and hash, and offered QoS.
 
     Raises
     ------

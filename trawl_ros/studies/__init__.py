@@ -1,1 +1,1 @@
-"""Long runs of the whole chain, and what they show."""
+"""Studies: long runs of the whole chain, and their reports."""

@@ -1,4 +1,4 @@
-"""The instrument chain as processes, watched while it runs."""
+"""Instrument chain as processes, monitored while it runs."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -27,7 +27,7 @@ MEGABYTE = 1e6
 
 @dataclass(frozen=True)
 class Glance:
-    """What was seen at one time.
+    """Glance at the running chain at one time.
 
     ``data_s`` is the stamp of the newest truth and ``wall_s`` wall time since the first truth.
     By node: ``memory_mb`` is resident memory, ``cpu_s`` the processor time since its start,
@@ -64,7 +64,7 @@ def watch_chain(
     told: Callable[[float], None],
     stop: Callable[[], bool],
 ) -> list[Glance]:
-    """Look at a running chain until its scenario ends, and end it in good order.
+    """Monitor a running chain until its scenario ends, and end it in good order.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def watch_chain(
 
 
 def watched_of(processes: Processes) -> dict[str, psutil.Process]:
-    """Give the processes that run, by node."""
+    """Return the running processes by node."""
     return {node: psutil.Process(pid) for node, pid in processes.pids().items()}
 
 
@@ -118,7 +118,7 @@ def glance(
     wall_s: float,
     delays: Mapping[str, float],
 ) -> Glance | None:
-    """Look at processes by node; None where one of them is about to end."""
+    """Measure processes by node; None where one of them is about to end."""
     memory, cpu = {}, {}
     try:
         for node, process in watched.items():

@@ -1,4 +1,4 @@
-"""Counters that err as measured ones did: a trial with them, and what the diagnosis makes of it."""
+"""Trial with measured errors of winch counters, and its diagnosis."""
 
 import csv
 from collections.abc import Callable, Mapping
@@ -54,7 +54,7 @@ Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 @dataclass(frozen=True)
 class Table:
-    """True wire (n,) and what the counters of both winches showed (n,), m."""
+    """Table of true wire (n,) and the readings of both winches' counters (n,), m."""
 
     wire: np.ndarray
     port: np.ndarray
@@ -67,7 +67,7 @@ class Table:
         return float(scale - 1.0), float(offset)
 
     def hidden(self) -> Hidden:
-        """Counters that show what these did."""
+        """Hidden effect: counters with the errors of this table."""
 
         def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
             port = np.interp(inputs[0], self.port, self.wire)
@@ -187,8 +187,8 @@ def _rows(
 
 
 def _removed(shown: Shown | None, floor: Mapping[str, float]) -> tuple[float, str]:
-    """Part of the excess error that the repair removes, in per cent, and what the best other effect
-    does.
+    """Share of the excess error that the repair removes, in per cent, with that of the best other
+    effect.
     """
     if shown is None:
         return np.nan, ''

@@ -1,4 +1,4 @@
-"""A tow as long as one likes, quiet but not at rest: warps are hauled and veered now and then."""
+"""Scenario of a long tow: quiet but not at rest, with warps hauled and veered now and then."""
 
 from pathlib import Path
 from shutil import copyfile

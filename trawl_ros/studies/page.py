@@ -1,4 +1,4 @@
-"""The page of a study: JSON, Markdown, a self-contained HTML page and a figure."""
+"""Report of a study: JSON, Markdown, a self-contained HTML page and a figure."""
 
 import base64
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ Section = tuple[str, Sequence[Row]]
 
 @dataclass(frozen=True)
 class Page:
-    """What a page says beside its rows.
+    """Texts of a page beside its rows.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""One measured figure of a study, the range it lies in, and what was asked of it."""
+"""Row of a study: a measured figure with its interval and target."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Row:
-    """A measured figure.
+    """Row: a measured figure.
 
     Parameters
     ----------
@@ -37,18 +37,18 @@ class Row:
 
     @property
     def asked(self) -> bool:
-        """Whether anything was asked of it; else it only informs."""
+        """True if the row has a target; else it only informs."""
         return self.target is not None or self.least is not None
 
     @property
     def ok(self) -> bool:
-        """Whether what was asked is met; true where nothing was. NaN never meets anything."""
+        """True if the target is met; true without one. NaN never meets any."""
         return (self.target is None or self.value <= self.target) and (
             self.least is None or self.value >= self.least
         )
 
     def record(self) -> dict[str, object]:
-        """The row as plain values; what could not be measured is null.
+        """Return the row as plain values; what could not be measured is null.
 
         A target with a lower end is the pair of its ends.
         """

@@ -1,4 +1,4 @@
-"""The soak: the chain for a day at sea as fast as it goes, then for a minute as it is at sea."""
+"""Soak test: the chain for a day at sea at full speed, then for a minute in real time."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -29,7 +29,7 @@ Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]
 
 @dataclass(frozen=True)
 class Plan:
-    """How long the chain runs: at sea as fast as it goes (hours), and in real time (s).
+    """Plan of the soak: hours at sea at full speed, and seconds in real time.
 
     ``truth_rate_hz`` is how often there is truth at sea; in real time it is the usual rate.
     ``coarse`` says that the gear of the long tow has a coarse net.
@@ -44,7 +44,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Soak:
-    """What was seen: on the long tow, in real time, and how large the long tow's bag was."""
+    """Result of a soak: glances on the long tow and in real time, and size of its bag."""
 
     plan: Plan
     fast: tuple[Glance, ...]

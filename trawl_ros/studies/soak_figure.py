@@ -1,4 +1,4 @@
-"""Memory, delay and pace over a long tow."""
+"""Figure of memory, delay and pace over a long tow."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ PARTS = round(1.0 / WARM_SHARE)
 
 
 def soak_figure(glances: Sequence[Glance], hours: float) -> Figure:
-    """Draw what the nodes of the chain took while they towed for some hours.
+    """Draw memory, delay and pace of the chain's nodes over some hours of towing.
 
     Memory stands beside its mean after warm-up, which the legend gives.
     """

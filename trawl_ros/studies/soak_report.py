@@ -1,4 +1,4 @@
-"""The report of a soak: JSON, Markdown and a figure."""
+"""Report of a soak: JSON, Markdown and a figure."""
 
 import os
 from pathlib import Path
@@ -15,7 +15,7 @@ JSON, REPORT, FIGURE = 'soak.json', 'soak.md', 'soak.png'
 
 
 def write_soak(folder: Path, soak: Soak) -> list[Row]:
-    """Write ``soak.json``, ``soak.md`` and ``soak.png`` into a folder; give the rows."""
+    """Write ``soak.json``, ``soak.md`` and ``soak.png`` into a folder; return the rows."""
     rows = soak_rows(soak)
     records = [row.record() for row in rows]
     write_json(folder / JSON, {'rows': records}, indent=1, ensure_ascii=False)

@@ -1,4 +1,4 @@
-"""What a soak shows, as rows: memory, delay, pace, and the share of a core in real time."""
+"""Rows of a soak: memory, delay, pace, and the share of a core in real time."""
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
@@ -23,7 +23,7 @@ FEWEST = 10
 
 
 def soak_rows(soak: Soak) -> list[Row]:
-    """Give the rows of both runs."""
+    """Return the rows of both runs."""
     warm = [g for g in soak.fast if g.data_s >= WARM_SHARE * 3600.0 * soak.plan.hours]
     towed = soak.fast[-1].data_s / 3600.0 if soak.fast else 0.0
     missing = max(0.0, soak.plan.hours - towed)
@@ -106,7 +106,7 @@ def _bag(soak: Soak, towed: float) -> Row:
 
 
 def _shares(glances: Sequence[Glance]) -> list[Row]:
-    """Share of a core that each node takes in real time, and all together."""
+    """Share of a core used by each node in real time, and by all together."""
     note = f'least and most of {len(_pieces(glances))} pieces'
     rows = []
     for node in CHAIN:
@@ -156,6 +156,6 @@ def _trend(
 
 def series(glances: Sequence[Glance], by_node: Callable[[Glance], Mapping[str, float]], node: str
            ) -> tuple[list[float], list[float]]:  # fmt: skip
-    """Give hours at sea and a node's values, where there are any."""
+    """Return hours at sea and a node's values, where there are any."""
     seen = [(g.data_s / 3600.0, by_node(g)[node]) for g in glances if node in by_node(g)]
     return [x for x, _ in seen], [y for _, y in seen]

@@ -1,4 +1,4 @@
-"""How well the trawl sonar's image tells the openings of the net: readings against truth."""
+"""Study of the trawl sonar: accuracy of the openings read off its image."""
 
 import math
 import zlib
@@ -35,7 +35,7 @@ ENDLESS = 40_000.0
 
 @dataclass(frozen=True)
 class Fish:
-    """A school as it passes the sonar's plane: an ellipse ``down`` (m) below the headrope's
+    """School that passes the sonar's plane: an ellipse ``down`` (m) below the headrope's
     centre and ``port`` of it, ``width`` by ``height``, of ``density`` fish per m³.
     """
 
@@ -48,7 +48,7 @@ class Fish:
 
 @dataclass(frozen=True)
 class Case:
-    """One state of the tow.
+    """Case: one state of the tow.
 
     ``warp`` (m) and ``speed`` (m/s), and those it is hauled to, if it is; fish; how far below the
     headrope the seabed is (m); whether the sonar is told the speed of sound there is.
@@ -93,7 +93,7 @@ SHOWN = STATES[3], COMPANY[1], COMPANY[4]
 
 @dataclass(frozen=True)
 class Measured:
-    """What came out of a case.
+    """Result of a case.
 
     ``height`` and ``width`` (n,) are readings in m, NaN where none was possible, and
     ``true_height``, ``true_width`` (n,) the truth in the middle of each sweep. The last image
@@ -112,7 +112,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Figures:
-    """Of errors (m): mean, standard deviation and the largest; ``read`` and ``unread`` count."""
+    """Figures of errors (m): mean, standard deviation, largest; ``read`` and ``unread`` count."""
 
     bias: float
     scatter: float
@@ -122,7 +122,7 @@ class Figures:
 
 
 def figures(readings: np.ndarray, truth: np.ndarray) -> Figures:
-    """Give the figures of readings (n,) against truth (n,), m."""
+    """Return the figures of readings (n,) against truth (n,), m."""
     errors = (readings - truth)[np.isfinite(readings)]
     unread = len(readings) - len(errors)
     if len(errors) == 0:
@@ -132,7 +132,7 @@ def figures(readings: np.ndarray, truth: np.ndarray) -> Figures:
 
 
 class SonarStudy:
-    """Makes the cases with one gear and one set of instruments.
+    """Study of the cases with one gear and one set of instruments.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class SonarStudy:
         self._steady: dict[tuple[float, float], Truth] = {}
 
     def measure(self, case: Case) -> Measured:
-        """Tow a case, and set readings beside truth."""
+        """Tow a case, and compare readings with truth."""
         heights: dict[int, float] = {}
         widths: dict[int, float] = {}
         nets: dict[int, NetTruth] = {}
@@ -216,7 +216,7 @@ class SonarStudy:
         return self._steady[key]
 
     def _tow(self, case: Case) -> Iterator[Truth]:
-        """A steady tow: the net keeps its shape and goes ahead."""
+        """Steady tow: the net keeps its shape and goes ahead."""
         start = self._at_rest(case)
         count = 1 + math.ceil(self._sweeps / self._parameters.sweep.rate_hz * TRUTH_HZ)
         for k in range(count):
@@ -226,7 +226,7 @@ class SonarStudy:
             yield self._with_sea(case, replace(start, stamp=stamp, net=net))
 
     def _hauls(self, case: Case) -> Iterator[Iterator[Truth]]:
-        """The same haul often enough, for other noise each time."""
+        """Repeat the same haul, for other noise each time."""
         assert case.hauled_to is not None
         warp, speed = case.hauled_to
         simulation = Simulation(

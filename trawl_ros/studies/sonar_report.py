@@ -1,4 +1,4 @@
-"""The report of the study of the trawl sonar: JSON, Markdown and a picture."""
+"""Report of the study of the trawl sonar: JSON, Markdown and a figure."""
 
 import math
 from collections.abc import Sequence

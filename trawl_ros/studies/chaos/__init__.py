@@ -1,1 +1,1 @@
-"""The graph under faults: nodes stopped and killed, strangers, full disks, wild clocks."""
+"""Fault injection in the ROS graph: nodes stopped, killed or disturbed, full disks, wild clocks."""

@@ -1,4 +1,4 @@
-"""The nodes of a tow as processes that are stopped, killed and started anew."""
+"""Nodes of a tow as processes that are stopped, killed and restarted."""
 
 import time
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ TRUTH, IMAGE = absolute('truth/winch'), absolute('sonar/image')
 
 @dataclass(frozen=True)
 class Recording:
-    """A bag of a tow, and how its recorder ended.
+    """Recording of a tow, and how its recorder ended.
 
     ``end`` says how, ``ended`` when (wall time, s), ``lost_s`` is the wall time by which truth
     that is missing in the bag had been heard before; ``problem`` says why it cannot be read.
@@ -88,22 +88,22 @@ class Crew:
             )
 
     def stop(self, node: str) -> None:
-        """Let a node stand still."""
+        """Stop a node (SIGSTOP)."""
         self._processes.signal(node, SIGSTOP)
 
     def go_on(self, node: str) -> None:
-        """Let it go on."""
+        """Continue a stopped node (SIGCONT)."""
         self._processes.signal(node, SIGCONT)
 
     def kill(self, node: str) -> None:
-        """Kill a node and start it anew."""
+        """Kill a node and restart it."""
         ended = time.monotonic()
         self._processes.kill(node)
         self.ended(node, 'killed', ended)
         self.start(node)
 
     def fill_disk(self) -> None:
-        """Let the recorder's files grow no more.
+        """Limit the size of the recorder's files to what they have now.
 
         A limit of the process, since a full disk would be that of everybody: writing fails the
         same way, with another number.
@@ -114,13 +114,13 @@ class Crew:
         recorder.rlimit(psutil.RLIMIT_FSIZE, (size, size))
 
     def ended(self, node: str, how: str, when: float) -> None:
-        """Take note of how a node ended."""
+        """Register how a node ended."""
         if node == RECORDER:
             self.recordings[-1] = replace(self.recordings[-1], end=how, ended=when)
 
 
 def looked_into(recording: Recording, monitor: 'JournalMonitor') -> Recording:
-    """Read a bag, repaired where that is needed, and set its end beside what was heard."""
+    """Read a bag, repaired where that is needed, and compare its end with the received truth."""
     try:
         repaired = repair_bag(recording.path).out or recording.path
         latest, messages, images = 0, 0, 0

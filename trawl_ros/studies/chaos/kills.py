@@ -1,4 +1,4 @@
-"""The recorder killed again and again while everything is published as fast as it can be."""
+"""Recorder killed again and again at full load."""
 
 import time
 from collections.abc import Callable
@@ -32,7 +32,7 @@ START_S = 60.0
 
 @dataclass(frozen=True)
 class Kills:
-    """The bags of the recorders that were killed, and how long they recorded (wall time, s)."""
+    """Bags of the recorders that were killed, and how long they recorded (wall time, s)."""
 
     recordings: tuple[Recording, ...]
     recorded_s: float

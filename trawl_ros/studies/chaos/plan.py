@@ -1,4 +1,4 @@
-"""What befalls the graph, and when: a random order from a seed."""
+"""Plan of the faults in a graph: a random order from a seed."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,7 +56,7 @@ has several windows."""
 
 @dataclass(frozen=True)
 class Plan:
-    """How long is towed (hours at sea), how often the recorder is killed at full load, the seed."""
+    """Plan: hours of towing, number of kills of the recorder at full load, the seed."""
 
     hours: float = 1.0
     kills: int = 50
@@ -71,7 +71,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that happens ``at_s`` of the tow to a node or topic, for some wall time (s)."""
+    """Fault that happens ``at_s`` of the tow to a node or topic, for some wall time (s)."""
 
     at_s: float
     kind: Kind
@@ -83,7 +83,7 @@ class Fault:
 
 
 def faults_of(plan: Plan) -> list[Fault]:
-    """Give what happens on a tow, in order."""
+    """Return the faults on a tow, in order."""
     chance = np.random.default_rng(plan.seed)
     number = max(1, round(plan.hours * len(REPERTOIRE)))
     order: list[int] = []
@@ -100,7 +100,7 @@ def faults_of(plan: Plan) -> list[Fault]:
 
 
 def write_tow(folder: Path, gear: str, hours: float, truth_rate_hz: float) -> Path:
-    """Write the scenario of a tow of steady states, and give its path."""
+    """Write the scenario of a tow of steady states, and return its path."""
     warp, speed = STATES[0]
     minutes = 60.0 * hours / len(STATES)
     record = {

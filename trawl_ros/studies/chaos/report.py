@@ -1,4 +1,4 @@
-"""The page of chaos in the graph."""
+"""Report of the fault injection."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ REPORT = 'chaos.md'
 
 
 def write_chaos(folder: Path, chaos: Chaos) -> list[Row]:
-    """Write ``chaos.json``, ``.md``, ``.html`` and ``.png`` into a folder; give the rows."""
+    """Write ``chaos.json``, ``.md``, ``.html`` and ``.png`` into a folder; return the rows."""
     sections = chaos_rows(chaos)
     plan = chaos.plan
     page = Page(

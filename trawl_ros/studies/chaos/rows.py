@@ -1,4 +1,4 @@
-"""What chaos in the graph shows, as rows."""
+"""Rows of the fault injection's report."""
 
 import math
 from collections import Counter
@@ -21,7 +21,7 @@ Sections = list[tuple[str, list[Row]]]
 
 
 def chaos_rows(chaos: Chaos) -> Sections:
-    """Give the rows by their section."""
+    """Return the rows by their section."""
     wild = chaos.wild
     missing = max(0.0, chaos.plan.end_s - wild.towed_s) / 3600.0
     done = Counter(fault.kind for fault in wild.done)
@@ -119,6 +119,6 @@ def _kills(kills: Kills) -> list[Row]:
 
 
 def _short(words: str) -> str:
-    """What a process said last."""
+    """Shorten the last words of a process."""
     lines = [line.strip() for line in words.splitlines()]
     return f'{lines[0].split(";")[0]}: {lines[-1]}'

@@ -1,4 +1,4 @@
-"""Chaos in the graph: a tow undisturbed, the same with faults, and the recorder killed."""
+"""Study of fault injection: a tow undisturbed, the same with faults, and the recorder killed."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from trawl_ros.studies.chaos.tow import Shown, Tow, run_tow
 
 @dataclass(frozen=True)
 class Chaos:
-    """What was seen on the tow without faults and with them, and of the recorders killed."""
+    """Results of the tow without faults and with them, and of the killed recorders."""
 
     plan: Plan
     calm: Tow

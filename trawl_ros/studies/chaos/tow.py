@@ -1,4 +1,4 @@
-"""A tow on which faults befall the nodes."""
+"""Tow with faults of the nodes."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -38,7 +38,7 @@ Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]
 
 @dataclass
 class Tow:
-    """What was seen on a tow.
+    """Result of a tow.
 
     ``done`` are the faults that happened; ``died`` has the last words of nodes that ended by
     themselves though nothing but messages had befallen them, and ``mute`` recorders that did not
@@ -65,7 +65,7 @@ def run_tow(
     shown: Shown,
     stop: Callable[[], bool],
 ) -> Tow:
-    """Tow for the hours of a plan, with what befalls the nodes meanwhile.
+    """Tow for the hours of a plan, with its faults.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def run_tow(
 
 
 def _finish(monitor: 'JournalMonitor', crew: Crew, turmoil: '_Turmoil') -> str:
-    """Bring the estimate to rest; give what the node says of it."""
+    """Finish the estimate; return the node's answer."""
     end = time.monotonic() + FINISH_S
 
     def waiting() -> None:
@@ -145,7 +145,7 @@ def _finish(monitor: 'JournalMonitor', crew: Crew, turmoil: '_Turmoil') -> str:
 
 
 class _Turmoil:
-    """What befalls the nodes just now."""
+    """Faults that are active at present."""
 
     def __init__(
         self, crew: Crew, processes: Processes, environment: Mapping[str, str], faults: list[Fault]
@@ -160,7 +160,7 @@ class _Turmoil:
         self.state = ''
 
     def look(self, data_s: float, now: float) -> None:
-        """Begin and end what is due, and start those anew that have ended by themselves."""
+        """Begin and end the faults that are due, and restart nodes that have ended."""
         self._replace_ended(data_s, now)
         if self._full is not None:
             if now - self._full > DISK_S:
@@ -175,7 +175,7 @@ class _Turmoil:
             self._begin(self._faults.pop(0), now)
 
     def close(self) -> None:
-        """End what has begun."""
+        """End the active fault."""
         if self._over is not None:
             self._over[1].close()
             self._over = None

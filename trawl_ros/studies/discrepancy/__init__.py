@@ -1,1 +1,1 @@
-"""The blind tests of ``trawl diagnose``: effects hidden in data of another plant."""
+"""Blind tests of ``trawl diagnose``: effects hidden in data of another plant."""

@@ -1,4 +1,4 @@
-"""Diagnoses a trial of which nothing is known but a file of windows, or a folder of bags."""
+"""Blind diagnosis of a trial from a file of windows, or a folder of bags."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,7 @@ from trawl_ros.studies.identification.plant import Cut
 
 @dataclass(frozen=True)
 class Case:
-    """What may be seen of a trial, where the diagnosis goes, the gear as it is believed, and how
+    """Case of a blind diagnosis: visible data, folder of the result, the assumed gear, and how
     many of the first tows are a baseline.
     """
 

@@ -1,4 +1,4 @@
-"""The blind tests, stage by stage: made, diagnosed, towed on, diagnosed, fitted without errors."""
+"""Stages of the blind tests: made, diagnosed, towed on, diagnosed, fitted without errors."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -37,7 +37,7 @@ QUIET_STRENGTH = 3.0
 
 @dataclass(frozen=True)
 class Blind:
-    """Where the parts of one trial go, and all that making it takes."""
+    """Blind trial: its files, and all that making it takes."""
 
     spec: Spec
     name: str
@@ -45,33 +45,33 @@ class Blind:
     folder: Path
 
     def at(self, part: str) -> Path:
-        """A file of it."""
+        """Return the trial's file in a folder."""
         return self.folder / part / f'{self.name}.json'
 
     @property
     def seen(self) -> Path:
-        """What the diagnosis may see: a file of windows, or a folder of bags."""
+        """Visible data for the diagnosis: a file of windows, or a folder of bags."""
         windows = self.at('trials')
         return windows if self.spec.form == 'windows' else windows.with_suffix('')
 
     @property
     def baseline(self) -> int:
-        """Tows of it that are a baseline."""
+        """Number of its baseline tows."""
         return PLANS[self.spec.plan].baseline
 
     @property
     def scored(self) -> Scored:
-        """Its key, and what was said of it so far."""
+        """Its key, and the diagnosis so far."""
         return Scored(*(_json(self.at(part)) for part in ('keys', 'diagnoses', 'fits')))
 
     @property
     def case(self) -> Case:
-        """To be diagnosed by who knows no more of it than a name by chance."""
+        """Case for the diagnosis, under a random name alone."""
         return Case(self.seen, self.at('diagnoses'), self.plan.gear, self.plan.cut, self.baseline)
 
 
 def make_case(trial: Blind) -> None:
-    """Make a trial, and write what may be seen of it and its key apart from each other."""
+    """Make a trial, and write its visible data and its key apart from each other."""
     plan = trial.plan
     if trial.spec.form != 'windows':
         # What an interruption left is not whole.
@@ -98,7 +98,7 @@ def follow_case(trial: Blind) -> None:
 
 
 def quiet_case(trial: Blind) -> None:
-    """Fit the effect that was named rightly to readings without errors."""
+    """Fit the rightly named effect to readings without errors."""
     found = fit_quietly(
         trial.plan.cut.model(trial.plan.gear),
         read_windows(trial.at('quiet')),
@@ -117,7 +117,7 @@ def run_blind(
     workers: int | None = None,
     force: bool = False,
 ) -> tuple[Scored, ...]:
-    """Make and diagnose the trials that are not there yet, and set them beside their keys.
+    """Make and diagnose the trials that are missing, and compare them with their keys.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def run_blind(
 
 
 def read_classes(folder: Path) -> Classes:
-    """The classes that were found before any trial was made."""
+    """Read the classes that were found before any trial was made."""
     return {name: tuple(names) for name, names in _json(folder / CLASSES).items()}
 
 
@@ -193,7 +193,7 @@ def _cases(trials: list[Blind]) -> dict[str, Case]:
 
 
 def _may_be_followed(trial: Scored) -> bool:
-    """Whether a tow is proposed that would part what a poor trial could not tell apart."""
+    """True if a tow is proposed that could decide between the rivals in a poor trial."""
     return (
         trial.key['spec']['series'] == 'poor'
         and trial.diagnosis is not None

@@ -1,4 +1,4 @@
-"""The blind tests: which trials there are."""
+"""Plan of the blind tests: the trials and their numbers."""
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
@@ -45,7 +45,7 @@ IN_BAGS = 20
 
 @dataclass(frozen=True)
 class Plan:
-    """How large the study is.
+    """Plan of the study's size.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Plan:
 
     @property
     def cut(self) -> Cut:
-        """How fine model and plant are."""
+        """Mesh of model and plant."""
         return Cut(**{**asdict(FINER), 'around': self.around})
 
     def specs(self) -> tuple[Spec, ...]:

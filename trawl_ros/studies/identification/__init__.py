@@ -1,1 +1,1 @@
-"""What identification is worth: data from plants that are not the model, and what comes of them."""
+"""Study of the identification's accuracy on data from plants that differ from the model."""

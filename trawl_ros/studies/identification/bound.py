@@ -1,4 +1,4 @@
-"""What any estimator could know at best: information in the windows of a trial."""
+"""Fisher information in the windows of a trial: the bound of any estimator."""
 
 from collections.abc import Sequence
 
@@ -35,7 +35,7 @@ def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> np.ndarray:
 
 
 def _covariance(looks: Sequence[Look], sensors: Sensors) -> np.ndarray:
-    """Of measured less predicted at the measured inputs, all windows of a tow."""
+    """Covariance of measured less predicted at the measured inputs, over all windows of a tow."""
     own = np.diag([sensors.mean_std(name) ** 2 for name in MEASURED])
     inputs = np.diag([sensors.mean_std(name) ** 2 for name in INPUTS])
     blocks = []
@@ -53,7 +53,7 @@ def _covariance(looks: Sequence[Look], sensors: Sensors) -> np.ndarray:
 
 
 def _effect(look: Look, name: str) -> np.ndarray:
-    """What an offset of one unit of a channel or input does to the residuals (k,)."""
+    """Sensitivity (k,) of the residuals to an offset of a channel or input."""
     if name in INPUTS:
         return -look.by_inputs[ROWS, INPUTS.index(name)]
     return np.array([float(name == other) for other in MEASURED])

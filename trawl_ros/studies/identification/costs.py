@@ -1,4 +1,4 @@
-"""What identification costs: a bag replayed by the command, and the node beside it in real time."""
+"""Computing cost of the identification: a bag replayed at once, and the node in real time."""
 
 import math
 import os
@@ -45,7 +45,7 @@ IDENTIFY = 'import sys; from trawl_ros.cli.main import main; sys.exit(main())'
 
 @dataclass(frozen=True)
 class Replay:
-    """What a replay took: recorded time, processor time and wall time, s."""
+    """Cost of a replay: recorded time, processor time and wall time, s."""
 
     recorded_s: float
     cpu_s: float
@@ -53,7 +53,7 @@ class Replay:
 
 
 def replay(seconds: float = REPLAY_S) -> Replay:
-    """Let ``trawl identify`` work on the beginning of the sample trial, as one process.
+    """Run ``trawl identify`` on the beginning of the sample trial, as one process.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def replay(seconds: float = REPLAY_S) -> Replay:
 
 
 def replay_rows(found: Replay) -> list[Row]:
-    """How many times real time a replay is on one core."""
+    """Speed of a replay over real time on one core."""
     return [
         Row(
             'replay through trawl identify',
@@ -97,7 +97,7 @@ def replay_rows(found: Replay) -> list[Row]:
 
 @dataclass(frozen=True)
 class Live:
-    """The node in real time: delays (s) from a window's end to its estimate, and its share of a
+    """Live run of the node: delays (s) from a window's end to its estimate, and its share of a
     core (%), by the processor time of the whole process after its start.
     """
 
@@ -163,7 +163,7 @@ def live(
 
 
 def live_rows(found: Live) -> list[Row]:
-    """How late estimates are, and what the node takes of a core."""
+    """Delay of estimates, and the node's share of a core."""
     delays = np.array(found.delays_s)
     there = len(delays) > 0
     return [
@@ -187,7 +187,7 @@ def live_rows(found: Live) -> list[Row]:
 
 
 def _cut(path: Path, into: Path, seconds: float) -> float:
-    """Write the beginning of a bag; give how long it is, s."""
+    """Write the beginning of a bag; return its length, s."""
     bag = Bag(path)
     excerpt = Excerpt(bag, bag.topics, 0.0, seconds)
     first = last = None

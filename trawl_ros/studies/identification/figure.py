@@ -1,4 +1,4 @@
-"""Coverage and spread by coefficient, and errors on tows left out beside what is possible."""
+"""Figure of coverage and spread by coefficient, and hold-out errors beside their bound."""
 
 from collections.abc import Sequence
 
@@ -25,7 +25,7 @@ WITHIN = '#dfeee3'
 
 
 def trials_figure(coverage: Sequence[Trial], bound: Sequence[Trial], prior: BoardPrior) -> Figure:
-    """Draw what was found with what was asked, all with 95 % intervals."""
+    """Draw the results with their targets, all with 95 % intervals."""
     figure = Figure(figsize=(9.0, 9.5), layout='constrained')
     covered, spread, errors = figure.subplots(3, 1)
     _draw_rows(covered, coverage_rows(coverage, '', asked=True)[1:], COVERAGE)

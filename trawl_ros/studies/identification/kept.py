@@ -1,4 +1,4 @@
-"""Trials that are kept as they are finished, so that a study goes on where it ended."""
+"""File of finished trials, from which a study resumes."""
 
 import json
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ FILE = 'trials.jsonl'
 
 
 class KeptTrials:
-    """A file with a line per trial, and what was asked of all of them in its first line.
+    """File with a line per trial, and the common settings of all of them in its first line.
 
     Parameters
     ----------
@@ -71,13 +71,13 @@ class KeptTrials:
             write_text(self._path, kept)
 
     def add(self, trial: Trial) -> None:
-        """Keep one more."""
+        """Append a trial."""
         with appending(self._path) as file:
             file.write(json.dumps(asdict(trial), allow_nan=False) + '\n')
         self._trials[trial.series, trial.number] = trial
 
     def has(self, series: str, number: int) -> bool:
-        """Tell whether a trial is there already."""
+        """True if a trial is there already."""
         return (series, number) in self._trials
 
     def series(self, series: str) -> tuple[Trial, ...]:

@@ -1,4 +1,4 @@
-"""What a planned trial teaches, and by how much the model is wrong: figures without chance."""
+"""Information in a planned trial, and size of the model error: figures without chance."""
 
 import numpy as np
 
@@ -26,7 +26,7 @@ LOOKED_AT: tuple[State, ...] = (
 
 
 def planning_rows(gear: str) -> list[Row]:
-    """How many of the twelve law quantities a six-hour trial makes well known."""
+    """Number of law quantities that a six-hour trial makes well known."""
     plan = plan_trial(load_gear(gear), hours=HOURS)
     limits = '; '.join(f'{name}: {what}' for name, what in plan.limits.items())
     rows = [
@@ -50,7 +50,7 @@ def planning_rows(gear: str) -> list[Row]:
 
 
 def model_error_rows(gear: str, cut: Cut) -> list[Row]:
-    """By how much a model differs from a plant, both with the board of the gear file."""
+    """Differences of a model and a plant, both with the board of the gear file."""
     model, plant = (_looks(record) for record in (cut.model(gear), cut.plant(gear)))
     rows = []
     for group in GROUPS:

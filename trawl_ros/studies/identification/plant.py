@@ -1,4 +1,4 @@
-"""Gears that make the data, gears that are fitted to them, and boards drawn by chance."""
+"""Plants of the trials, the models fitted to them, and random boards."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ HELD_OUT: tuple[State, ...] = ((350.0, 2.3), (480.0, 2.1), (620.0, 2.3), (800.0,
 
 @dataclass(frozen=True)
 class Cut:
-    """How fine a gear's net is, and by how much the plant is finer.
+    """Mesh of a gear's net, and refinement of the plant.
 
     ``around`` counts the meshes around the mouth of the model; the plant has ``lines`` times its
     segments of warps and bridles and ``net`` times its meshes, and joins none where ``unjoined``.
@@ -48,13 +48,13 @@ class Cut:
     unjoined: bool = False
 
     def model(self, gear: str) -> GearRecord:
-        """The gear that is fitted."""
+        """Gear that is fitted."""
         record = load_gear(gear)
         netting = record.netting.model_copy(update={'around': self.around})
         return record.model_copy(update={'netting': netting})
 
     def plant(self, gear: str) -> GearRecord:
-        """The gear that makes the data."""
+        """Gear that makes the data."""
         return self.model(gear).refined(
             warp=self.lines, bridle=self.lines, net=self.net, unjoined=self.unjoined
         )
@@ -70,7 +70,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class Look:
-    """The plant in one steady state: observables (22,) and their sensitivities (22, 3) to both
+    """Steady state of the plant: observables (22,) and their sensitivities (22, 3) to both
     warp lengths and speed, and (22, 12) to the coefficients.
     """
 
@@ -90,7 +90,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Board:
-    """A board that tows in all states of a trial, what is seen of it, tow by tow, and how many
+    """Board that tows in all states of a trial, its observables tow by tow, and how many
     were drawn that do not, by reason.
     """
 

@@ -1,4 +1,4 @@
-"""Windows as instruments give them of a plant: noise that goes on, calibration off for a tow."""
+"""Windows of a plant from instruments: correlated noise, and calibration errors of a tow."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ CORRELATION_S = 15.0
 
 @dataclass(frozen=True)
 class Kind:
-    """Readings per second of one kind of sensor, and the standard deviations of their white and
+    """Kind of sensor: readings per second, and the standard deviations of their white and
     their correlated noise.
     """
 
@@ -78,7 +78,7 @@ NAMES = (*MEASURED, *INPUTS)
 
 @dataclass(frozen=True)
 class Sensors:
-    """By how much the true noise and biases of each quantity exceed what is stated, a factor."""
+    """Sensors: factors of the true noise and biases of each quantity over the stated ones."""
 
     factors: Mapping[str, float]
 
@@ -95,7 +95,7 @@ AS_STATED = Sensors(dict.fromkeys(KINDS, 1.0))
 
 
 def wrong_by(part: float, chance: np.random.Generator) -> Sensors:
-    """Sensors each of which is either worse or better than stated by this part."""
+    """Return sensors each of which is either worse or better than stated by this share."""
     return Sensors({name: 1.0 + part * chance.choice((-1.0, 1.0)) for name in KINDS})
 
 

@@ -1,4 +1,4 @@
-"""The report of the study: JSON, Markdown, a self-contained page and a figure."""
+"""Report of the study: JSON, Markdown, a self-contained page and a figure."""
 
 import os
 from collections.abc import Sequence
@@ -49,7 +49,7 @@ def _options(plan: Plan) -> str:
 
 
 def _method(plan: Plan) -> str:
-    """How the figures were made, in sentences."""
+    """Method in sentences."""
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
     return (
         f'A trial draws the twelve coefficients from the prior of the gear file, until the plant '

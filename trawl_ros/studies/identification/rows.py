@@ -190,7 +190,7 @@ def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
 
 
 def board_rows(trials: Sequence[Trial]) -> list[Row]:
-    """How many fits came to rest, and how many boards could not be towed."""
+    """Convergence of fits, and rate of boards that could not be towed."""
     rejected = sum((Counter(trial.rejected) for trial in trials), Counter[str]())
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
     drawn = len(trials) + rejected.total()
@@ -218,7 +218,7 @@ def _array(trials: Sequence[Trial], name: str) -> np.ndarray:
 def _interval(
     figures: Callable[[np.ndarray], np.ndarray], number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """95 % intervals of figures (n,) of trials, by drawing as many of them again and again."""
+    """Bootstrap 95 % intervals of figures (n,) over trials."""
     if number < 2:
         nothing = np.full(figures(np.arange(number)).shape, np.nan)
         return nothing, nothing

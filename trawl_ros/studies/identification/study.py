@@ -1,4 +1,4 @@
-"""The study of identification: which trials it makes, and how."""
+"""Study of the identification: plan of its trials, and their execution."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -39,7 +39,7 @@ DEFAULT_FINER = Cut(around=48, lines=2, unjoined=True)
 
 @dataclass(frozen=True)
 class Series:
-    """Trials of one kind; ``stated`` as in `Task`."""
+    """Series of trials of one kind; ``stated`` as in `Task`."""
 
     name: str
     words: str
@@ -55,7 +55,7 @@ SERIES = (COVERAGE, BOUND, MOUTH)
 
 @dataclass(frozen=True)
 class Plan:
-    """How large the study is.
+    """Plan of the study's size.
 
     Attributes
     ----------
@@ -83,22 +83,22 @@ class Plan:
     live_s: float = LIVE_S
 
     def numbers(self) -> dict[str, int]:
-        """How many trials by the name of their series."""
+        """Number of trials by the name of their series."""
         return {COVERAGE.name: self.coverage, BOUND.name: self.bound, MOUTH.name: self.mouth}
 
     def asked(self) -> dict[str, Any]:
-        """What each trial depends on, as plain values."""
+        """Settings of each trial, as plain values."""
         gear = load_gear(self.gear).model_dump(mode='json')
         return {'seed': self.seed, 'around': self.around, 'tows': self.tows, 'gear': gear}
 
     def cut(self, series: Series) -> Cut:
-        """How fine model and plant of a series are."""
+        """Mesh of model and plant of a series."""
         return Cut(**{**asdict(series.cut), 'around': self.around})
 
 
 @dataclass(frozen=True)
 class Shown:
-    """Shows progress.
+    """Progress displays.
 
     ``steps`` takes a title and their number, and gives what is called after each of them;
     ``stretch`` takes a title and a time, s.
@@ -110,7 +110,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class Found:
-    """All rows, by section, and a figure of the trials."""
+    """Result: all rows by section, and a figure of the trials."""
 
     sections: tuple[tuple[str, tuple[Row, ...]], ...]
     figure: Figure
@@ -125,7 +125,7 @@ def run_study(
     force: bool = False,
     small: bool = False,
 ) -> Found:
-    """Make the study, or what is missing to it.
+    """Run the study, or the trials it lacks.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def run_trials(
     workers: int | None = None,
     force: bool = False,
 ) -> KeptTrials:
-    """Make the trials that are not there yet.
+    """Run the trials that are missing.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def run_trials(
 
 
 def trials_of(plan: Plan, kept: KeptTrials, series: Series) -> tuple[Trial, ...]:
-    """The trials of a series that a plan asks for; more may be kept."""
+    """Trials of a series in a plan; more may be on file."""
     return kept.series(series.name)[: plan.numbers()[series.name]]
 
 

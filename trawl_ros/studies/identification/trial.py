@@ -1,4 +1,4 @@
-"""One trial: a board drawn by chance, towed, fitted, and predicted on a tow that was left out."""
+"""Trial: a random board, towed, fitted, and predicted on a tow that was left out."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -25,7 +25,7 @@ WRONG_BY = 0.3
 
 @dataclass(frozen=True)
 class Task:
-    """A trial to be made.
+    """Task of one trial.
 
     Attributes
     ----------
@@ -56,17 +56,17 @@ class Task:
 
     @property
     def name(self) -> str:
-        """What it is called in files and sentences."""
+        """Name in files and sentences."""
         return f'{self.series} {self.number}'
 
     def chance(self) -> np.random.Generator:
-        """Randomness of this trial alone, wherever and whenever it is made."""
+        """Random generator of this trial alone, wherever and whenever it is made."""
         return np.random.default_rng([self.seed, self.number, *self.series.encode()])
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What came of a trial.
+    """Result of a trial.
 
     Attributes
     ----------
@@ -104,12 +104,12 @@ class Trial:
     noise_scales: dict[str, float]
 
     def record(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """Plain values for JSON."""
         return asdict(self)
 
 
 def run_trial(task: Task) -> Trial:
-    """Make a trial.
+    """Run a trial.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def run_trial(task: Task) -> Trial:
 
 
 def _perfect(board: Board, means: list[Mapping[str, float]]) -> np.ndarray:
-    """What the plant itself predicts (n, 4) at inputs as they were measured."""
+    """Predictions (n, 4) of the plant itself at the inputs as measured."""
     rows = []
     for look, seen in zip(board.tows[-1], means, strict=True):
         wrong = np.array([seen[name] for name in INPUTS]) - look.inputs

@@ -1,4 +1,4 @@
-"""What is hidden in a trial: physics or an error of an instrument, of a size and a drawn shape.
+"""Hidden effect of a trial: physics or an error of an instrument, of a size and a random shape.
 
 Hidden effects are written apart from the catalogue that looks for them. They act through the
 general hooks of the model: water, properties of ropes, forces on nodes, the law of the boards, and
@@ -35,7 +35,7 @@ def _shown(size: float, readings: Readings, at: Situation) -> Readings:
 
 @dataclass(frozen=True)
 class Hidden:
-    """An effect with a shape; a size of 0 is none.
+    """Hidden effect with a shape; a size of 0 is none.
 
     Attributes
     ----------
@@ -60,5 +60,5 @@ class Hidden:
 
     @property
     def signs(self) -> tuple[float, ...]:
-        """To which sides it may be."""
+        """Possible signs of its size."""
         return tuple(sign for sign, most in zip((-1.0, 1.0), self.most, strict=True) if most > 0.0)

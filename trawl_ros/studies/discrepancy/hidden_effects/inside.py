@@ -136,7 +136,7 @@ def net_drag(chance: np.random.Generator) -> Hidden:
 
 @dataclass(frozen=True)
 class Stalling:
-    """Lift lost beyond an angle, with a power of what is above it."""
+    """Coefficient modifier: lift lost beyond an angle, with a power of the excess over it."""
 
     size: float
     onset: float
@@ -145,7 +145,7 @@ class Stalling:
     def __call__(
         self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
     ) -> np.ndarray:
-        """Take the lift off."""
+        """Subtract the lost lift."""
         above = np.where(np.real(attack) > self.onset, attack - self.onset, 1e-9)
         bent = coefficients + 0.0 * attack[..., None]
         # At 10° above the onset a size of 1 loses as much as it would with the square.
@@ -165,7 +165,7 @@ def board_stall(chance: np.random.Generator) -> Hidden:
 
 @dataclass(frozen=True)
 class Leaning:
-    """Lift by the lean, bent a little."""
+    """Coefficient modifier: lift by the lean, slightly non-linear."""
 
     size: float
     bend: float
@@ -255,7 +255,7 @@ def heave(chance: np.random.Generator) -> Hidden:
 
 @dataclass(frozen=True)
 class Drag:
-    """Mud or sand that holds what is below a depth."""
+    """Node force: mud or sand that holds what is below a depth."""
 
     nodes: np.ndarray
     depth: float
@@ -264,7 +264,7 @@ class Drag:
     ahead: np.ndarray
 
     def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-        """Hold what is below, and carry part of it."""
+        """Return friction, and the vertical reaction of part of it."""
         under = 0.5 * (1.0 + np.tanh((-positions[..., 2] - self.depth) / 6.0))
         way = np.array([*-self.ahead, self.carry])
         return self.hold * under[..., None] * way + 0.0 * velocities

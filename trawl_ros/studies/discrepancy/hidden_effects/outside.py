@@ -16,7 +16,7 @@ USUAL_ATTACK = 0.3
 
 @dataclass(frozen=True)
 class MoreLoad:
-    """More of one coefficient at both boards (``side`` None) or one, by a power of attack."""
+    """Coefficient modifier of both boards (``side`` None) or one, by a power of attack."""
 
     size: float
     place: int

@@ -1,4 +1,4 @@
-"""What readings without errors are best fitted with: as near as a model can come to the plant."""
+"""Best fit of readings without errors: the limit of the model's approach to the plant."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -20,7 +20,7 @@ def rate(
     most: float | None = None,
     note: str = '',
 ) -> Row:
-    """How often something is so, %."""
+    """Rate of an outcome, %, with its interval."""
     if not outcomes:
         return Row(what, np.nan, unit='%', least=least, target=most, note='no trials')
     count, number = sum(outcomes), len(outcomes)

@@ -1,4 +1,4 @@
-"""The page of the blind tests."""
+"""Report of the blind tests."""
 
 import os
 import re
@@ -56,7 +56,7 @@ def _options(plan: Plan) -> str:
 
 
 def _method(plan: Plan, trials: Sequence[Scored], classes: Classes) -> str:
-    """How trials were made, in sentences."""
+    """Method in sentences."""
     not_testable = [trial for trial in trials if trial.diagnosis is None]
     why = Counter(re.split(' of |:', trial.key['why_not'])[0] for trial in not_testable)
     listed = ', '.join(f'{name} {count}' for name, count in why.most_common()) or 'none'

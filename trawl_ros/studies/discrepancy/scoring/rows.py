@@ -43,7 +43,7 @@ def all_rows(trials: Sequence[Scored], classes: Classes) -> list[tuple[str, tupl
 
 
 def clean_rows(trials: Sequence[Scored]) -> list[Row]:
-    """How often there is an alarm where nothing is."""
+    """Rate of false alarms."""
     clean = chosen(trials, 'clean')
     return [
         rate('clean trials with an alarm', [verdict(t) != 'NO_DISCREPANCY' for t in clean],
@@ -54,7 +54,7 @@ def clean_rows(trials: Sequence[Scored]) -> list[Row]:
 
 
 def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
-    """Detection and naming of what the catalogue has."""
+    """Detection and naming of effects in the catalogue."""
     inside = chosen(trials, 'inside')
     said = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
     third = chosen(trials, 'inside', 3.0)
@@ -114,7 +114,7 @@ def _one_class(names: set[str], classes: Classes) -> set[str]:
 
 
 def outside_rows(trials: Sequence[Scored]) -> list[Row]:
-    """What is said of what the catalogue does not have."""
+    """Verdicts on effects outside the catalogue."""
     outside = chosen(trials, 'outside')
     kinds = {effects_of(trial)[0] for trial in outside}
     return [
@@ -134,7 +134,7 @@ def outside_rows(trials: Sequence[Scored]) -> list[Row]:
 
 
 def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
-    """Two effects at once."""
+    """Verdicts on two effects at once."""
     pairs = chosen(trials, 'pair')
     return [
         rate(
@@ -147,7 +147,7 @@ def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
 
 
 def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
-    """Tows so much alike that effects are too, and the tow that is proposed then."""
+    """Tows so much alike that effects are too, and the proposed next tow."""
     poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
     alone = [trial for trial in poor if verdict(trial) == 'NAMED' and len(reported(trial)) == 1]
     said = [trial for trial in poor if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
@@ -162,7 +162,7 @@ def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
 
 
 def bag_rows(trials: Sequence[Scored]) -> list[Row]:
-    """Whether full bags give the verdicts of the windows worked out from steady states."""
+    """Agreement of verdicts from full bags with those from simulated windows."""
     by_number: Mapping[int, Scored] = {
         trial.key['spec']['number']: trial
         for trial in trials
@@ -220,7 +220,7 @@ def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
 
 
 def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
-    """The same score with keys that belong to other trials: what chance would reach."""
+    """Score by chance: the same with keys that belong to other trials."""
     inside = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
     if len(inside) < 2:
         return []

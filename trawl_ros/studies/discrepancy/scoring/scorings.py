@@ -1,4 +1,4 @@
-"""The log of all times that blind trials were scored: none is left out that came out worse."""
+"""Log of all scorings of blind trials, so that none is left out that came out worse."""
 
 import json
 from collections.abc import Sequence

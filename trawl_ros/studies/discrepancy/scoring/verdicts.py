@@ -1,4 +1,4 @@
-"""What was said of a trial beside what is hidden in it.
+"""Verdicts on a trial against its hidden effects.
 
 Of a trial only its key and ``diagnosis.json`` are known here.
 """
@@ -13,7 +13,7 @@ Classes = Mapping[str, tuple[str, ...]]
 
 
 def names_of(trial: Scored) -> set[str]:
-    """Effects that are named."""
+    """Named effects."""
     return {effect['name'] for effect in said_of(trial)['effects']}
 
 
@@ -24,7 +24,7 @@ def reported(trial: Scored) -> set[str]:
 
 
 def effects_of(trial: Scored) -> tuple[str, ...]:
-    """What is hidden."""
+    """Hidden effects."""
     return tuple(trial.key['spec']['effects'])
 
 
@@ -46,40 +46,40 @@ def verdict(trial: Scored) -> str:
 
 
 def right(trial: Scored, names: set[str], classes: Classes) -> bool:
-    """Whether all that is hidden is among names, by its own or that of its class."""
+    """True if all hidden effects are among names, by their own or that of their class."""
     return all(names & {name, *classes.get(name, ())} for name in effects_of(trial))
 
 
 def named_right(trial: Scored, classes: Classes) -> bool:
-    """Whether there is one name, and the right one."""
+    """True if there is one name, and the right one."""
     alone = len(said_of(trial)['effects']) == 1
     return verdict(trial) == 'NAMED' and alone and right(trial, names_of(trial), classes)
 
 
 def both_named(trial: Scored, classes: Classes) -> bool:
-    """Whether two effects are hidden and both are named."""
+    """True if two effects are hidden and both are named."""
     pair = trial.key['spec']['series'] == 'pair'
     return pair and verdict(trial) == 'NAMED' and right(trial, names_of(trial), classes)
 
 
 def one_named(trial: Scored, classes: Classes) -> bool:
-    """Whether two effects are hidden and one of them is named, without any that is not there."""
+    """True if two effects are hidden and one of them is named, without any that is not there."""
     names = names_of(trial)
     pair = trial.key['spec']['series'] == 'pair' and not both_named(trial, classes)
     return pair and verdict(trial) == 'NAMED' and bool(names) and names <= set(effects_of(trial))
 
 
 def said_of(trial: Scored) -> dict[str, Any]:
-    """Its diagnosis."""
+    """Diagnosis of the trial."""
     assert trial.diagnosis is not None
     return trial.diagnosis
 
 
 def same_said(trial: Scored, other: Scored) -> bool:
-    """Whether verdict and names are the same."""
+    """True if verdict and names are the same."""
     return verdict(trial) == verdict(other) and names_of(trial) == names_of(other)
 
 
 def parted(trial: Scored) -> bool:
-    """Whether one effect alone is left, and the right one."""
+    """True if one effect alone is left, and the right one."""
     return verdict(trial) == 'NAMED' and reported(trial) == set(effects_of(trial))

@@ -1,4 +1,4 @@
-"""What a repair is worth, where the effect was named rightly."""
+"""Worth of a repair where the effect was named rightly."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -19,7 +19,7 @@ from trawl_ros.studies.row import Row
 
 
 def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
-    """What the named effect is worth on tows that decided nothing."""
+    """Gain by the named effect on held-out tows."""
     named = [
         trial
         for trial in chosen(trials, 'inside')
@@ -81,7 +81,7 @@ def part_removed(
     expected: Mapping[str, float],
     floor: Mapping[str, float],
 ) -> float | None:
-    """Part of the mean square error beyond that of the plant itself which a repair removes.
+    """Share of the mean square error beyond that of the plant itself which a repair removes.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def part_removed(
 
 
 def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | None:
-    """Error of the twelve with the effect over that without, each in its std after."""
+    """Error of the coefficients with the effect over that without, each in its posterior std."""
     found = said_of(trial)['coefficients']
     sums = {'before': 0.0, 'after': 0.0}
     for name, value in truth.items():
@@ -117,7 +117,7 @@ def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | Non
 
 
 def _best_covered(trial: Scored) -> list[bool]:
-    """Whether each interval covers what readings without errors are best fitted with."""
+    """Coverage of the best fit to readings without errors by each interval."""
     name = effects_of(trial)[0]
     own = [effect for effect in said_of(trial)['effects'] if effect['name'] == name]
     return [
@@ -128,7 +128,7 @@ def _best_covered(trial: Scored) -> list[bool]:
 
 
 def _hidden_covered(trial: Scored) -> bool | None:
-    """Whether the interval of an effect of one parameter covers the hidden size."""
+    """True if the interval of an effect of one parameter covers the hidden size."""
     effects, name = said_of(trial)['effects'], effects_of(trial)[0]
     if len(effects) != 1 or effects[0]['name'] != name or len(effects[0]['parameters']) != 1:
         return None

@@ -1,4 +1,4 @@
-"""What instruments without errors would show in the course of a tow."""
+"""Course of a tow: error-free readings over time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ EARLY_S = 60.0
 
 @dataclass(frozen=True)
 class Course:
-    """A tow second by second.
+    """Course of a tow, second by second.
 
     Attributes
     ----------
@@ -55,14 +55,14 @@ class Course:
 
 
 def settling(length: float, speed: float) -> float:
-    """How long (s) a gear is given before a state counts as steady."""
+    """Settling time (s) before a state counts as steady."""
     options = WindowOptions()
     passages = options.settle_passages * (length + options.net_length) / speed
     return max(options.settle_s, min(passages, options.longest_settle_s))
 
 
 def quasi_steady(tow: PlannedTow, looks: Sequence[Look]) -> Course:
-    """One steady state after the other, and what lies between them as if it were one too."""
+    """Quasi-steady course: one steady state after the other, also between them."""
     length, speed = looks[0].state
     shooting = replace(looks[0], state=(length - AWAY_M, speed))
     times, rows, moments = [0.0], [shooting], []

@@ -14,7 +14,7 @@ SERIES = 'followed'
 
 
 def proposed(diagnosis: Mapping[str, Any]) -> PlannedTow | None:
-    """The tow that a diagnosis would have next; None where it proposes none."""
+    """Next tow by a diagnosis; None where it proposes none."""
     for step in diagnosis['next_tow']:
         if step['states']:
             states = tuple((state['warp_length'], state['speed']) for state in step['states'])

@@ -1,4 +1,4 @@
-"""Makes trials: what a diagnoser may see, and the key it may not."""
+"""Construction of trials: visible data, and the key."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
 
 @dataclass(frozen=True)
 class Hiding:
-    """A plant with effects hidden in it, and the key that says so."""
+    """Plant with effects hidden in it, and the key."""
 
     key: Key
     plant: Plant
@@ -44,7 +44,7 @@ class Hiding:
     sensors: Sensors
 
     def towed(self, plan: TrialPlan) -> tuple[tuple[Look, ...], ...] | None:
-        """What the plant shows, or None if it cannot be towed."""
+        """Tows of the plant, or None if it cannot be towed."""
         try:
             return self.plant.towed(self.effects, plan)
         except NoSteadyState:
@@ -53,14 +53,14 @@ class Hiding:
 
 @dataclass(frozen=True)
 class Made:
-    """Windows of a trial, and the same of instruments without errors."""
+    """Windows of a trial, and the same from instruments without errors."""
 
     windows: tuple[SteadyWindow, ...]
     quiet: tuple[SteadyWindow, ...]
 
 
 def hide(spec: Spec, gear: str, cut: Cut, seed: int) -> Hiding:
-    """Hide what is asked for, if that is possible."""
+    """Hide the wanted effects, if that is possible."""
     shape = chance_of(spec, seed)
     plant = _plant(gear, cut, seed, spec.plant)
     likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
@@ -87,7 +87,7 @@ def hide(spec: Spec, gear: str, cut: Cut, seed: int) -> Hiding:
 
 
 def chance_of(spec: Spec, seed: int, what: str = '') -> np.random.Generator:
-    """Where the randomness of a trial comes from."""
+    """Random generator of a trial."""
     return np.random.default_rng([seed, spec.origin, *spec.series.encode(), *what.encode()])
 
 
@@ -202,7 +202,7 @@ def _plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
 
 @cache
 def likelihood_of(gear: str, cut: Cut, seed: int, number: int, plan: str) -> Likelihood:
-    """What a plant would show in the windows of a plan."""
+    """Likelihood of a plant in the windows of a plan."""
     plant, tows = _plant(gear, cut, seed, number), PLANS[plan]
     quiet = steady_windows(plant.towed((), tows), AS_STATED, np.random.default_rng(0))
     quiet = tuple(replace(window, index=place, state=place) for place, window in enumerate(quiet))

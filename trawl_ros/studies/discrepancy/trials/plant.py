@@ -1,4 +1,4 @@
-"""The plant of a trial: a gear that is not the model, towed with something hidden in it."""
+"""Plant of a trial: a gear that differs from the model, towed with hidden effects."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ NORMAL_DRAG, FRICTION = 0.985, 1.15
 
 @dataclass(frozen=True)
 class Clean:
-    """The plant without anything hidden in one state; ``slow`` as in `Prediction`."""
+    """Plant without hidden effects in one state; ``slow`` as in `Prediction`."""
 
     look: Look
     slow: np.ndarray
@@ -45,14 +45,14 @@ class Clean:
 
 @dataclass(frozen=True)
 class Plant:
-    """A plant with a board of its own, and what it shows in all states of the plan."""
+    """Plant with a board of its own, and its states without hidden effects."""
 
     model: GearModel
     coefficients: np.ndarray
     clean: dict[State, Clean]
 
     def at(self, state: State) -> Clean:
-        """What it shows in a state with nothing hidden.
+        """Return the plant in a state without hidden effects.
 
         Raises
         ------
@@ -147,7 +147,7 @@ def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
 
 
 def with_other_law(model: GearModel) -> GearModel:
-    """The gear with another law of drag of netting and its ropes."""
+    """Gear with another law of drag of netting and its ropes."""
     net = np.isin(model.ends, model.layout.net).all(axis=1)
     bars = replace(
         model.bars,

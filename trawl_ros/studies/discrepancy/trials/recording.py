@@ -1,4 +1,4 @@
-"""Bags of a trial: what instruments report of a tow, with their errors."""
+"""Bags of a trial: samples of a tow with the instruments' errors."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -130,7 +130,7 @@ def _samples(found: dict[str, Readings], water: Water) -> Iterator[Sample]:
 
 
 def _together(first: Readings, second: Readings) -> Iterator[tuple[float, float, float]]:
-    """Readings of one message; silent is the message."""
+    """Readings of one message; where one is missing, so is the message."""
     common, here, there = np.intersect1d(first[0], second[0], return_indices=True)
     yield from zip(common, first[1][here], second[1][there], strict=True)
 

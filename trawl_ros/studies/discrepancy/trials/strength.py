@@ -1,4 +1,4 @@
-"""How large a hidden effect must be to be seen, from the plant's own likelihood.
+"""Detectable size of a hidden effect, from the plant's own likelihood.
 
 The plant, linearised around its board, says how what the effect changes compares with the errors of
 the instruments and with what coefficients could mimic. No detector has part in it.
@@ -49,14 +49,14 @@ CLOSE = 0.05
 
 @dataclass(frozen=True)
 class Likelihood:
-    """The plant linearised around its board in the windows that decide."""
+    """Likelihood of the plant, linearised around its board in the deciding windows."""
 
     plant: Plant
     fit: Fit
     plan: TrialPlan
 
     def detectable(self, hidden: Hidden, sign: float, *, beside_catalogue: bool) -> float:
-        """Smallest size that is seen in 80 % of trials, infinite if none that is possible is.
+        """Smallest size that is detected in 80 % of trials, infinite if no possible one is.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class Likelihood:
         return float(high)
 
     def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
-        """How many standard deviations strong an effect is."""
+        """Strength of an effect in standard deviations."""
         changed = self.plant.towed([(hidden, size)], self.plan)
         rows = [OBSERVABLES.index(name) for name in MEASURED]
         columns = [
@@ -118,7 +118,7 @@ class Likelihood:
 
     @property
     def mimicry(self) -> Evidence:
-        """What the plan would say of all effects of the catalogue."""
+        """Evidence of the plan on all effects of the catalogue."""
         units = np.concatenate([candidate.scale for candidate in self.wanted])
         return evidence(self.fit, self._mimics, units)
 

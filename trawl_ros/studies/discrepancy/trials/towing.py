@@ -1,4 +1,4 @@
-"""A tow of the planned states in time: the gear hauled, paid out and left to settle."""
+"""Simulation of planned tows: the gear hauled, veered and left to settle."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,28 +25,28 @@ ROUNDS = 20
 
 @dataclass(frozen=True)
 class InTime(Effect):
-    """A hidden effect where the simulation takes those of the catalogue; its value is its size."""
+    """Hidden effect for the simulation; its value is its size."""
 
     hidden: Hidden | None = None
 
     def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
-        """What the gear is towed with."""
+        """Apply to inputs: true warp lengths and speed (3,)."""
         assert self.hidden is not None
         return self.hidden.towed(float(values[0]), inputs, at)
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
-        """The gear with it."""
+        """Gear model with the hidden effect."""
         assert self.hidden is not None
         return self.hidden.gear(float(values[0]), model, at)
 
     def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
-        """What sensors show."""
+        """Apply to sensors: readings with the hidden effect."""
         assert self.hidden is not None
         return self.hidden.shown(float(values[0]), readings, at)
 
 
 def acting(effects: Sequence[tuple[Hidden, float]]) -> Acting:
-    """Hidden effects with their sizes."""
+    """Effect set of hidden effects with their sizes."""
     return Acting(
         tuple(
             Active(
@@ -85,7 +85,7 @@ def towed_in_time(
     times, inputs, values, moments = [], [], [], []
 
     def tow_on(command: Command, done: float | None) -> None:
-        """Under a command for so many seconds, or until the winches have done."""
+        """Simulate a command for so many seconds, or until the winches have reached it."""
         simulation.command = command
         begun = simulation.now.stamp
         while True:
@@ -109,7 +109,7 @@ def towed_in_time(
 
 
 def _shown(now: Instant, there: Acting, heading: float, hours: float) -> np.ndarray:
-    """What counters and log show of what the gear is towed with."""
+    """Indicated inputs by fixed-point iteration, from the true ones."""
     towed = np.array([now.winches[0].length, now.winches[1].length, now.ship.speed])
     shown = towed
     for _ in range(ROUNDS):
@@ -121,7 +121,7 @@ def _shown(now: Instant, there: Acting, heading: float, hours: float) -> np.ndar
 def _seen(
     simulation: Simulation, there: Acting, sense: float, shown: np.ndarray, hours: float
 ) -> np.ndarray:
-    """What sensors show of the gear (22,)."""
+    """Readings (22,) of the sensors."""
     now, model = simulation.now, simulation.model
     state = now.motion.state
     seen = observe(model, state, tow_of(model, now.ship, now.winches)).array()

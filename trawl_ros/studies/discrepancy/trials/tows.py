@@ -1,4 +1,4 @@
-"""The planned trials: which steady states are towed, on which course, and when."""
+"""Planned trials: their steady states, courses and times."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _THREE: tuple[State, ...] = ((650.0, 2.0), (900.0, 2.4), (300.0, 2.0), (550.0, 2
 
 @dataclass(frozen=True)
 class PlannedTow:
-    """Steady states one after another; ``eastward`` or on the reciprocal track."""
+    """Planned tow: steady states one after another; ``eastward`` or on the reciprocal track."""
 
     states: tuple[State, ...]
     eastward: bool
@@ -32,7 +32,7 @@ class PlannedTow:
         return 1.0 if self.eastward else -1.0
 
     def moment(self, place: int) -> Situation:
-        """When and how the state at a place is towed."""
+        """Situation of the state at a place."""
         length, speed = self.states[place]
         return Situation(
             (length, length, speed),
@@ -43,7 +43,7 @@ class PlannedTow:
 
 @dataclass(frozen=True)
 class TrialPlan:
-    """Tows, of which the first ones are the ``baseline``: of when the gear was in order."""
+    """Planned trial: tows, of which the first ``baseline`` are from when the gear was in order."""
 
     tows: tuple[PlannedTow, ...]
     baseline: int

@@ -1,4 +1,4 @@
-"""A trial of the blind tests: what is to be made, what is hidden in it, and what was said of it."""
+"""Records of a blind trial: its specification, its key, and its diagnosis."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -11,7 +11,7 @@ Form = Literal['windows', 'bags', 'dynamic']
 
 @dataclass(frozen=True)
 class Spec:
-    """A trial to be made.
+    """Specification of a trial.
 
     Attributes
     ----------
@@ -48,13 +48,13 @@ class Spec:
 
     @property
     def origin(self) -> int:
-        """Number of the trial in which the same was drawn."""
+        """Number of the trial with the same draws."""
         return self.number if self.like is None else self.like
 
 
 @dataclass(frozen=True)
 class Key:
-    """What is hidden in a trial, ``testable`` or not; read by the scorer alone.
+    """Key of a trial: its hidden effects, ``testable`` or not; read by the scorer alone.
 
     ``floor`` are errors, by channel, that the plant itself would have on what is kept back.
     """
@@ -78,7 +78,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Scored:
-    """A trial's key, and what was said of it, None where there is nothing.
+    """Scored trial: its key and its diagnosis, None without one.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a diagnoser may see of a trial: steady windows, as a JSON file."""
+"""Visible data of a trial: steady windows, as a JSON file."""
 
 import json
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ def write_windows(path: Path, windows: Sequence[SteadyWindow]) -> None:
 
 
 def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
-    """Read them again."""
+    """Read windows."""
     records = json.loads(path.read_text(encoding='utf-8'))
     return tuple(
         SteadyWindow(**{**record, 'track': GroundTrack(**record['track'])}) for record in records
