@@ -212,7 +212,7 @@ class McapFile:
         return summary.pieces
 
     def _by_scan(self, stream: BinaryIO, allowed: Allowance) -> list[Piece]:
-        """Go through the file record by record, and open chunks for the channels in them."""
+        """Scan the file record by record, and open chunks for the channels in them."""
         pieces = []
         for opcode, offset, length in self._walk(stream):
             stream.seek(offset + RECORD_START.size)
@@ -250,7 +250,7 @@ class McapFile:
         return [piece for piece in pieces if piece not in copies]
 
     def _describe(self, stream: BinaryIO, allowed: Allowance) -> None:
-        """Look for channels in chunks as far as the summary does not describe them."""
+        """Search chunks for channels that the summary does not describe."""
         for piece in self._pieces if self.indexed else ():
             if not self._known.lacking(self._used):
                 return
