@@ -1,4 +1,4 @@
-"""What is wrong with a record, as one sentence per complaint.
+"""Validation messages: one sentence for each fault of a record.
 
 Pydantic says what it found in terms of Python; here it is said in terms of the file: the key
 as it stands there, what was found, what was expected, in which unit.
@@ -47,7 +47,7 @@ UNITS = {
     'n_m': 'newton metres',
     'n_m2': 'newtons per square metre',
 }
-"""What the last words of a key say about its unit."""
+"""Units by the last words of a key."""
 
 
 def unit_of(key: str) -> str | None:
@@ -73,7 +73,7 @@ _SCALARS = {
 def complaints(
     cls: type[BaseModel], data: Any, errors: list[ErrorDetails], prefix: str = ''
 ) -> list[str]:
-    """Say what is wrong, unknown keys first.
+    """Return the validation messages of a record, unknown keys first.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def complaints(
 
 
 def shown(value: Any) -> str:
-    """Write a value as a file would have it, shortened to 60 characters."""
+    """Format a value as in a file, shortened to 60 characters."""
     if isinstance(value, bool | None):
         return {True: 'true', False: 'false', None: 'nothing'}[value]
     if isinstance(value, float) and not math.isfinite(value):
@@ -133,7 +133,7 @@ def shown(value: Any) -> str:
 def _unknown_key(
     cls: type[BaseModel], data: Any, loc: tuple[int | str, ...], prefix: str
 ) -> tuple[str, str]:
-    """Complain of an unknown key; also name the key that was probably meant, or ''."""
+    """Message on an unknown key; with the key that was probably meant, or ''."""
     unknown = str(loc[-1])
     key = _key(data, loc, prefix)
     owners = _records(_annotation(cls, loc[:-1]))
@@ -147,7 +147,7 @@ def _unknown_key(
 
 
 def _other_branch(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
-    """Tell whether a section is refused as text or number only because a union allows both."""
+    """True if a section is refused as text or number only because a union allows both."""
     loc = detail['loc']
     return (
         isinstance(detail['input'], dict)
@@ -157,7 +157,7 @@ def _other_branch(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
 
 
 def _key(data: Any, loc: tuple[int | str, ...], prefix: str) -> str:
-    """Write a location as the file's own key; the branches of a union are no part of it."""
+    """Format a location as the file's own key; the branches of a union are no part of it."""
     text = prefix
     for number, step in enumerate(loc):
         if isinstance(step, int) and isinstance(data, tuple):

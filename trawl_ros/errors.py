@@ -1,4 +1,4 @@
-"""What can go wrong, each as one sentence a user can act on.
+"""Errors of the input, each as one sentence a user can act on.
 
 Every message names the file, key or topic, what was found there and what was expected.
 """
@@ -7,39 +7,39 @@ from traceback import format_exception
 from typing import Literal
 
 Refusal = Literal['none found', 'collapsed', 'surfaced', 'outside law', 'unstable']
-"""Why there is no usable steady state."""
+"""Reasons why there is no usable steady state."""
 
 
 class TrawlError(Exception):
-    """Base of all errors that are the input's fault; commands print it and exit with 1."""
+    """Base class of all errors of the input; commands print them and exit with 1."""
 
 
 class GearError(TrawlError):
-    """A gear file that is missing, unreadable or says something impossible."""
+    """Gear file that is missing, unreadable or says something impossible."""
 
 
 class ScenarioError(TrawlError):
-    """A scenario file that is missing, unreadable or asks for something impossible."""
+    """Scenario file that is missing, unreadable or asks for something impossible."""
 
 
 class InstrumentError(TrawlError):
-    """A file of instrument parameters that is missing, unreadable or impossible."""
+    """File of instrument parameters that is missing, unreadable or impossible."""
 
 
 class MessageError(TrawlError):
-    """A message whose content contradicts what its topic or type promises."""
+    """Message whose content contradicts its topic or type."""
 
 
 class BagError(TrawlError):
-    """A bag that is missing, damaged, or does not hold what was asked for."""
+    """Bag that is missing, damaged, or does not hold what was asked for."""
 
 
 class LogError(TrawlError):
-    """A CSV log or its mapping that cannot be turned into a bag."""
+    """CSV log or mapping that cannot be turned into a bag."""
 
 
 class RosMissing(TrawlError):
-    """What needs ROS 2 was asked for where there is none; ``reason`` is the import that failed."""
+    """Missing ROS 2 for a function that needs it; ``reason`` is the import that failed."""
 
     def __init__(self, what: str, reason: ImportError) -> None:
         super().__init__(
@@ -49,7 +49,7 @@ class RosMissing(TrawlError):
 
 
 class NoSteadyState(TrawlError):
-    """The gear has no usable steady state at the wanted warp length and speed.
+    """Gear without usable steady state at the wanted warp length and speed.
 
     ``reason`` says why in a word; where a root was found, which of its faults came first.
     """
@@ -60,7 +60,7 @@ class NoSteadyState(TrawlError):
 
 
 def sentence_of(reason: Exception) -> str:
-    """What went wrong, for those who cannot let it rise: threads and processes of others.
+    """Describe an error in a sentence, for threads and processes that cannot let it rise.
 
     An error of the program is told with all that helps to mend it.
     """

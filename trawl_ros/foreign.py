@@ -1,4 +1,4 @@
-"""Boundary to foreign files: whatever goes wrong while one is read becomes a sentence."""
+"""Boundary to foreign files: any error of their reading becomes a sentence."""
 
 import os
 import stat
@@ -16,7 +16,7 @@ def reading(
     error: type[TrawlError],
     place: Callable[[], str] | None = None,
 ) -> Iterator[None]:
-    """Turn what libraries raise while they read a foreign file into the project's own error.
+    """Convert errors of libraries that read a foreign file into the project's own error.
 
     Readers say themselves what they expected wherever they know; this is for what they could not
     foresee, so that no file can show a traceback.

@@ -1,4 +1,4 @@
-"""Limits of what is taken from foreign files and messages, in one table.
+"""Limits of foreign files and messages, in one table.
 
 Each is applied before memory is taken or time is spent. What stands here is all there is: readers
 import a limit from this table, and `docs/limits.md` is held equal to it by a test.
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limit:
-    """A bound of what a file or message may ask for.
+    """Limit of a foreign file or message.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Many tasks at once on Dask: on the cores of this machine, or on a cluster.
+"""Parallel tasks on Dask: on the cores of this machine, or on a cluster.
 
 What a task gives depends on the task alone (randomness comes from a seed in it), and results
 are handed over by the task's place, so it does not matter where and when each one was run.
@@ -92,7 +92,7 @@ def cores() -> int:
 
 
 def _outcome(function: Callable[[Any], Any], task: Any) -> tuple[str | None, Any]:
-    """Run one task; what goes wrong comes back as a sentence, which can always be sent."""
+    """Run one task; return an error as a sentence, which can always be sent."""
     try:
         return None, function(task)
     except Exception as reason:
@@ -164,7 +164,7 @@ async def _shake_hands(address: str) -> None:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Let Ctrl-C wait; processes that are started meanwhile never hear of it.
+    """Hold Ctrl-C back; processes that are started meanwhile never hear of it.
 
     It is sent to all processes of a terminal at once, but workers are ended by who started them.
     """

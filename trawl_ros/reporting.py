@@ -1,4 +1,4 @@
-"""What the reports of validation and benchmark share: templates, and figures as text."""
+"""Common parts of reports: templates, and figures as text."""
 
 import re
 from functools import lru_cache
@@ -33,17 +33,17 @@ def page(package: str, name: str, /, **content: Any) -> str:
 
 
 def number(value: float) -> str:
-    """A figure with as many digits as one reads."""
+    """Format a figure with the digits that one reads."""
     if value != value:
         return 'not measured'
     return f'{value:.4g}' if abs(value) < 1e4 else f'{value:.0f}'
 
 
 def cell(text: str) -> str:
-    """Text in a cell of a Markdown table."""
+    """Escape text for a cell of a Markdown table."""
     return text.replace('|', '\\|').replace('\n', ' ')
 
 
 def foreign(text: str) -> str:
-    """What others named, in Markdown: shown as it is, and nothing more."""
+    """Escape foreign text in Markdown: shown as it is, and nothing more."""
     return re.sub(r'([\\`*_{}\[\]<>()#|!&~])', r'\\\1', ' '.join(text.split()))

@@ -1,4 +1,4 @@
-"""YAML files read with care, and turned into records that are checked on load.
+"""YAML files with strict checks on load, as records.
 
 Gear, scenario and instrument files all pass through here, so that each of them refuses the
 same mistakes in the same words: every complaint names the file, the key, what was found

@@ -1,4 +1,4 @@
-"""Where the files that come with the package lie: gear, scenarios, parameters and bags."""
+"""Directory of the files that come with the package: gear, scenarios, parameters and bags."""
 
 from pathlib import Path
 

@@ -16,14 +16,14 @@ _RECORD_START = struct.Struct('<BQ')
 
 
 class Allowance:
-    """What may be taken out of a file while it is gone through once.
+    """Allowance of one pass through a file: the bytes that may be unpacked from it.
 
     Parameters
     ----------
     path
         Of the file, named in errors.
     size
-        Of it in bytes: small files that claim to hold much hold nothing that was recorded.
+        Size of it in bytes: small files that claim to hold much hold nothing that was recorded.
     """
 
     def __init__(self, path: Path, size: int) -> None:

@@ -13,7 +13,7 @@ _BY_TOPIC: Mapping[str, Mapping[str, str]] = {
     'truth/door/starboard/angles': {'vector': 'rad'},
     'truth/net/opening': {'vector': 'm'},
 }
-"""Where the contract says what a type leaves open: unit by topic and path."""
+"""Units by topic and path that the contract fixes where the type leaves them open."""
 
 _BY_TYPE: Mapping[str, Mapping[str, str]] = {
     'geometry_msgs/msg/PointStamped': {'point': 'm'},

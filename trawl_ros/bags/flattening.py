@@ -21,7 +21,7 @@ MAX_COLUMNS = 1000
 _TIMES = ('builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration')
 
 Place = tuple[int, ...]
-"""Where a column stands in its message: field and element numbers from the top down."""
+"""Path of a column in its message: field and element numbers from the top down."""
 
 
 @dataclass(frozen=True, order=True)

@@ -16,7 +16,7 @@ MAX_LINE = 1_000_000
 """Characters in a line; more is no table."""
 
 OF_THE_ROW = ('clock', 'only')
-"""What wants columns that also a long table has as such."""
+"""Keys whose columns also a long table has as such."""
 
 BLANKS = 'blanks'
 _NAMED = {'tab': '\t'}

@@ -36,8 +36,8 @@ FIELDS: dict[str, dict[str, str]] = {
     'vessel/heading': {'compass_heading': 'angle'},
     'vessel/fix': {'latitude': 'angle', 'longitude': 'angle'},
 }
-"""What a log can say about each topic, with its quantity. A compass angle runs clockwise from
-north; a depth becomes a pressure."""
+"""Fields of each topic that a log can give, with their quantities. A compass angle runs clockwise
+from north; a depth becomes a pressure."""
 
 STD_QUANTITIES = {
     'door/port/pressure': 'pressure',

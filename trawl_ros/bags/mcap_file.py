@@ -85,9 +85,9 @@ class McapFile:
         self.passed_bytes = 0
         """Bytes between records, or behind the last one, that make no sense."""
         self.complete = False
-        """Whether the file ends as a finished one does."""
+        """True if the file ends as a finished one does."""
         self.chunk_compressions: set[str] = set()
-        """How chunks are compressed ('' for not at all)."""
+        """Compressions of the chunks ('' for not at all)."""
         with open_file(path, BagError) as stream:
             self._size = stream.seek(0, 2)
             allowed = Allowance(path, self._size)

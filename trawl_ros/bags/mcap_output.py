@@ -48,7 +48,7 @@ class McapOutput:
         self._schemas: dict[tuple[str, str, bytes], int] = {}
         self._descriptions: list[Schema | Channel] = []
         self._described = 0
-        """How many of them stand in more than one chunk."""
+        """Number of them that stand in more than one chunk."""
         self._chunk_start = 0
         self._next_repeat = REPEAT_BYTES
         self._stream = path.open('xb')

@@ -21,7 +21,7 @@ SENTENCES = {
     'vessel/heading': ('THS', 'HDT'),
     'vessel/echo_sounder/depth': ('DPT', 'DBT'),
 }
-"""What can tell each topic."""
+"""Kinds of sentences for each topic."""
 
 
 class RecorderClock(Clock):

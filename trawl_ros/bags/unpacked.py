@@ -11,7 +11,7 @@ from trawl_ros.foreign import open_file
 from trawl_ros.limits import BAG_UNPACKED
 
 SPARE_BYTES = 1 << 30
-"""What is left free on the disk when a compressed file is unpacked."""
+"""Bytes left free on the disk when a compressed file is unpacked."""
 
 
 class Unpacked:

@@ -32,10 +32,10 @@ NUMBERS = {
     'sensor_msgs/msg/LaserScan': 360,
     'sensor_msgs/msg/PointCloud2': 10_000,
 }
-"""How many numbers there are in a sequence of a type; 2 in those of others."""
+"""Length of number sequences by type; 2 in those of others."""
 
 PARTS = {'visualization_msgs/msg/MarkerArray': 150, 'geometry_msgs/msg/PolygonStamped': 40}
-"""How many parts that have fields of their own; 2 in others."""
+"""Length of sequences of nested messages by type; 2 in others."""
 
 _EMPTY = {'string': '', 'bool': False, 'float32': 0.0, 'float64': 0.0}
 

@@ -28,7 +28,7 @@ PATIENCE_S = 15.0
 LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 REPEATS = 5
 HEAVIEST = 4
-"""How many of the packages that take longest to import are named."""
+"""Number of packages named that take longest to import."""
 
 
 @dataclass(frozen=True)

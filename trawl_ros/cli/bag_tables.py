@@ -1,4 +1,4 @@
-"""What ``trawl bag info`` and ``trawl bag check`` print."""
+"""Output of ``trawl bag info`` and ``trawl bag check``."""
 
 import json
 from dataclasses import asdict
@@ -22,7 +22,7 @@ UNKNOWN = 'unknown'
 
 
 def headline(path: Path, count: int, start: int | None, end: int | None) -> str:
-    """Say in a line how much there is, over which time."""
+    """Summarise the content of a bag and its time span in a line."""
     if start is None or end is None:
         return f'{path}: no messages'
     begin = datetime.fromtimestamp(start / SECOND, timezone.utc)
@@ -31,7 +31,7 @@ def headline(path: Path, count: int, start: int | None, end: int | None) -> str:
 
 
 def kind(facts: BagFacts) -> str:
-    """Say in a line what kind of bag it is."""
+    """Describe the kind of a bag in a line."""
     parts = [
         f'storage {facts.storage}',
         f'metadata version {facts.version}' if facts.version is not None else 'no metadata',
@@ -43,7 +43,7 @@ def kind(facts: BagFacts) -> str:
 
 
 def print_info(bag: Bag, summary: BagSummary, console: Console) -> None:
-    """Print what is in a bag."""
+    """Print the content of a bag."""
     console.print(
         escape(headline(summary.path, summary.count, summary.start, summary.end)), soft_wrap=True
     )
@@ -71,7 +71,7 @@ def print_info(bag: Bag, summary: BagSummary, console: Console) -> None:
 
 
 def info_as_json(bag: Bag, summary: BagSummary) -> str:
-    """Give the same for scripts; times in ns, sizes in bytes."""
+    """Return the content of a bag as JSON; times in ns, sizes in bytes."""
     offered = bag.offered()
     topics = [
         asdict(seen)
@@ -91,7 +91,7 @@ def info_as_json(bag: Bag, summary: BagSummary) -> str:
 
 
 def print_check(check: BagCheck, console: Console) -> None:
-    """Print what was found out about a bag, findings last."""
+    """Print the check of a bag, findings last."""
     console.print(escape(headline(check.path, check.count, check.start, check.end)), soft_wrap=True)
     console.print(escape(kind(check.facts)), soft_wrap=True)
     numbers = ('messages', 'Hz', 'usual Hz', 'longest gap s', 'back', 'same', 'log − stamp s')
@@ -125,6 +125,6 @@ def print_check(check: BagCheck, console: Console) -> None:
 
 
 def check_as_json(check: BagCheck) -> str:
-    """Give the same for scripts; times in ns, sizes in bytes."""
+    """Return the check of a bag as JSON; times in ns, sizes in bytes."""
     told = {'sound': check.sound, **asdict(check), 'path': str(check.path)}
     return json.dumps(told, indent=2)

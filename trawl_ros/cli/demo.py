@@ -40,7 +40,7 @@ LOOK_S = 0.2
 
 @dataclass(frozen=True)
 class Traffic:
-    """Messages by full topic name: as their publishers count them, and as the bag has them."""
+    """Traffic: messages by full topic name, as counted by publishers, and as in the bag."""
 
     published: Mapping[str, int]
     recorded: Mapping[str, int]
@@ -130,7 +130,7 @@ def _tow(
     folder: DemoFolder,
     console: Console,
 ) -> float:
-    """Tow and record; give the wall time (s) it took."""
+    """Tow and record; return the wall time (s)."""
     path = str(scenario.path)
     consumers = ['bag_recorder', *INSTRUMENT_NODES]
     processes.start('bag_recorder', use_sim_time=True, output=str(folder.bag))
@@ -168,7 +168,7 @@ def _replay(
     folder: DemoFolder,
     console: Console,
 ) -> None:
-    """Play the instruments' part of the bag to the identification, and let it finish."""
+    """Replay the instruments' part of the bag to the identification, and let it finish."""
     path = str(scenario.path)
     topics = list(dict.fromkeys(absolute(channel.topic) for channel in CHANNELS.values()))
     processes.start(
@@ -201,7 +201,7 @@ def _replay(
 
 
 def _gear_file(scenario: Scenario) -> str:
-    """The scenario's gear for a process with another idea of what is beside it."""
+    """Path of the scenario's gear file for a process in another folder."""
     name = scenario.record.gear
     beside = scenario.path.parent / name
     return str(beside) if name.endswith(('.yaml', '.yml')) else name

@@ -1,4 +1,4 @@
-"""Where a demo puts its results, and which of them it may replace."""
+"""Folder of a demo's results, and the check before an older one is replaced."""
 
 import json
 import shutil
@@ -13,7 +13,7 @@ SUMMARY = 'summary.json'
 
 
 class DemoFolder:
-    """The folder of one demo.
+    """Folder of one demo.
 
     It is marked from the beginning, so that the next demo may replace it also if this one
     never comes to its end.
@@ -46,26 +46,26 @@ class DemoFolder:
 
     @property
     def bag(self) -> Path:
-        """The recorded trial."""
+        """Bag of the recorded trial."""
         return self.path / 'bag'
 
     @property
     def logs(self) -> Path:
-        """What the nodes said."""
+        """Folder of the nodes' logs."""
         return self.path / 'log'
 
     @property
     def results(self) -> Path:
-        """Where `identification_node` puts its report."""
+        """Folder of `identification_node`'s report."""
         return self.path / self.RESULTS
 
     @property
     def hidden(self) -> Path:
-        """Where the diagnosis of a hidden effect goes."""
+        """Folder of the diagnosis of a hidden effect."""
         return self.path / self.HIDDEN
 
     def gather_results(self) -> list[str]:
-        """Move the report up, beside the rest; give the names of its files."""
+        """Move the report up, beside the rest; return the names of its files."""
         names = sorted(file.name for file in self.results.iterdir())
         for name in names:
             (self.results / name).replace(self.path / name)

@@ -1,4 +1,4 @@
-"""The result of an identification, as ``identification.json`` has it, for people."""
+"""Terminal output of ``identification.json``."""
 
 import json
 from collections.abc import Mapping

@@ -19,7 +19,7 @@ from trawl_ros.identification.tows import numbered
 from trawl_ros.messages.topics import NAMESPACE
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
-"""What the command ends with; 1 and 2 are for errors of input and usage."""
+"""Exit codes by verdict; 1 and 2 are for errors of input and usage."""
 
 
 @click.command('diagnose')

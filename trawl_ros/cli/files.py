@@ -1,4 +1,4 @@
-"""Kinds of arguments that are files of the user's."""
+"""Argument types of the user's files."""
 
 from pathlib import Path
 

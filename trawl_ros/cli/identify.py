@@ -108,7 +108,7 @@ def print_report(found: Report) -> None:
 
 
 def _warn(found: Sequence[FoundWindows], console: Console) -> None:
-    """Say what is damaged; refuse bags none of which has a window, in the first one's words."""
+    """Warn of damage; refuse bags none of which has a window, with the first one's reason."""
     for part in found:
         for problem in part.problems:
             console.print(f'Damaged: {problem}', style='yellow', markup=False)

@@ -1,4 +1,4 @@
-"""Ctrl-C as a wish that is granted at the next good moment."""
+"""Handling of Ctrl-C: deferred to the next safe moment."""
 
 import signal
 import threading
@@ -11,7 +11,7 @@ INTERRUPTED = 130
 
 
 class Interruption:
-    """While entered, the first SIGINT or SIGTERM is noted and only a second one breaks in.
+    """Deferred interruption: the first SIGINT or SIGTERM is noted, and only a second one raises.
 
     So what is being written comes to an end between two messages, not within one.
     """
@@ -41,7 +41,7 @@ class Interruption:
 
 
 class Uninterrupted:
-    """While entered, SIGINT and SIGTERM wait; afterwards they come to whoever hears them else.
+    """Blocked interruption: SIGINT and SIGTERM wait until the context is left.
 
     Python breaks in between any two instructions, also between the start of a process and the
     note that it was started. Handlers do this, not the mask of signals, since a child inherits

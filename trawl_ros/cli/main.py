@@ -40,10 +40,10 @@ The sentences stand here so that the list needs none of the modules.
 
 
 class Trawl(click.Group):
-    """Loads the modules of commands late and says errors of input in one sentence."""
+    """Group of commands that are imported when called; errors of input end in one sentence."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Give the names in the order of a sea trial."""
+        """Return the names in the order of a sea trial."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -61,7 +61,7 @@ class Trawl(click.Group):
             formatter.write_dl([(name, sentence) for name, (_, sentence) in COMMANDS.items()])
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; what is the input's fault ends with one sentence and exit code 1."""
+        """Run the command; an error of the input ends with one sentence and exit code 1."""
         try:
             return super().invoke(ctx)
         except TrawlError as error:
@@ -115,7 +115,7 @@ def trawl() -> None:
 
 
 def main(args: Sequence[str] | None = None) -> None:
-    """Run ``trawl``; being terminated ends it as orderly as Ctrl-C does."""
+    """Run ``trawl``; termination ends it as orderly as Ctrl-C does."""
     signal.signal(signal.SIGTERM, _interrupt)
     for stream in (sys.stdout, sys.stderr):
         # Names of files may hold bytes that are no text.

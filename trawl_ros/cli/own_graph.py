@@ -1,4 +1,4 @@
-"""A ROS domain of its own, so that two demos at once do not hear each other."""
+"""ROS domain of its own, so that two demos at once do not hear each other."""
 
 import random
 import socket
@@ -18,7 +18,7 @@ FIRST_PORT, PORTS_PER_DOMAIN = 7410, 250
 
 @contextmanager
 def own_graph(logs: Path) -> Iterator[dict[str, str]]:
-    """Environment of a graph that nobody else is in: this machine only, a free domain.
+    """Yield the environment of an isolated graph: this machine only, a free domain.
 
     The domain is held until the context is left, or the process ends, however it does.
 
@@ -46,7 +46,7 @@ def own_graph(logs: Path) -> Iterator[dict[str, str]]:
 
 
 def _silent(domain: int) -> bool:
-    """Whether no other program's node is first in a domain, as far as ports tell."""
+    """True if no other program's node is first in a domain, as far as ports tell."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as port:
         return _binds(port, ('', FIRST_PORT + PORTS_PER_DOMAIN * domain))
 

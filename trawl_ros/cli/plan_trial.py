@@ -20,7 +20,7 @@ MOST_NUMBERS = 20
 
 
 class _Numbers(click.ParamType):
-    """Different numbers between two limits, given with commas, put in order."""
+    """Parameter type: different numbers between two limits, given with commas, sorted."""
 
     name = 'numbers'
 
@@ -30,7 +30,7 @@ class _Numbers(click.ParamType):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, ...]:
-        """Read the list."""
+        """Parse the list."""
         if isinstance(value, tuple):
             return value
         numbers = {float(self._one.convert(one.strip(), param, ctx)) for one in value.split(',')}
@@ -111,7 +111,7 @@ def command(
 
 
 def print_plan(plan: 'TrialPlan') -> None:
-    """Print legs, what is known after them, and what limits the rest."""
+    """Print legs, the quantities known after them, and the limits of the rest."""
     from trawl_ros.identification.laws import LAWS, QUANTITIES
 
     console = output_console()
@@ -168,7 +168,7 @@ def print_plan(plan: 'TrialPlan') -> None:
 
 
 class _Counting:
-    """Says how many of how many are done: on a terminal always, else every ten seconds."""
+    """Progress counter: on a terminal always, else every ten seconds."""
 
     def __init__(self) -> None:
         self._console = error_console()

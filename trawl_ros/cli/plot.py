@@ -37,7 +37,7 @@ MOST_TIMES = 100
 
 
 class _Time(click.ParamType[float]):
-    """``90``, ``1:30`` or ``0:01:30`` after the start, as seconds."""
+    """Parameter type: a time after the start, ``90``, ``1:30`` or ``0:01:30``, as seconds."""
 
     name = 'time'
 
@@ -114,7 +114,7 @@ def _chosen(times: Sequence[float], tow: Tow) -> list[float]:
 
 
 class _Album:
-    """Pictures of one tow as they are made, and what could not be drawn."""
+    """Album of one tow's figures, and notes on those that could not be drawn."""
 
     def __init__(self, bag: Path, folder: Path, tow: Tow, gear: GearRecord, namespace: str) -> None:
         self.pictures: list[Picture] = []
@@ -127,7 +127,7 @@ class _Album:
         self._add(history_figure(self._tow), 'history.png', 'truth and readings', 'Over time')
 
     def track(self) -> None:
-        """Draw where the ship went."""
+        """Draw the ship's track."""
         figure = track_figure(self._tow)
         if figure is None:
             self.notes.append(
@@ -137,7 +137,7 @@ class _Album:
             self._add(figure, 'track.png', "the ship's track over ground", 'The ship')
 
     def moments(self, times: Sequence[float]) -> None:
-        """Draw the gear, and what the sonar showed, at some times."""
+        """Draw the gear and the sonar's sweep at some times."""
         for moment, picture in self._read(times):
             shape = gear_shape(moment, self._tow, self._gear)
             at, stem = clock(moment.time), f'{moment.time:05.0f}s'
@@ -157,7 +157,7 @@ class _Album:
                 )  # fmt: skip
 
     def film(self, console: Console) -> bool:
-        """Draw the film; say whether it was interrupted and ends early."""
+        """Draw the film; return True if it was interrupted and ends early."""
         with (
             TimeProgress('filming', self._tow.duration_s, console) as progress,
             Interruption() as interruption,

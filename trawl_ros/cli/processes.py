@@ -1,4 +1,4 @@
-"""Nodes as processes of their own: started, watched, and ended together."""
+"""Processes of nodes: started, watched, and ended together."""
 
 import json
 import os
@@ -15,11 +15,11 @@ from trawl_ros.cli.interruption import Uninterrupted
 from trawl_ros.errors import TrawlError
 
 ENDED = (0, -signal.SIGINT)
-"""How a node ends that is interrupted; the second one had not been imported yet, and had begun
+"""Return codes of an interrupted node; the second one had not been imported yet, and had begun
 nothing."""
 
 LAST_LINES = 15
-"""What is shown of the output of a process that failed."""
+"""Number of output lines shown of a process that failed."""
 
 END_S = 20.0
 """Time (s) that a process has to end after it was asked to."""
@@ -30,7 +30,7 @@ Value = str | int | float | bool | list[str]
 
 
 class NodeFailed(TrawlError):
-    """A node that ended when it should not have, or could not end cleanly."""
+    """Node that ended when it should not have, or could not end cleanly."""
 
 
 class Processes:
@@ -81,7 +81,7 @@ class Processes:
                 raise NodeFailed(self._failure(node, process.returncode))
 
     def finished(self, node: str) -> bool:
-        """Tell whether a node that ends by itself has done so, and look after the others.
+        """True if a node that ends by itself has done so; the others are checked.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class Processes:
         return code == 0
 
     def ended(self) -> dict[str, str]:
-        """Give what those said that have ended by themselves; they are not watched any more."""
+        """Return the last words of those that ended by themselves, which are watched no more."""
         codes = {node: process.poll() for node, process in self._running.items()}
         over = {node: self._failure(node, code) for node, code in codes.items() if code is not None}
         for node in over:
@@ -107,17 +107,17 @@ class Processes:
         self._running[node].send_signal(number)
 
     def kill(self, node: str) -> None:
-        """End a node without a word, and wait until it is gone."""
+        """Kill a node (SIGKILL), and wait until it is gone."""
         process = self._running.pop(node)
         process.kill()
         process.wait()
 
     def pids(self) -> dict[str, int]:
-        """Give the number of each process that has not been seen to end."""
+        """Return the number of each process that has not been seen to end."""
         return {node: process.pid for node, process in self._running.items()}
 
     def stop(self, *nodes: str) -> None:
-        """End nodes as Ctrl-C does, all of them at once.
+        """Stop nodes as Ctrl-C does, all of them at once.
 
         Raises
         ------
@@ -175,7 +175,7 @@ class Processes:
 
 @contextmanager
 def _born_deaf() -> Iterator[None]:
-    """Let SIGINT wait in a child until it unblocks it.
+    """Block SIGINT in a child until it unblocks it.
 
     An interpreter that is interrupted before its first line calls that a fatal error.
     """

@@ -1,4 +1,4 @@
-"""Progress of work along simulated or recorded time, on a terminal and in a log."""
+"""Progress along simulated or recorded time, on a terminal and in a log."""
 
 import time
 from types import TracebackType
@@ -11,12 +11,12 @@ LINE_EVERY_S = 10.0
 
 
 def error_console() -> Console:
-    """Where progress and warnings go: results alone are on the standard output."""
+    """Console of progress and warnings, on stderr: stdout has results alone."""
     return Console(stderr=True, soft_wrap=True, highlight=False)
 
 
 class TimeProgress:
-    """Shows how much of a stretch of time is done, and how many times real time that is.
+    """Progress display: share of a stretch of time, and its speed over real time.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ class TimeProgress:
 
     @property
     def speed_factor(self) -> float:
-        """How many times real time."""
+        """Speed over real time."""
         return self._done_s / max(self.elapsed_s, 1e-9)
 
     def update(self, done_s: float, words: str = '') -> None:
-        """Say how much is done (s), and a few words more."""
+        """Update the progress (s), with a few words more."""
         self._done_s = done_s
         if self._bar is not None:
             self._bar.update(self._task, completed=self._done_s, words=self._words(words))

@@ -1,4 +1,4 @@
-"""Reads bags for their steady windows, each apart from the others."""
+"""Reading of bags for their steady windows, each apart from the others."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,7 +22,7 @@ def read_tows(
     console: Console,
     scheduler: str | None = None,
 ) -> list[FoundWindows]:
-    """Find the steady windows of each bag, showing how far that is.
+    """Find the steady windows of each bag, with a progress display.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ FILE_WIDTH = 240
 
 
 def output_console() -> Console:
-    """Where results go."""
+    """Console of results."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=FILE_WIDTH)
 
@@ -22,5 +22,5 @@ def plain_table(*headings: str, right: tuple[str, ...] = ()) -> Table:
 
 
 def figure(value: float | None) -> str:
-    """A figure with as many digits as one reads, or a dash for none."""
+    """Format a figure with the digits that one reads, or a dash for none."""
     return '–' if value is None else f'{value:.4g}'

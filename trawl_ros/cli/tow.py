@@ -57,7 +57,7 @@ def command(scenario: Path, out: Path) -> None:
 
 
 def recorded(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
-    """Tow a trial to its end; give each stamp (ns) with all messages its scenario records."""
+    """Tow a trial to its end; yield each stamp (ns) with all messages its scenario records."""
     scenario = trial.scenario
     suite = InstrumentSuite(
         scenario.instruments,

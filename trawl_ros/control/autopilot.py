@@ -14,10 +14,10 @@ GAIN_PER_S = 0.05
 """Rate of turn per angle that is left: 0.15 deg/s at 3 degrees."""
 
 BRAKING = 0.5
-"""Which part of the greatest turn acceleration is used to end a turn."""
+"""Share of the greatest turn acceleration used to end a turn."""
 
 RESPONSE_S = 15.0
-"""What a turn into a leg takes longer than at its full rate: to begin, and to end gently."""
+"""Delay of a turn into a leg against its full rate: to begin, and to end gently."""
 
 BEGUN_M = 100.0
 """A ship this near to the first waypoint of a track begins with the leg from there."""
@@ -26,7 +26,7 @@ PASSED_M = 150.0
 """A school as near as this is not aimed at any more: the ship goes on over it."""
 
 SEEN_SHARE = 0.4
-"""How much of what a sweep shows is believed: the fish sonar's bearing wavers by degrees."""
+"""Filter gain of a sweep's position: the fish sonar's bearing wavers by degrees."""
 
 SAME_SCHOOL_M = 500.0
 """A school seen this near to where one was aimed at is the same."""

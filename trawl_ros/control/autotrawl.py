@@ -35,7 +35,7 @@ BALANCE_S, MEAN_S = 10.0, 120.0
 """Time constants of the tension that is balanced, and of the one from which a peak rises."""
 
 LOST_S = 3.0
-"""How long a sensor may be silent."""
+"""Time without a reading after which a sensor is lost."""
 
 FREEZE_M = 2.0
 """A counter that does not change while so much is wanted of its winch is frozen."""
@@ -46,8 +46,8 @@ wanted lengths have gone up and down by so much."""
 
 COUNTER_S, COUNTER_SPEED, COUNTER_DEAD_BAND_M = 30.0, 0.1, 0.2
 SETTLING_S, CALM_S = 10.0, 60.0
-"""How long after its set length a winch stands still, and the tension is no more that of hauling
-or veering, to which nothing is to be given."""
+"""Times after the set length is reached: until a winch stands still, and until the tension is no
+more that of hauling or veering, to which nothing is to be given."""
 
 COUNTER_SHARE = 0.05
 """A counter is believed within this share of the length; its part is bounded by it."""
@@ -56,7 +56,7 @@ BALANCE_SPEED = 0.05
 """The gear takes its time to follow, however large the difference in tension."""
 
 LEAD_S = 0.3
-"""What a sample and a command take on their way."""
+"""Latency of a sample and a command together."""
 
 _SIGNS = (1.0, -1.0)
 

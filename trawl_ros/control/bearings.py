@@ -18,7 +18,7 @@ DEAD_RECKONED_S = 120.0
 """So long a place can be carried on by velocity over ground alone."""
 
 FIX_SHARE = 0.2
-"""How much of a fix's deviation from the place reckoned is believed."""
+"""Filter gain of a fix's deviation from dead reckoning."""
 
 CURRENT_S = 60.0
 SPEED_S = 10.0

@@ -9,7 +9,7 @@ from trawl_ros.identification.channels import MEASURED
 from trawl_ros.identification.linearised import Linearised
 
 VARIABLES = ('warp length', 'warp length²', 'speed', 'warp length × speed', 'time in tow', 'course')
-"""What a channel's residuals may go with, beside being wrong throughout."""
+"""Variables that a channel's residuals may follow, beside a constant."""
 
 SHAPES = ('throughout', *VARIABLES)
 

@@ -25,7 +25,7 @@ from trawl_ros.identification.prior import BoardPrior
 from trawl_ros.solver.predict import Predictor
 
 USUAL_PATTERN, FAR = 3.0, 1e3
-"""How large patterns commonly are where something is wrong, in std of a reading, and at most."""
+"""Usual and largest size of a pattern where something is wrong, in std of a reading."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from trawl_ros.diagnosis.screen import Screen, blocks_of
 from trawl_ros.model.board import COEFFICIENTS
 
 DRAWS = 100
-"""How often tows are drawn anew."""
+"""Number of bootstrap draws of the tows."""
 
 CONFIDENCE = 0.95
 GAIN_DRAWS = 2000

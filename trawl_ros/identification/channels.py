@@ -85,7 +85,7 @@ def _pair(both: Channel) -> list[Channel]:
 _DEGREE = math.pi / 180.0
 
 INPUTS = ('port_length', 'starboard_length', 'speed')
-"""What the gear is driven by; measured too, so each has an uncertainty of its own."""
+"""Inputs of the gear; measured too, so each has an uncertainty of its own."""
 
 _TABLE = (
     *_pair(

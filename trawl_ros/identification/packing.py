@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 PACKAGES = ('trawl_ros.identification.', 'trawl_ros.model.', 'trawl_ros.solver.')
-"""Where classes come from that are saved."""
+"""Packages whose classes may stand in a checkpoint."""
 
 SEQUENCES: Mapping[str, Any] = {'list': list, 'tuple': tuple, 'set': set, 'frozenset': frozenset}
 MAPPINGS: Mapping[str, Any] = {'dict': dict, 'Counter': Counter}

@@ -71,7 +71,7 @@ class Question:
 
 
 MOST_VISITS = 2
-"""How often a trial may come back to a steady state. What a state teaches is computed with the
+"""Most visits of a trial to a steady state. The information in a state is computed with the
 board as it is believed to be; a trial that rests on few states is as good as this belief."""
 
 

@@ -11,7 +11,7 @@ from trawl_ros.identification.prediction import Predictor
 from trawl_ros.identification.window_records import SteadyWindow
 
 WELL_KNOWN = 0.5
-"""What a window shows is known to first order this many std of a reading from its solution."""
+"""Range of the first order around a window's solution, in std of a reading."""
 
 
 def far(

@@ -33,7 +33,7 @@ MAX_BYTES = 500_000_000
 JSON, NUMBERS = 'state.json', 'numbers.bin'
 
 DAMAGE = (zipfile.BadZipFile, zlib.error, struct.error)
-"""What damaged archives raise besides errors of Python's own."""
+"""Exceptions of damaged archives besides Python's own."""
 
 
 class StateError(TrawlError):

@@ -21,7 +21,7 @@ from trawl_ros.simulation.truth import (
 )
 
 SCHOOL_FIELDS = ('x', 'y', 'z', 'length', 'width', 'height', 'density')
-"""What ``truth/schools`` says of each school."""
+"""Fields of each school in ``truth/schools``."""
 
 
 def clock_message(stamp: int) -> TopicMessage:

@@ -1,4 +1,4 @@
-"""The next manoeuvre, looked for in a thread of its own with what time is left over."""
+"""Advice on the next manoeuvre, computed in a thread of its own with spare time."""
 
 import time
 from collections.abc import Callable
@@ -13,7 +13,7 @@ SHARE = 0.1
 """Part of a core that looking manoeuvres up may take."""
 
 IDLE_S = 0.1
-"""How long it waits before it asks again whether the estimator is at rest."""
+"""Wait before it asks again whether the estimator is at rest."""
 
 
 class AdvisingThread(Thread):

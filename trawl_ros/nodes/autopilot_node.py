@@ -119,7 +119,7 @@ class AutopilotNode(TrawlNode):
         self.every(1.0, self._watch)
 
     def objection(self, name: str, value: Any) -> str | None:
-        """Say why a live parameter cannot take a value just now; None if it can."""
+        """Return an objection to a live parameter's value; None without one."""
         if name == 'mode' and value == 'track' and not self.parameters['track']:
             return "mode: found 'track', expected the parameter track to be set before"
         if name == 'track':
@@ -133,7 +133,7 @@ class AutopilotNode(TrawlNode):
         return None
 
     def parameter_changed(self, name: str) -> None:
-        """Let a live parameter's new value have its effect."""
+        """Apply a live parameter's new value."""
         self._pilot.settings = self._settings()
         if name in ('mode', 'track', f'{self.parameters["mode"]}_deg'):
             self._steer()
@@ -141,11 +141,11 @@ class AutopilotNode(TrawlNode):
             self._go_straight()
 
     def finish_work(self) -> None:
-        """Leave a ship that goes straight on."""
+        """Stop the ship's turn."""
         self._go_straight()
 
     def statuses(self) -> list[Status]:
-        """How she is steered."""
+        """Return the status of the steering."""
         state, mode = self._pilot.state, self.parameters['mode']
         if mode == OFF:
             return [Status('autopilot', OK, 'off', {'mode': mode})]
@@ -241,7 +241,7 @@ class AutopilotNode(TrawlNode):
         self.send(*vessel_command(stamp, self._speed, rate))
 
     def _watch(self) -> None:
-        """A ship whose sensors are silent is not to turn on for ever."""
+        """Stop the turn of a ship whose sensors are silent."""
         if time.monotonic() - self._heard_at > SILENT_S:
             self._go_straight()
 

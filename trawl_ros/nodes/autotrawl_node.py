@@ -71,7 +71,7 @@ class AutotrawlNode(TrawlNode):
         self.listen(WINCH, self._take, CONSUMER, settled=True)
 
     def parameter_changed(self, name: str) -> None:
-        """Let a live parameter's new value have its effect."""
+        """Apply a live parameter's new value."""
         if self.parameters['mode'] == OFF:
             self._autotrawl = None
         elif self._autotrawl is not None:
@@ -79,7 +79,7 @@ class AutotrawlNode(TrawlNode):
             self._autotrawl.set_lengths(*self._wanted_lengths())
 
     def statuses(self) -> list[Status]:
-        """How the warps are held."""
+        """Return the status of the warps."""
         if self._autotrawl is None:
             mode = self.parameters['mode']
             message = 'off' if mode == OFF else f'waits for {WINCH}'

@@ -24,7 +24,7 @@ from trawl_ros.nodes.sync import STALLED_S, Consumers
 BURST_S = 0.05
 TICK_S = 0.002
 QUIET_S = 3.0
-"""How long consumers may stand still before the end is taken as reached by all."""
+"""Time without progress of consumers after which the end is taken as reached by all."""
 
 CLOCK_STEP = SECOND // 100
 
@@ -82,11 +82,11 @@ class BagPlayer(TrawlNode):
         self.every(TICK_S, self._tick)
 
     def now(self) -> int:
-        """Give the time that this node publishes on /clock, or that of its own clock, ns."""
+        """Return the time that this node publishes on /clock, or that of its own clock, ns."""
         return self._latest if self._clock_published else super().now()
 
     def objection(self, name: str, value: Any) -> str | None:
-        """Say why a live parameter cannot take a value just now; None if it can."""
+        """Return an objection to a live parameter's value; None without one."""
         if name != 'rate':
             return None
         if value == 0.0 and not self.parameters['wait_for']:
@@ -99,12 +99,12 @@ class BagPlayer(TrawlNode):
         return None
 
     def parameter_changed(self, name: str) -> None:
-        """Let a live parameter's new value have its effect."""
+        """Apply a live parameter's new value."""
         if name == 'rate':
             self._pacer.change(self.parameters['rate'])
 
     def statuses(self) -> list[Status]:
-        """How far the bag is played."""
+        """Return the status of the replay."""
         missing = [] if self._began else self._consumers.missing()
         values = {
             'bag': str(self._bag.path),
@@ -188,7 +188,7 @@ class BagPlayer(TrawlNode):
         return self._pacer.due(stamp / SECOND)
 
     def _stand_still(self, slowest: int | None) -> bool:
-        """Whether consumers have dealt with all that concerns them: other topics do not."""
+        """True if consumers have stood still for `QUIET_S`: the rest does not concern them."""
         now = monotonic()
         if self._last_progress[0] != slowest:
             self._last_progress = (slowest, now)

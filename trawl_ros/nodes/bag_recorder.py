@@ -107,7 +107,7 @@ class BagRecorder(TrawlNode):
         self.every(FLUSH_S, self._look_after)
 
     def statuses(self) -> list[Status]:
-        """What is in the bag."""
+        """Return the status of the bag."""
         counts = self._bag.counts
         values = {
             'bag': str(self._bag.path),
@@ -166,7 +166,7 @@ class BagRecorder(TrawlNode):
         return take
 
     def _declare(self, topic: str, type_name: str) -> None:
-        """Settle what the bag says of a topic, by who publishes it when the first message comes."""
+        """Fix the definition of a topic, by its publishers when the first message comes."""
         publishers = self.get_publishers_info_by_topic(topic)
         self._bag.declare(topic, describe(type_name, dump_profiles(profiles_of(publishers))))
         hashes = {str(publisher.topic_type_hash) for publisher in publishers}
@@ -211,7 +211,7 @@ class BagRecorder(TrawlNode):
                 self._unknown.discard(topic)
 
     def _match(self, topic: str, publishers: Sequence[TopicEndpointInfo]) -> None:
-        """Ask for no more than is offered, where a publisher would not be heard otherwise."""
+        """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
         asked, heard = self._profiles[topic], matching(publishers, CONSUMER)
         reliable = asked.reliability == ReliabilityPolicy.RELIABLE
         latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL

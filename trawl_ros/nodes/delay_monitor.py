@@ -1,4 +1,4 @@
-"""An ear on a running graph that knows how far each node is behind the truth."""
+"""Monitor of a running graph that measures each node's delay behind the truth."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,7 @@ TRUTH = 'truth/winch'
 
 
 class DelayMonitor(Monitor):
-    """Beside diagnostics it hears truth and what nodes report on ``sync/progress``.
+    """Monitor of diagnostics, truth and the nodes' reports on ``sync/progress``.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class DelayMonitor(Monitor):
         return None if truth is None else truth / SECOND
 
     def delays_s(self) -> dict[str, float]:
-        """By node, how much data time (s) lies between the newest truth and what it has done."""
+        """Delay of each node in data time (s) behind the newest truth."""
         truth = self._truth
         if truth is None:
             return {}

@@ -75,7 +75,7 @@ class DiscrepancyNode(TrawlNode):
         self._watching.start()
 
     def statuses(self) -> list[Status]:
-        """What was found, or why nothing is known yet."""
+        """Return the status of the diagnosis."""
         found, trouble = self._tried.found, self._tried.trouble
         values = {'windows': str(len(self._windows))}
         if trouble:
@@ -86,7 +86,7 @@ class DiscrepancyNode(TrawlNode):
         return [Status('discrepancy', level, headline(found), values | {'verdict': found.verdict})]
 
     def finish_work(self) -> None:
-        """Decide the windows that are left, diagnose, and write the report."""
+        """Decide the remaining windows, diagnose, and write the report."""
         self._take(self._finder.finish())
         self._watching.stop()
         self._tell(self._write())
@@ -126,7 +126,7 @@ class DiscrepancyNode(TrawlNode):
             self.send(FINDINGS, diagnostic_array(self._reached.stamp, statuses))
 
     def _write(self) -> tuple[str, bool]:
-        """Write the report; the sentence with which all ends, and whether all windows count."""
+        """Write the report; return the closing sentence, and True if all windows count."""
         found, trouble = self._tried.found, self._tried.trouble
         if found is None:
             found = unread(self._gear, (), trouble or 'no steady window has been heard')

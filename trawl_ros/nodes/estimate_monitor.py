@@ -1,4 +1,4 @@
-"""An ear on a running graph that knows when each new estimate came."""
+"""Monitor of a running graph that records the arrival of each new estimate."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,7 +12,7 @@ from trawl_ros.nodes.qos import CONSUMER
 
 
 class EstimateMonitor(Monitor):
-    """Hears the status of `identification_node`, whose stamp is the end of the newest window.
+    """Monitor of `identification_node`'s status, whose stamp is the end of the newest window.
 
     Parameters
     ----------
@@ -26,12 +26,12 @@ class EstimateMonitor(Monitor):
 
     @property
     def playing(self) -> bool:
-        """Whether the graph's clock has begun to run."""
+        """True if the graph's clock has begun to run."""
         return self._node.now() > 0
 
     @property
     def windows(self) -> int:
-        """How many windows have led to an estimate."""
+        """Number of windows that have led to an estimate."""
         return len(self._heard_at)
 
     def delays_s(self) -> list[float]:

@@ -1,4 +1,4 @@
-"""An identification as statuses, for ``identification/status``."""
+"""Diagnostic statuses of an identification, for ``identification/status``."""
 
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.identification.estimate import Innovation as Innovations
@@ -11,13 +11,13 @@ from trawl_ros.nodes.outcome import Outcome
 
 
 def innovations_of(found: Innovations) -> list[Innovation]:
-    """Give the innovations of a window channel by channel."""
+    """Return the innovations of a window channel by channel."""
     rows = zip(found.channels, found.values, found.stds, found.test_ratios, strict=True)
     return [Innovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
 
 
 def identification_statuses(outcome: Outcome) -> list[Status]:
-    """Give what is estimated, what the channels say, and what is wrong with instruments.
+    """Return the statuses of coefficients, channels and instruments.
 
     The coefficients always come first; before there is an estimate, with the reason why.
     """
@@ -28,7 +28,7 @@ def identification_statuses(outcome: Outcome) -> list[Status]:
 
 
 def coefficients_status(outcome: Outcome) -> Status:
-    """Give the coefficients by name, with intervals, counts by reason, and how sure they are."""
+    """Return the coefficients by name, with intervals, counts by reason, and their certainty."""
     name = 'identification: coefficients'
     estimate = outcome.estimate
     rejected = {f'rejected {reason}': str(count) for reason, count in outcome.rejected.items()}
@@ -94,7 +94,7 @@ def channels_status(outcome: Outcome) -> Status:
 
 
 def instruments_status(estimate: Estimate) -> Status:
-    """Give what the fit says of the instruments: noise against what was stated, and biases."""
+    """Return the estimated errors of the instruments: noise scales and biases."""
     values = {
         f'noise scale {group}': f'{scale:.4g}' for group, scale in estimate.noise_scales.items()
     }
@@ -108,7 +108,7 @@ def instruments_status(estimate: Estimate) -> Status:
 
 
 def advice_status(advice: Advice | None, trouble: str) -> Status:
-    """Give the next manoeuvre, what it would teach, or why there is none."""
+    """Return the next manoeuvre with its gain, or the reason why there is none."""
     name = 'identification: next manoeuvre'
     if advice is None:
         return Status(

@@ -1,4 +1,4 @@
-"""The stretch of a bag that is to be played, again and again."""
+"""Excerpt of a bag that is to be played, repeatedly if wanted."""
 
 from collections.abc import Collection, Iterator
 
@@ -8,7 +8,7 @@ from trawl_ros.messages.stamps import SECOND
 
 
 class Excerpt:
-    """Messages of some topics of a bag, from a start to an end.
+    """Excerpt: messages of some topics of a bag, from a start to an end.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Excerpt:
         self.begin()
 
     def begin(self) -> RawMessage:
-        """Go (back) to the first message, and give it."""
+        """Return to the first message, and give it."""
         self._messages = self._bag.raw(self._topics)
         self.advance()
         while self.upcoming is not None and self.upcoming.log_time < self._start:
@@ -55,7 +55,7 @@ class Excerpt:
         return self.upcoming
 
     def advance(self) -> None:
-        """Go on to the next message."""
+        """Advance to the next message."""
         following = next(self._messages, None)
         behind = following and self._end is not None and following.log_time > self._end
         self.upcoming = None if behind else following

@@ -1,4 +1,4 @@
-"""A diagnosis as statuses, for ``discrepancy/findings``."""
+"""Diagnostic statuses of a diagnosis, for ``discrepancy/findings``."""
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.refit import Refit
@@ -11,7 +11,7 @@ CALM = ('NO_DISCREPANCY', 'NOT_TESTABLE')
 
 
 def finding_statuses(found: Diagnosis) -> list[Status]:
-    """The verdict first, and then one status per finding: an effect, or an empirical term."""
+    """Return the verdict's status, then one per finding: an effect, or an empirical term."""
     seen = found.seen
     values = {
         'verdict': found.verdict,

@@ -1,4 +1,4 @@
-"""A subscriber that waits for the first message on a topic."""
+"""Subscriber that waits for the first message on a topic."""
 
 import time
 from types import TracebackType
@@ -16,7 +16,7 @@ AT_REST_S = 0.5
 
 
 class FirstMessage:
-    """Listens while entered, as a participant of its own that has seen no earlier node.
+    """Subscriber while entered, as a participant of its own that has seen no earlier node.
 
     Parameters
     ----------
@@ -65,6 +65,6 @@ class FirstMessage:
             self._heard(message)
 
     def spin(self, timeout_s: float) -> float | None:
-        """When it came (s, of `time.perf_counter`); None while it has not."""
+        """Return the time of arrival (s, of `time.perf_counter`); None before it."""
         self._executor.spin_once(timeout_sec=timeout_s)
         return self._at

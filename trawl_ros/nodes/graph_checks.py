@@ -1,4 +1,4 @@
-"""What a node can tell from the graph: two clocks or sources, other types or QoS than expected."""
+"""Checks of the ROS graph: two clocks or sources, other types or QoS than expected."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ SHARED = ('/diagnostics', SYNC, *(topic.name for topic in COMMANDS))
 
 
 def clock_status(node: Node) -> Status:
-    """Say which clock a node goes by, and whether that is one clock."""
+    """Return the status of a node's clock: its source, and a warning of several."""
     publishers = [info.node_name for info in node.get_publishers_info_by_topic(CLOCK.name)]
     names = ', '.join(sorted(publishers))
     simulated = bool(node.get_parameter('use_sim_time').value)
@@ -39,7 +39,7 @@ def clock_status(node: Node) -> Status:
 
 @dataclass(frozen=True)
 class Listening:
-    """What a subscriber expects of a topic: its type, and the quality of service."""
+    """Expectation of a subscriber: type of the topic, and quality of service."""
 
     type: str
     profile: QoSProfile
@@ -48,7 +48,7 @@ class Listening:
 def connection_problems(
     node: Node, subscribed: Mapping[str, Listening], offered: Mapping[str, QoSProfile]
 ) -> list[str]:
-    """Give a sentence for each connection that is not as expected.
+    """Return a sentence for each connection that is not as expected.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def connection_problems(
 
 
 def _as_found(profile: QoSProfile) -> QoSProfile:
-    """An own profile as others find it in the graph: without end where it sets no limit."""
+    """Convert an own profile to the form in which others see it: no deadline where none is set."""
     return QoSProfile(
         depth=profile.depth,
         reliability=profile.reliability,
@@ -93,7 +93,7 @@ def _as_found(profile: QoSProfile) -> QoSProfile:
 
 
 def _mismatch(offered: QoSProfile, asked: QoSProfile) -> str:
-    """Why nothing flows between publisher and subscriber; empty where it does."""
+    """Reason why publisher and subscriber are incompatible; empty where they match."""
     compatibility, reason = qos_check_compatible(offered, asked)
     if compatibility != QoSCompatibility.ERROR:
         return ''

@@ -1,4 +1,4 @@
-"""How far the stamps of a node's data have come, and how fast they go against wall time."""
+"""Headway of a node: the stamps of its data, and their rate against wall time."""
 
 import time
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from trawl_ros.messages.stamps import SECOND
 
 
 class Headway:
-    """Follows the stamps that a node gives out, or has dealt with.
+    """Headway of the stamps that a node publishes or has dealt with.
 
     Parameters
     ----------
@@ -22,13 +22,13 @@ class Headway:
         self._reported_at = clock()
 
     def reached(self, stamp: int) -> None:
-        """Take note of a stamp (ns). An earlier one than before begins anew and counts nothing."""
+        """Register a stamp (ns). An earlier one than before begins anew and counts nothing."""
         if self._latest is not None:
             self._gone += max(0, stamp - self._latest)
         self._latest = stamp
 
     def report(self) -> dict[str, str]:
-        """Give key and value for diagnostics, with the factor since the last report.
+        """Return key and value for diagnostics, with the factor since the last report.
 
         Nothing where no stamp was ever reached: such a node is not driven by stamps.
         """

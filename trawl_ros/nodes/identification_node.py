@@ -148,7 +148,7 @@ class IdentificationNode(TrawlNode):
         return found
 
     def statuses(self) -> list[Status]:
-        """What is estimated, or why nothing is."""
+        """Return the status of the estimate, or the reason why there is none."""
         self._worker.look()
         outcome = self._worker.outcome
         estimate = outcome.estimate
@@ -181,7 +181,7 @@ class IdentificationNode(TrawlNode):
         return [Status('state', ERROR if trouble else OK, message, values)]
 
     def finish_work(self) -> None:
-        """Bring the estimate to rest, write the report, and end the thread."""
+        """Bring the estimate to convergence, write the report, and end the thread."""
         self._jump.unregister()
         if self._adviser is not None:
             self._adviser.stop()

@@ -1,4 +1,4 @@
-"""The estimator in a thread of its own, so that solving a window blocks no callback.
+"""Worker thread of the estimator, so that solving a window blocks no callback.
 
 Only this thread ever touches the `Identification`. Work comes in through one queue, in order;
 what others may know of it goes out as immutable records.
@@ -20,26 +20,26 @@ QUIET_S = 0.5
 """A wish to finish is granted when no sample has come for this long."""
 
 POLL_S = 0.005
-"""How long an executor is held up when it asks whether a wish is granted."""
+"""Time for which an executor is held up to ask whether a request is granted."""
 
 
 @dataclass(frozen=True)
 class _Look:
-    """A wish for a fresh `Outcome`."""
+    """Request for a fresh `Outcome`."""
 
 
 @dataclass(frozen=True)
 class _Reset:
-    """A wish to forget all."""
+    """Request to reset the identification."""
 
 
 @dataclass(frozen=True)
 class _Stop:
-    """A wish to end the thread."""
+    """Request to end the thread."""
 
 
 class Finish:
-    """A wish to finish; ``outcome`` is there once it is granted. Coroutines may await that."""
+    """Request to finish; ``outcome`` is there once it is granted. Coroutines may await that."""
 
     def __init__(self) -> None:
         self._granted = Event()
@@ -60,7 +60,7 @@ Work = Sample | Finish | _Look | _Reset | _Stop
 
 
 class IdentificationWorker(Thread):
-    """Feeds an identification.
+    """Worker thread that feeds an identification.
 
     Parameters
     ----------
@@ -108,30 +108,30 @@ class IdentificationWorker(Thread):
 
     @property
     def idle(self) -> bool:
-        """Whether all samples that were handed over are dealt with."""
+        """True if all samples that were handed over are dealt with."""
         return self._handed_over == self._dealt
 
     def feed(self, sample: Sample) -> None:
-        """Hand over a sample."""
+        """Queue a sample."""
         self._handed_over += 1
         self._queue.put(sample)
 
     def reset(self) -> None:
-        """Forget all that was handed over before."""
+        """Discard all that was handed over before."""
         self._queue.put(_Reset())
 
     def look(self) -> None:
-        """Ask for `outcome` to be brought up to date."""
+        """Request an update of `outcome`."""
         self._queue.put(_Look())
 
     def finish(self) -> Finish:
-        """Ask to bring the estimate to rest and to write the report, once it is quiet."""
+        """Request to converge the estimate and to write the report, once no sample waits."""
         wish = Finish()
         self._queue.put(wish)
         return wish
 
     def stop(self) -> None:
-        """End the thread after what it has to do, and wait for it."""
+        """End the thread after its queued work, and wait for it."""
         self._queue.put(_Stop())
         self.join()
 
@@ -193,7 +193,7 @@ class IdentificationWorker(Thread):
         self._attempt('saving', lambda: self._save(self._identification))
 
     def _attempt(self, what: str, act: Callable[[], None]) -> None:
-        """Do something; what goes wrong is said, and the thread lives on."""
+        """Run an action; an error of it is reported, and the thread lives on."""
         try:
             act()
         except Exception as reason:

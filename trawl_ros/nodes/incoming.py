@@ -1,4 +1,4 @@
-"""Boundary to what arrives on a subscription: nothing that a message brings can end a node."""
+"""Boundary of subscriptions: no error of a message or its handler ends a node."""
 
 import inspect
 import traceback
@@ -31,7 +31,7 @@ _LARGE: dict[str, Limit] = {
 
 
 class Incoming:
-    """Callback of a subscription that uses a message, or says why it does not.
+    """Callback of a subscription that uses a message, or reports the reason why it does not.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Incoming:
         self._single = single
 
     def __call__(self, *arrived: Any) -> None:
-        """Take a message with what ROS knows of it."""
+        """Handle a message with the information that ROS has of it."""
         # rclpy's own executor hands over message and info, its events executor a pair of them.
         message, info = arrived if len(arrived) == 2 else arrived[0]
         try:
@@ -89,7 +89,7 @@ class Incoming:
 
 
 class Leaps:
-    """Holds back what is stamped far from what came before it, until enough agree.
+    """Filter of leaping stamps: holds back messages until enough agree.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class Leaps:
         self._held: list[tuple[int, Any]] = []
 
     def take(self, stamp: int, message: Any) -> tuple[list[Any], int]:
-        """Take the next message.
+        """Filter the next message.
 
         Returns
         -------
@@ -127,7 +127,7 @@ class Leaps:
 
 
 def decoding(topic: str, type_name: str, use: Callable[[Any], None]) -> Callable[[bytes], None]:
-    """Give what decodes messages of a bounded size; no error of ``use`` ends the node."""
+    """Make the decoder of messages of a bounded size; no error of ``use`` ends the node."""
     limit = _LARGE.get(type_name, MESSAGE_BYTES)
 
     def take(data: bytes) -> None:
@@ -149,7 +149,7 @@ def settling(
     stamp_in: Callable[[Any], int] = stamp_of,
     far_ns: int = FAR_NS,
 ) -> Callable[[Any], None]:
-    """Give what lets a message through once its stamp can be believed."""
+    """Make the filter that passes a message once its stamp is confirmed."""
     leaps = Leaps(far_ns)
 
     def take(message: Any) -> None:
@@ -165,7 +165,7 @@ def settling(
 def believing_clock(
     use: Callable[[Any], None], refuse: Callable[[str], None]
 ) -> Callable[[Any], None]:
-    """Give what lets a message of /clock through once it can be believed."""
+    """Make the filter that passes a message of /clock once it is confirmed."""
 
     def stamp_in(message: Any) -> int:
         stamp = from_time(message.clock)
@@ -177,7 +177,7 @@ def believing_clock(
 
 
 def error_of_program(reason: Exception) -> str:
-    """Say in a line what nobody has foreseen, and where it happened."""
+    """Describe an unforeseen error and its place in a line."""
     frames = traceback.extract_tb(reason.__traceback__)
     own = [frame for frame in frames if 'trawl_ros' in Path(frame.filename).parts] or frames
     place = f' in {Path(own[-1].filename).name}, line {own[-1].lineno}' if own else ''

@@ -1,4 +1,4 @@
-"""What the four instrument nodes have in common: truth in, samples out, on truth's stamps."""
+"""Base class of the four instrument nodes: truth in, samples out, on truth's stamps."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ SEABED = 'truth/seabed'
 
 @dataclass(frozen=True)
 class Setup:
-    """What instruments are made with, as in `InstrumentSuite`, and what their gear makes of it."""
+    """Setup of the instruments, as in `InstrumentSuite`, with the sensor effects of their gear."""
 
     parameters: InstrumentParameters
     surroundings: Surroundings
@@ -48,7 +48,7 @@ class Setup:
 
 
 class InstrumentNode(TrawlNode, ABC):
-    """Looks at truth whenever all that it needs of an instant is there.
+    """Base class of instrument nodes: observes truth whenever all parts of an instant are there.
 
     Samples are due by the stamps of truth alone, so the data are the same whatever the pace,
     and the same as those of `InstrumentSuite` in one process.
@@ -93,14 +93,14 @@ class InstrumentNode(TrawlNode, ABC):
 
     @abstractmethod
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
-        """Make the instruments and give all of them."""
+        """Make the instruments, and return all of them."""
 
     @abstractmethod
     def observe(self, stamp: int, messages: dict[str, Any]) -> Sequence[Sample]:
-        """Give the samples due at a stamp (ns); ``messages`` are truth by topic."""
+        """Return the samples due at a stamp (ns); ``messages`` are truth by topic."""
 
     def statuses(self) -> list[Status]:
-        """How far the instruments are."""
+        """Return the status of the instruments and their faults."""
         lost = self._joiner.incomplete
         values = {
             'truth seen until': f'{self._progress.stamp / 1e9:.1f}',
@@ -115,7 +115,7 @@ class InstrumentNode(TrawlNode, ABC):
         return [Status('instruments', OK, 'every instant of truth was complete', values), there]
 
     def objection(self, name: str, value: Any) -> str | None:
-        """Say why a live parameter cannot take a value just now; None if it can."""
+        """Return an objection to a live parameter's value; None without one."""
         if name == 'faults':
             try:
                 for where, what in _faults(value).items():
@@ -125,7 +125,7 @@ class InstrumentNode(TrawlNode, ABC):
         return None
 
     def parameter_changed(self, name: str) -> None:
-        """Let a live parameter's new value have its effect."""
+        """Apply a live parameter's new value."""
         if name == 'faults':
             self._take_parameter()
 
@@ -146,7 +146,7 @@ class InstrumentNode(TrawlNode, ABC):
             raise MessageError(f'{FAULT_COMMAND}: {reason}') from reason
 
     def _is_of_others(self, where: str) -> bool:
-        """Whether a place is another node's to know."""
+        """True if a place belongs to another node."""
         if self._panel.knows(where):
             return False
         topics = [topic.name for topic in INSTRUMENTS if topic.name not in self.SAMPLES]
@@ -198,7 +198,7 @@ class InstrumentNode(TrawlNode, ABC):
 
 
 def _faults(texts: Sequence[str]) -> dict[str, str]:
-    """Read fault by place off texts such as 'door/spread: offset 3'."""
+    """Parse faults by place, from texts such as 'door/spread: offset 3'."""
     found = {}
     for text in texts:
         where, colon, what = text.partition(':')

@@ -1,4 +1,4 @@
-"""Messages of several topics that belong to one instant, put together again by their stamps."""
+"""Synchroniser of messages of several topics by equal stamps."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,7 +8,7 @@ LONGEST_WAIT = 200
 
 
 class Joiner:
-    """Joins topics that all carry every stamp.
+    """Synchroniser of topics that all carry every stamp.
 
     Each topic's stamps rise until time is set back; from there on they belong to the next run.
     So nothing is mixed up when one topic has begun a run that another has not come to yet.
@@ -32,7 +32,7 @@ class Joiner:
         self.incomplete = 0
 
     def add(self, topic: str, stamp: int, message: Any) -> dict[str, Any] | None:
-        """Take a message with its stamp (ns); give all of this stamp by topic once complete."""
+        """Add a message with its stamp (ns); return all of this stamp by topic once complete."""
         if stamp < self._latest.get(topic, stamp):
             self._runs[topic] += 1
         self._latest[topic] = stamp

@@ -1,4 +1,4 @@
-"""An ear on a running graph that remembers when truth came, and what is estimated."""
+"""Monitor of a running graph with a journal of truth and estimates."""
 
 import time
 from bisect import bisect_right
@@ -15,7 +15,7 @@ from trawl_ros.nodes.qos import CONSUMER
 
 
 class JournalMonitor(DelayMonitor):
-    """Keeps the wall time at which each truth was heard, and the newest status of the estimate.
+    """Monitor of the wall time of each truth, and of the newest status of the estimate.
 
     Parameters
     ----------
@@ -35,17 +35,17 @@ class JournalMonitor(DelayMonitor):
         self.coefficients: Mapping[str, str] = {}
 
     def longest_silence_s(self) -> float:
-        """Give the longest wall time (s) between two truths."""
+        """Return the longest wall time (s) between two truths."""
         walls = self._walls
         return max((b - a for a, b in pairwise(walls)), default=0.0)
 
     def first_after(self, stamp: int) -> float | None:
-        """Give the wall time at which the first truth after a stamp (ns) was heard."""
+        """Return the wall time at which the first truth after a stamp (ns) was heard."""
         index = bisect_right(self._stamps, stamp)
         return self._walls[index] if index < len(self._walls) else None
 
     def done_s(self, node: str) -> float:
-        """Data time (s) that a consumer has dealt with, as it said last."""
+        """Data time (s) that a consumer has dealt with, by its last report."""
         return self._done.get(node, 0) / SECOND
 
     def listen_to_more(self, node: TrawlNode) -> None:

@@ -1,4 +1,4 @@
-"""The classes that rclpy knows types by; the project itself handles bytes."""
+"""Message classes of rclpy; the project itself handles bytes."""
 
 from importlib import import_module
 from typing import Any
@@ -7,7 +7,7 @@ from trawl_ros.errors import MessageError
 
 
 def installed(type_name: str) -> bool:
-    """Tell whether the package of a type is there."""
+    """True if the package of a type is installed."""
     try:
         message_class(type_name)
     except MessageError:

@@ -1,4 +1,4 @@
-"""An ear on a running graph: what its nodes report of themselves, and a wish or two."""
+"""Monitor of a running graph: the nodes' diagnostics, and requests to them."""
 
 import os
 import time
@@ -27,20 +27,20 @@ MESSAGES = 'messages'
 
 @dataclass
 class Heard:
-    """The newest values of each status, by node and by the subsystem's name."""
+    """Newest values of each status, by node and by the subsystem's name."""
 
     values: dict[tuple[str, str], Mapping[str, str]] = field(default_factory=dict)
     lock: Lock = field(default_factory=Lock)
 
     def take(self, message: Any) -> None:
-        """Keep what a message on ``/diagnostics`` says."""
+        """Update by a message on ``/diagnostics``."""
         with self.lock:
             for status in read_statuses(message):
                 subsystem = status.name.rpartition(': ')[2]
                 self.values[status.hardware_id, subsystem] = status.values
 
     def get(self, node: str, subsystem: str, key: str) -> str:
-        """Give a value, '' if it was not heard yet."""
+        """Return a value, '' if it was not heard yet."""
         with self.lock:
             return self.values.get((node, subsystem), {}).get(key, '')
 
@@ -49,7 +49,7 @@ MonitorT = TypeVar('MonitorT', bound='Monitor')
 
 
 class Monitor:
-    """Listens to a graph in a thread of its own while entered.
+    """Monitor of a graph in a thread of its own while entered.
 
     Parameters
     ----------
@@ -65,11 +65,11 @@ class Monitor:
         self._heard = Heard()
 
     def value(self, node: str, subsystem: str, key: str) -> str:
-        """Give what a node reports of itself, '' if it was not heard yet."""
+        """Return a value of a node's diagnostics, '' if it was not heard yet."""
         return self._heard.get(node, subsystem, key)
 
     def published(self) -> dict[str, int]:
-        """Give the number of messages by full topic name, as the publishers count them."""
+        """Return the number of messages by full topic name, as the publishers count them."""
         found: dict[str, int] = {}
         with self._heard.lock:
             for (_, subsystem), values in self._heard.values.items():
@@ -82,7 +82,7 @@ class Monitor:
         return found
 
     def finish_identification(self, waiting: Callable[[], None]) -> tuple[bool, str]:
-        """Ask `identification_node` to finish.
+        """Request `identification_node` to finish.
 
         Parameters
         ----------
@@ -106,7 +106,7 @@ class Monitor:
         return response.success, response.message
 
     def listen_to_more(self, node: TrawlNode) -> None:
-        """Let a monitor of more than diagnostics subscribe, before it is spun."""
+        """Subscribe to more than diagnostics, before the monitor is spun."""
 
     def __enter__(self: MonitorT) -> MonitorT:
         self._before = {key: os.environ.get(key) for key in self._environment}

@@ -1,4 +1,4 @@
-"""What all nodes of the project have in common: bytes in and out, diagnostics, a clean end."""
+"""Base class of all nodes: bytes in and out, diagnostics, a clean end."""
 
 import time
 from collections.abc import Callable
@@ -44,7 +44,7 @@ DIAGNOSTICS_PERIOD_S = 1.0
 
 
 class TrawlNode(Node):
-    """A node of the project. Messages are the project's own; ROS gets and gives bytes.
+    """Node of the project. Messages are the project's own; ROS gets and gives bytes.
 
     Parameters
     ----------
@@ -72,10 +72,10 @@ class TrawlNode(Node):
 
     SPECS: ClassVar[tuple[Spec, ...]] = ()
     DRAINS: ClassVar[bool] = False
-    """Whether messages on their way are still to be taken in when told to stop."""
+    """True if messages on their way are still to be taken in when told to stop."""
 
     AWAITS: ClassVar[bool] = False
-    """Whether callbacks await something, which the events executor does not know."""
+    """True if callbacks await something, which the events executor does not know."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         kwargs.setdefault('namespace', NAMESPACE)
@@ -97,21 +97,21 @@ class TrawlNode(Node):
         self.every(DIAGNOSTICS_PERIOD_S, self._diagnose)
 
     def objection(self, name: str, value: Any) -> str | None:
-        """Say why a live parameter cannot take a value just now; None if it can."""
+        """Return an objection to a live parameter's value; None without one."""
         return None
 
     def parameter_changed(self, name: str) -> None:
-        """Let a live parameter's new value have its effect."""
+        """Apply a live parameter's new value."""
 
     def statuses(self) -> list[Status]:
-        """Give the diagnostics of the node's own subsystems."""
+        """Return the diagnostics of the node's own subsystems."""
         return []
 
     def finish_work(self) -> None:
-        """Bring to an end what was begun; called once, before the last diagnostics."""
+        """Finish the node's work; called once, before the last diagnostics."""
 
     def introduce(self) -> None:
-        """Say in the log what the node does, on what, and with which topics."""
+        """Log the node's purpose, parameters and topics."""
         own = [sender.topic_name for name, sender in self._senders.items() if name != DIAGNOSTICS]
         values = {spec.name: self.parameters[spec.name] for spec in self.SPECS}
         topics = {'publishes': own, 'listens to': list(self._listeners)}
@@ -119,17 +119,17 @@ class TrawlNode(Node):
             self.get_logger().info(line)
 
     def full_name(self, topic: str) -> str:
-        """Give a topic's full name after namespace and remapping."""
+        """Return a topic's full name after namespace and remapping."""
         return self.resolve_topic_name(topic)
 
     def now(self) -> int:
-        """Give the time of the node's clock in ns."""
+        """Return the time of the node's clock, ns."""
         return self.get_clock().now().nanoseconds
 
     def advertise(
         self, topic: str, type_name: str | None = None, profile: QoSProfile | None = None
     ) -> Publisher:
-        """Create the publisher of a topic; the table knows type and QoS of the project's own."""
+        """Create the publisher of a topic; the table has type and QoS of the project's own."""
         if topic not in self._senders:
             self._senders[topic] = self.create_publisher(
                 message_class(self._type_of(topic, type_name)),
@@ -272,12 +272,12 @@ class TrawlNode(Node):
         self.create_service(Trigger, service, answer)
 
     def stop_listening(self, topic: str) -> None:
-        """Give up a subscription; what was counted stays."""
+        """Destroy a subscription; its counts stay."""
         subscription, _ = self._listeners.pop(self.full_name(topic))
         self.destroy_subscription(subscription)
 
     def refuse(self, topic: str, reason: str) -> None:
-        """Take note of a message that is not used, and say why when the reason is new."""
+        """Count a message that is not used, and log the reason when it is new."""
         full = self.full_name(topic)
         # A reason may repeat what the message brought along.
         reason = one_line(reason, SENTENCE.value)
@@ -287,7 +287,7 @@ class TrawlNode(Node):
             self.get_logger().warning(f'left out a message: {reason}')
 
     def subscribers(self) -> dict[str, tuple[int, int]]:
-        """Give by topic how many subscribers are matched, and how many are known of."""
+        """Return by topic the number of matched and of known subscribers."""
         return {
             topic: (sender.get_subscription_count(), self.count_subscribers(topic))
             for topic, sender in self._senders.items()
@@ -304,7 +304,7 @@ class TrawlNode(Node):
         )
 
     def end(self, exit_code: int, reason: str = '') -> None:
-        """Ask whoever spins this node to stop."""
+        """Request the executor to stop."""
         if reason:
             (self.get_logger().error if exit_code else self.get_logger().info)(reason)
         self.exit_code = exit_code
@@ -325,7 +325,7 @@ class TrawlNode(Node):
         super().destroy_node()
 
     def say(self, name: str, level: int, message: str) -> None:
-        """Log what has changed in a subsystem's state."""
+        """Log a change of a subsystem's state."""
         if self._said.get(name, (OK, '')) == (level, message):
             return
         before = self._said.get(name, (OK, ''))[0]
@@ -344,7 +344,7 @@ class TrawlNode(Node):
             self.get_logger().error(f'{what}: {sentence}')
 
     def _is_single(self, topic: str) -> bool:
-        """Whether a topic of the contract is to have one publisher."""
+        """True if a topic of the contract is to have one publisher."""
         shared = {self.full_name(name) for name in SHARED}
         row = find_topic(topic, self.get_namespace())
         return row is not None and self.full_name(topic) not in shared

@@ -1,4 +1,4 @@
-"""What others may know of an identification that runs in a thread of its own."""
+"""Outcome of an identification in a thread of its own, as immutable records."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from trawl_ros.identification.whiteness import Whiteness
 
 @dataclass(frozen=True)
 class Readings:
-    """Readings of a channel that ``arrived``, and how many of them were ``accepted``."""
+    """Counts of a channel's readings that ``arrived``, and of those ``accepted``."""
 
     arrived: int
     accepted: int
@@ -21,7 +21,7 @@ class Readings:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a step of the estimator has led to.
+    """Outcome of a step of the estimator.
 
     Attributes
     ----------

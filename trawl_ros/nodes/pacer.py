@@ -1,4 +1,4 @@
-"""How far simulated time may have gone by now, at a factor of real time."""
+"""Pacer of simulated time at a factor of real time."""
 
 import time
 from collections.abc import Callable
@@ -8,7 +8,7 @@ LARGEST_DELAY_S = 1.0
 
 
 class Pacer:
-    """Relates data time to wall time.
+    """Pacer of data time against wall time.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Pacer:
         return self._factor
 
     def change(self, factor: float) -> None:
-        """Go on at another factor from wherever the data are."""
+        """Change the factor, from the present data time on."""
         self._factor = factor
         self._origin = None
 
@@ -44,7 +44,7 @@ class Pacer:
         self._origin = None
 
     def due(self, data_s: float) -> bool:
-        """Tell whether data of this time (s) may go out."""
+        """True if data of this time (s) may be published."""
         if self._factor == 0.0:
             return True
         now = self._clock()

@@ -26,7 +26,7 @@ class ParameterError(TrawlError):
 
 @dataclass(frozen=True)
 class Number:
-    """A number in ``unit`` from ``low`` to ``high``; ``whole`` asks for an integer.
+    """Numeric parameter in ``unit`` from ``low`` to ``high``; ``whole`` asks for an integer.
 
     ``live`` says that a change at run time has effect; others are refused.
     """
@@ -41,7 +41,7 @@ class Number:
     whole: bool = False
 
     def descriptor(self) -> ParameterDescriptor:
-        """Describe it to ROS tools."""
+        """Return the descriptor for ROS tools."""
         found = _descriptor(f'{self.sentence} ({self.unit})', self.live)
         if self.whole:
             bounds = IntegerRange(from_value=int(self.low), to_value=int(self.high), step=0)
@@ -53,7 +53,7 @@ class Number:
         return found
 
     def checked(self, value: Any) -> float:
-        """Give the number, an int as well as a double."""
+        """Return the checked number, an int as well as a double."""
         kinds: tuple[type, ...] = (int,) if self.whole else (int, float)
         what = 'a whole number' if self.whole else 'a number'
         good = isinstance(value, kinds) and not isinstance(value, bool)
@@ -67,7 +67,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Flag:
-    """True or false."""
+    """Boolean parameter."""
 
     name: str
     default: bool
@@ -75,11 +75,11 @@ class Flag:
     live: bool = False
 
     def descriptor(self) -> ParameterDescriptor:
-        """Describe it to ROS tools."""
+        """Return the descriptor for ROS tools."""
         return _descriptor(self.sentence, self.live)
 
     def checked(self, value: Any) -> bool:
-        """Give the flag."""
+        """Return the checked flag."""
         if not isinstance(value, bool):
             raise ParameterError(f'parameter {self.name}: found {value!r}, expected true or false')
         return value
@@ -87,7 +87,7 @@ class Flag:
 
 @dataclass(frozen=True)
 class Text:
-    """A text, one of ``choices`` where there are any; ``needed`` refuses an empty one."""
+    """Text parameter, one of ``choices`` where there are any; ``needed`` refuses an empty one."""
 
     name: str
     default: str
@@ -97,12 +97,12 @@ class Text:
     live: bool = False
 
     def descriptor(self) -> ParameterDescriptor:
-        """Describe it to ROS tools."""
+        """Return the descriptor for ROS tools."""
         listed = f' (one of {", ".join(self.choices)})' if self.choices else ''
         return _descriptor(self.sentence + listed, self.live)
 
     def checked(self, value: Any) -> str:
-        """Give the text."""
+        """Return the checked text."""
         if not isinstance(value, str):
             raise ParameterError(f'parameter {self.name}: found {value!r}, expected text')
         if self.needed and not value:
@@ -116,7 +116,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Names:
-    """A list of texts; a single one may stand without brackets."""
+    """Parameter of a list of texts; a single one may stand without brackets."""
 
     name: str
     sentence: str
@@ -124,11 +124,11 @@ class Names:
     live: bool = False
 
     def descriptor(self) -> ParameterDescriptor:
-        """Describe it to ROS tools."""
+        """Return the descriptor for ROS tools."""
         return _descriptor(f'{self.sentence} (list)', self.live)
 
     def checked(self, value: Any) -> tuple[str, ...]:
-        """Give the list."""
+        """Return the checked list."""
         if value is None or value == '':
             return ()
         listed = [value] if isinstance(value, str) else list(value)
@@ -143,7 +143,7 @@ Spec = Number | Flag | Text | Names
 
 
 class Parameters:
-    """The declared parameters of a node, with their present values by name.
+    """Parameters of a node with their present values by name.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Truth of which an instrument knows a part only; the rest is NaN, so that nobody looks there."""
+"""Partial truth for instruments of a node: the parts that are not received are NaN."""
 
 import math
 
@@ -33,5 +33,5 @@ def partial_truth(
     schools: tuple[SchoolTruth, ...] = (),
     seabed: SeabedTruth = _SEABED,
 ) -> Truth:
-    """Give the truth of one instant (ns) with the parts that are known."""
+    """Return the truth of one instant (ns) with the parts that are known."""
     return Truth(stamp, doors, winches, net, vessel, schools, seabed)

@@ -1,4 +1,4 @@
-"""Quality of service by role, so that no node chooses its own."""
+"""Quality of service (QoS) by role, so that no node chooses its own."""
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -19,22 +19,22 @@ def _profile(depth: int, durability: DurabilityPolicy) -> QoSProfile:
 
 
 STREAM = _profile(PUBLISHED_DEPTH, DurabilityPolicy.VOLATILE)
-"""What publishers offer and instruments ask for."""
+"""QoS of publishers and instruments."""
 
 LATCHED = _profile(1, DurabilityPolicy.TRANSIENT_LOCAL)
 """The last message also for those who come late."""
 
 CONSUMER = _profile(5000, DurabilityPolicy.VOLATILE)
-"""What recorder and estimators ask for: not one message is to be dropped."""
+"""QoS of recorder and estimators: not one message is to be dropped."""
 
 
 def offered(topic: Topic | None) -> QoSProfile:
-    """Give the profile of a publisher; None stands for a topic of somebody else."""
+    """Return the profile of a publisher; None stands for a topic of somebody else."""
     return LATCHED if topic is not None and topic.latched else STREAM
 
 
 def consumed(topic: Topic | None) -> QoSProfile:
-    """Give the profile of a subscriber that must not lose anything."""
+    """Return the profile of a subscriber that must not lose anything."""
     return LATCHED if topic is not None and topic.latched else CONSUMER
 
 

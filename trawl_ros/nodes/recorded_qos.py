@@ -1,4 +1,4 @@
-"""Quality of service between a graph and a bag: as it was offered, and offered again."""
+"""Conversion of quality of service (QoS) from graph to bag, and back."""
 
 from collections.abc import Sequence
 
@@ -35,7 +35,7 @@ _FOREVER_OF_FOXY = (
 
 
 def profiles_of(publishers: Sequence[TopicEndpointInfo]) -> tuple[Qos, ...]:
-    """Give what publishers offer, each different profile once.
+    """Return the profiles that publishers offer, each different one once.
 
     Middlewares do not tell others the history and its depth; they stand as unknown and 0, as
     they do in bags of rosbag2.
@@ -44,7 +44,7 @@ def profiles_of(publishers: Sequence[TopicEndpointInfo]) -> tuple[Qos, ...]:
 
 
 def matching(publishers: Sequence[TopicEndpointInfo], profile: QoSProfile) -> QoSProfile:
-    """A subscriber's profile that gets the messages of all who publish a topic.
+    """Return a subscriber's profile that is compatible with all publishers of a topic.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def matching(publishers: Sequence[TopicEndpointInfo], profile: QoSProfile) -> Qo
 
 
 def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | None:
-    """What a player offers in place of the publishers that were recorded.
+    """Return the profile of a player in place of the recorded publishers.
 
     Parameters
     ----------

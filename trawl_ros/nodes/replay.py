@@ -1,4 +1,4 @@
-"""Which topics of a bag can be published here, and with which quality of service."""
+"""Replayed topics of a bag: those that can be published here, and their QoS."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from trawl_ros.nodes.recorded_qos import offered_again
 
 @dataclass(frozen=True)
 class Replayed:
-    """A topic as it is published again: its type, its QoS, and whether that is as recorded."""
+    """Replayed topic: its type, its QoS, and whether that is as recorded."""
 
     type: str
     profile: QoSProfile
@@ -27,7 +27,7 @@ class Replayed:
 def replayed(
     bag: Bag, wanted: Collection[str], namespace: str
 ) -> tuple[dict[str, Replayed], list[str]]:
-    """Choose the topics of a bag to be played.
+    """Select the topics of a bag to be played.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def replayed(
 
 
 def _hindrance(bag: Bag, topic: str, definition: Definition) -> str:
-    """Why the bytes of a topic mean nothing to subscribers here; '' if they do."""
+    """Reason why the bytes of a topic have no meaning for subscribers here; '' without one."""
     name = definition.type
     try:
         message_class(name)

@@ -1,4 +1,4 @@
-"""Does a stream play anew, or is it one message whose stamp is wrong?"""
+"""Detection of a rewound stream, told from single false stamps."""
 
 from trawl_ros.instruments.samples import Sample, WinchSample
 from trawl_ros.messages.stamps import SECOND
@@ -14,7 +14,7 @@ MOST_HELD = 2000
 
 
 class Rewinding:
-    """Tells a stream that begins anew, as a bag that loops does, from single false stamps.
+    """Detector of a rewound stream, such as a bag that loops, told from single false stamps.
 
     The winch tells the time, for without it there are no windows. What goes back is held until
     `CONFIRM` of its readings in a row do, or one does not: forgetting all for one false stamp
@@ -33,11 +33,11 @@ class Rewinding:
         self._leaps: list[int] = []
 
     def forget(self) -> None:
-        """Take what comes next as the beginning."""
+        """Reset; the next sample is the beginning."""
         self._newest, self._held, self._leaps = None, [], []
 
     def take(self, sample: Sample) -> tuple[bool, list[Sample]]:
-        """Take the next sample.
+        """Filter the next sample.
 
         Returns
         -------
@@ -62,21 +62,21 @@ class Rewinding:
         return False, [self._held.pop(0)] if len(self._held) > MOST_HELD else []
 
     def _confirmed(self, stamp: int) -> bool:
-        """Whether as many readings of the winch as are needed have leapt to about here."""
+        """True if enough readings of the winch have leapt to about here."""
         self._leaps = [one for one in self._leaps if abs(stamp - one) <= BACK_NS]
         self._leaps.append(stamp)
         return len(self._leaps) >= CONFIRM
 
 
 class Reached:
-    """The newest stamp (ns) so far, 0 before any; single ones far ahead do not count."""
+    """Newest stamp (ns) so far, 0 before any; single ones far ahead do not count."""
 
     def __init__(self, stamp: int = 0) -> None:
         self.stamp = stamp
         self._ahead = 0
 
     def take(self, stamp: int) -> int:
-        """Take note of the next one, and give the newest."""
+        """Register the next stamp, and return the newest."""
         leaps = self.stamp > 0 and stamp > self.stamp + BACK_NS
         self._ahead = self._ahead + 1 if leaps else 0
         if not leaps or self._ahead >= CONFIRM:

@@ -1,4 +1,4 @@
-"""From the command line to a spinning node and to a clean end."""
+"""Runtime of a node: from the command line to a spinning node and to a clean end."""
 
 import re
 import signal
@@ -34,14 +34,14 @@ QUIET_S = 0.3
 LONGEST_DRAIN_S = 5.0
 
 SOURCE_PLACES = re.compile(r',?( at)? /project/\S+:\d+')
-"""Where in the sources of ROS 2 something was noticed, which is of no use to who reads it."""
+"""Places in the sources of ROS 2, which are of no use to a reader."""
 
 REFUSAL_WIDTH = 400
 """Signs of what ROS 2 says, which may hold the path of a file."""
 
 
 class _Stop:
-    """Counts SIGINT and SIGTERM while entered."""
+    """Counter of SIGINT and SIGTERM while entered."""
 
     def __init__(self) -> None:
         self.wishes = 0
@@ -111,7 +111,7 @@ def _open_ros(arguments: Sequence[str]) -> None:
 
 @contextmanager
 def _refusals() -> Iterator[None]:
-    """Turn what ROS 2 raises at the start, of arguments and environment, into a sentence."""
+    """Convert errors of ROS 2 at the start, of arguments and environment, into a sentence."""
     try:
         yield
     except Exception as reason:
@@ -144,7 +144,7 @@ def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
 
 
 def _drain(executor: Executor, node: TrawlNode, stop: _Stop) -> None:
-    """Take in what is on its way, until it is quiet or patience ends; a second signal ends it."""
+    """Process messages on their way, until none come or patience ends, or by a second signal."""
     wishes = stop.wishes
     end = time.monotonic() + LONGEST_DRAIN_S
     received, since = -1, time.monotonic()

@@ -41,7 +41,7 @@ BURST_S = 0.02
 SHORTEST_TICK_S = 0.002
 LONGEST_TICK_S = 0.02
 PATIENCE_S = 10.0
-"""How long after the end of a scenario consumers may take without any progress."""
+"""Time without progress that consumers have after the end of a scenario."""
 
 
 class SimNode(TrawlNode):
@@ -104,11 +104,11 @@ class SimNode(TrawlNode):
         self._ticker = self.every(self._tick_s(), self._tick)
 
     def now(self) -> int:
-        """Give the time that this node publishes on /clock, or that of its own clock, ns."""
+        """Return the time that this node publishes on /clock, or that of its own clock, ns."""
         return self._latest if self._clock_published else super().now()
 
     def objection(self, name: str, value: Any) -> str | None:
-        """Say why a live parameter cannot take a value just now; None if it can."""
+        """Return an objection to a live parameter's value; None without one."""
         if name == 'time_scale' and value != 1.0 and not self._clock_published:
             return (
                 f'time_scale: found {value:g}, expected 1, since /clock is not published; set '
@@ -117,13 +117,13 @@ class SimNode(TrawlNode):
         return None
 
     def parameter_changed(self, name: str) -> None:
-        """Let a live parameter's new value have its effect."""
+        """Apply a live parameter's new value."""
         if name == 'time_scale':
             self._pacer.change(self.parameters['time_scale'])
             self._ticker.timer_period_ns = round(self._tick_s() * SECOND)
 
     def statuses(self) -> list[Status]:
-        """How the tow goes."""
+        """Return the status of the tow."""
         command = self._tow.simulation.command
         missing = self._consumers.missing()
         values = {
@@ -167,7 +167,7 @@ class SimNode(TrawlNode):
         return load_scenario(packaged(Path(name), 'scenarios')) if name else None
 
     def _prepare(self) -> tuple[Tow, int]:
-        """The tow, and the time (ns) from one truth to the next."""
+        """Prepare the tow, and the time (ns) from one truth to the next."""
         if self._scenario is not None:
             return Trial(self._scenario), round(SECOND / self._scenario.record.truth_rate_hz)
         rate = self.parameters['truth_rate_hz']
@@ -220,7 +220,7 @@ class SimNode(TrawlNode):
         return self._pacer.due(self._next_s)
 
     def _followed(self) -> bool:
-        """Whether consumers are near enough for one truth more."""
+        """True if consumers are near enough for one truth more."""
         lead = round(self.parameters['lead_s'] * SECOND)
         return self._consumers.followed(self._latest + self._period - lead)
 
@@ -317,7 +317,7 @@ class SimNode(TrawlNode):
         return f'the tow is paused at {self._tow.time_s:.1f} s'
 
     def _take_up_time(self) -> None:
-        """After a pause, stamps that are not simulated time are the present again."""
+        """Take stamps that are not simulated time as the present again, after a pause."""
         self._pacer.restart()
         if self._offset is not None and not self._clock_published:
             self._offset = self.now() - round(self._next_s * SECOND)

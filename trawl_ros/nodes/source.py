@@ -1,4 +1,4 @@
-"""Publisher that a subscription stays with, told from others by the numbers of its messages.
+"""Source of a subscription: one publisher, told from others by the numbers of its messages.
 
 ROS gives subscribers no name of who has sent a message, but the number that its publisher gave it.
 """
@@ -31,7 +31,7 @@ class _Publisher:
 
 
 class Source:
-    """Stays with the publisher that was heard first, as long as it is heard.
+    """Source: the publisher that was heard first, as long as it is heard.
 
     Two sources of one quantity contradict each other, and a mixture of both is worse than either.
 
@@ -58,7 +58,7 @@ class Source:
         self.lost = 0
 
     def take(self, number: int | None) -> bool:
-        """Tell whether the message with a number comes from the source.
+        """True if the message with a number comes from the source.
 
         Without numbers (None), as with some middleware, no message of several publishers does.
         """
@@ -89,7 +89,7 @@ class Source:
         return True
 
     def _go_on(self, source: _Publisher, number: int, now: float) -> None:
-        """Take a message of the only publisher, after a loss or of one that was started anew."""
+        """Accept a message of the only publisher, after a loss or a restart."""
         if number > source.number:
             self.lost += number - source.number - 1
             source.heard(number, now)

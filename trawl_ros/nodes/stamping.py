@@ -1,4 +1,4 @@
-"""When the content of a message was so, read off its bytes without decoding the rest."""
+"""Header stamp of a message, read off its bytes without decoding the rest."""
 
 import struct
 
@@ -11,7 +11,7 @@ _ORDERS = {0: '>', 1: '<'}
 
 
 def stamp_in(type_name: str, data: bytes) -> int | None:
-    """Give the stamp (ns) of a message's header; None where it has none.
+    """Return the stamp (ns) of a message's header; None where it has none.
 
     An array of markers has that of its first marker.
     """

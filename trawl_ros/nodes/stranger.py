@@ -1,4 +1,4 @@
-"""A stranger in a graph: publishes on topics that are not its own, too much, or at wrong times."""
+"""Disturbance of a graph: a publisher on topics not its own, too much, or at wrong times."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -49,7 +49,7 @@ class Stranger(Monitor):
         self.sent = 0
 
     def listen_to_more(self, node: TrawlNode) -> None:
-        """Begin to speak."""
+        """Start to publish."""
         target = self._target
         if self._kind == 'clock':
             node.advertise(CLOCK.name)

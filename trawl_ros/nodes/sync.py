@@ -1,4 +1,4 @@
-"""Credit: consumers say how far they are, and sources do not run far ahead of the slowest.
+"""Flow control: consumers report their progress, and sources wait for the slowest.
 
 An acknowledged message is not a processed one: DDS says that the bytes have arrived, not that
 the subscriber has come to them. A source that runs as fast as it can would fill queues until
@@ -20,17 +20,17 @@ from trawl_ros.nodes.qos import STREAM
 
 HEADER = 'std_msgs/msg/Header'
 INTERVAL_NS = SECOND // 2
-"""How much data time lies between two reports of progress."""
+"""Data time between two reports of progress."""
 
 HEARTBEAT_S = 0.5
 SETTLED_S = 1.0
 """Discovery is taken to be over when nobody was added for this long."""
 
 IDLE_S = 2 * HEARTBEAT_S
-"""Who has heard nothing for this long has nothing left to deal with."""
+"""Silence after which a consumer has nothing left to deal with."""
 
 NOTHING = 0
-"""What a consumer reports before it has dealt with anything."""
+"""Stamp that a consumer reports before it has dealt with anything."""
 
 SILENT_S = 10.0
 """A consumer not heard for this long has gone."""
@@ -41,7 +41,7 @@ STALLED_S = 120.0
 
 
 class Progress:
-    """A consumer's side: reports now and then, and at least every `HEARTBEAT_S` of wall time.
+    """Progress of a consumer: reported now and then, at least every `HEARTBEAT_S` of wall time.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Progress:
         return self._done
 
     def done(self, stamp: int) -> None:
-        """All up to this stamp (ns) is dealt with; an earlier one than before starts anew."""
+        """Register that all up to this stamp (ns) is dealt with; an earlier one starts anew."""
         self._done = stamp
         self._heard_at = time.monotonic()
         self._node.headway.reached(stamp)
@@ -100,7 +100,7 @@ class Progress:
 
 
 class Consumers:
-    """A source's side: who has to keep up, and how far they are.
+    """Consumers of a source, and their progress.
 
     Those it needs count from the beginning on. Others count once they have dealt with anything
     of it: what was published before they were there will never reach them, so to wait for
@@ -129,7 +129,7 @@ class Consumers:
         node.listen(SYNC, self._take, STREAM, HEADER)
 
     def ready(self) -> bool:
-        """Whether all have been there, and discovery has come to rest; once true it stays so."""
+        """True if all have been there, and discovery has come to rest; once true it stays so."""
         found = self._node.subscribers()
         if found != self._subscribers:
             self._subscribers, self._changed = found, time.monotonic()
@@ -138,11 +138,11 @@ class Consumers:
         return self._ready
 
     def missing(self) -> list[str]:
-        """Names of the needed that have not been heard, or not for long."""
+        """Names of the required consumers that have not been heard, or not for long."""
         return [name for name in self._names if not self._present(name)]
 
     def stalled(self) -> list[str]:
-        """Names of those that are there and do not get on, and are not waited for any more."""
+        """Names of consumers that make no progress and are not waited for any more."""
         now = time.monotonic()
         return [
             name
@@ -151,18 +151,18 @@ class Consumers:
         ]
 
     def begin(self, stamp: int) -> None:
-        """Data time begins (anew) at a stamp (ns): what was reported so far is worth nothing."""
+        """Begin data time (anew) at a stamp (ns): earlier reports do not count."""
         self._stamps = dict.fromkeys(self._names, stamp)
         self._waited_for = {}
         self._span = (stamp, stamp)
 
     def sent(self, stamp: int) -> None:
-        """Take note of the newest stamp that was published."""
+        """Register the newest stamp that was published."""
         self._span = (self._span[0], stamp)
         self._node.headway.reached(stamp)
 
     def followed(self, stamp: int) -> bool:
-        """Whether all that count have come to a stamp (ns); asked when the source could go on."""
+        """True if all that count have come to a stamp (ns); asked when the source could go on."""
         slowest = self.slowest()
         if slowest is None or slowest >= stamp:
             return True
@@ -172,7 +172,7 @@ class Consumers:
         return False
 
     def slowest(self) -> int | None:
-        """Give the stamp (ns) that all have reached; None where nobody counts."""
+        """Return the stamp (ns) that all have reached; None where nobody counts."""
         stalled = self.stalled()
         counting = (
             stamp

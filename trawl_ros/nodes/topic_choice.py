@@ -1,4 +1,4 @@
-"""Which topics are wanted: those of the project, those named, those whose names match, or all."""
+"""Choice of topics: those of the project, those named, those whose names match, or all."""
 
 import re
 from collections.abc import Collection, Mapping
@@ -10,7 +10,7 @@ ALL = 'all'
 
 
 class TopicChoice:
-    """Tells of a full topic name whether it is wanted.
+    """Predicate of full topic names.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What `sim_node` can be asked for on its command topics, within the limits of ship and winches."""
+"""Checks of commands to `sim_node` against the limits of ship and winches."""
 
 import math
 from typing import Any
@@ -21,7 +21,7 @@ FASTEST_TURN = math.radians(3.0)
 
 
 def wanted_lengths(message: Any) -> tuple[float | None, float | None]:
-    """Give the warp lengths (m) that a message asks for, None for a winch it does not name.
+    """Return the warp lengths (m) of a command, None for a winch it does not name.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def wanted_lengths(message: Any) -> tuple[float | None, float | None]:
 
 
 def wanted_motion(message: Any) -> tuple[float, float]:
-    """Give the speed (m/s) and rate of turn (rad/s, to port) that a message asks for.
+    """Return the speed (m/s) and rate of turn (rad/s, to port) of a command.
 
     Raises
     ------

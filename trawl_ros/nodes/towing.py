@@ -1,4 +1,4 @@
-"""A tow that obeys commands as they come, beside `Trial`, which follows a scenario's."""
+"""Tow that obeys commands as they come, beside `Trial`, which follows a scenario's."""
 
 from dataclasses import replace
 from typing import Protocol
@@ -13,7 +13,7 @@ from trawl_ros.solver.stepper import StepFailed
 
 
 class Tow(Protocol):
-    """What `sim_node` tows with."""
+    """Tow that `sim_node` advances."""
 
     simulation: Simulation
 
@@ -22,14 +22,14 @@ class Tow(Protocol):
         """Simulated time since the start, s."""
 
     def step(self) -> Truth | None:
-        """Tow on for one period of the truth; the start itself at first, None after the end."""
+        """Advance by one period of the truth; the start itself at first, None after the end."""
 
     def reset(self) -> None:
-        """Back to the start."""
+        """Return to the start."""
 
 
 class CommandedTow:
-    """Tows on without end, towards whatever was commanded last.
+    """Tow without end, towards whatever was commanded last.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class CommandedTow:
         return self.simulation.now.stamp / NANOSECONDS
 
     def command_winches(self, port: float | None, starboard: float | None) -> None:
-        """Ask for warp lengths (m); None leaves that winch as it is."""
+        """Command warp lengths (m); None leaves that winch as it is."""
         wanted = self.simulation.command
         self.simulation.command = replace(
             wanted,
@@ -88,16 +88,16 @@ class CommandedTow:
         )
 
     def command_vessel(self, speed: float, turn_rate: float) -> None:
-        """Ask for a speed through the water (m/s) and a rate of turn (rad/s, to port)."""
+        """Command a speed through the water (m/s) and a rate of turn (rad/s, to port)."""
         self.simulation.command = replace(self.simulation.command, speed=speed, turn_rate=turn_rate)
 
     def reset(self) -> None:
-        """Back to the start."""
+        """Return to the start."""
         self.simulation.reset()
         self._started = False
 
     def step(self) -> Truth:
-        """Tow on for one period of the truth; the start itself at first.
+        """Advance by one period of the truth; the start itself at first.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""How many messages went through each topic, how fast, and how long ago the last one was."""
+"""Traffic statistics of a node: counts, rates and ages of messages by topic."""
 
 import time
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ class _Count:
 
 
 class Traffic:
-    """Counts by direction ('published', 'received', ...) and full topic name.
+    """Counter of messages by direction ('published', 'received', ...) and full topic name.
 
     Counting is all that happens per message; rates and ages follow when they are asked for.
     """
@@ -23,37 +23,37 @@ class Traffic:
         self._lost: dict[str, int] = {}
 
     def expect(self, direction: str, topic: str) -> None:
-        """Report a topic even before its first message."""
+        """Register a topic before its first message."""
         self._counts.setdefault((direction, topic), _Count())
 
     def count(self, direction: str, topic: str) -> None:
-        """Take note of one message."""
+        """Count one message."""
         entry = self._counts.setdefault((direction, topic), _Count())
         entry.total += 1
         entry.latest = time.monotonic()
 
     def lost(self, topic: str, total: int) -> None:
-        """Take note of how many messages of a topic were lost on the way, all together."""
+        """Register the total number of a topic's messages that were lost on the way."""
         if total:
             self._lost[topic] = total
 
     def counts(self, direction: str) -> dict[str, int]:
-        """Give the number of messages by full topic name."""
+        """Return the number of messages by full topic name."""
         return {
             topic: entry.total for (way, topic), entry in self._counts.items() if way == direction
         }
 
     def total(self, direction: str) -> int:
-        """Give the number of messages of all topics."""
+        """Return the number of messages of all topics."""
         return sum(entry.total for (way, _), entry in self._counts.items() if way == direction)
 
     @property
     def dropped(self) -> int:
-        """How many messages were lost on the way to this node."""
+        """Number of messages that were lost on the way to this node."""
         return sum(self._lost.values())
 
     def report(self) -> dict[str, str]:
-        """Give key and value for diagnostics: counts, rates since the last report, ages."""
+        """Return key and value for diagnostics: counts, rates since the last report, ages."""
         now = time.monotonic()
         values = {
             'published': str(self.total('published')),

@@ -1,4 +1,4 @@
-"""The diagnosis of a tow that goes on, in a thread of its own."""
+"""Worker thread that diagnoses a tow in progress."""
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
@@ -15,14 +15,14 @@ Windows = tuple[SteadyWindow, ...]
 
 @dataclass(frozen=True)
 class Tried:
-    """What a look at the newest windows led to: a diagnosis, or what went wrong."""
+    """Result of a diagnosis of the newest windows, or its error."""
 
     found: Diagnosis | None = None
     trouble: str = ''
 
 
 class WatchingThread(Thread):
-    """Diagnoses all windows so far whenever there are new ones; of several the newest count.
+    """Worker thread that diagnoses all windows so far; of several sets the newest counts.
 
     Coroutines may await the thread: that lasts until the newest windows are diagnosed.
 
@@ -50,7 +50,7 @@ class WatchingThread(Thread):
 
     @property
     def idle(self) -> bool:
-        """Whether the newest windows are diagnosed."""
+        """True if the newest windows are diagnosed."""
         return self._at_rest.is_set()
 
     def look_at(self, windows: Windows) -> None:
@@ -61,13 +61,13 @@ class WatchingThread(Thread):
         self._queue.put(None)
 
     def forget(self) -> None:
-        """Say nothing more of the windows that were handed over before."""
+        """Discard the windows that were handed over before."""
         with self._handing_over:
             self._newest = None
             self._forgotten += 1
 
     def stop(self) -> None:
-        """End the thread after what it has to do, and wait for it."""
+        """End the thread after its queued work, and wait for it."""
         self._stopped = True
         self._queue.put(None)
         self.join()

@@ -1,4 +1,4 @@
-"""Parameters of nodes that look for steady windows: what counts as one."""
+"""Parameters of the window finder in nodes."""
 
 from trawl_ros.identification.window_records import WindowOptions
 from trawl_ros.nodes.parameters import Number, Parameters
@@ -13,5 +13,5 @@ WINDOW_SPECS = (
 
 
 def window_options(parameters: Parameters) -> WindowOptions:
-    """Options of windows from the parameters of a node that declares `WINDOW_SPECS`."""
+    """Return the window options of a node that declares `WINDOW_SPECS`."""
     return WindowOptions(**{spec.name: parameters[spec.name] for spec in WINDOW_SPECS})

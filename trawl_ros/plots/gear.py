@@ -22,7 +22,7 @@ BOLD = ('_warp', '_bridle', 'headrope', 'footrope', 'mouth', *DOOR_FRAMES.values
 DOOR_COLOURS = {DOOR_FRAMES['port']: style.PORT, DOOR_FRAMES['starboard']: style.STARBOARD}
 
 ABOVE, BESIDE, BEHIND = (0, 1), (0, 2), (1, 2)
-"""Which of astern, to port, up are drawn to the right and up."""
+"""Axes (of astern, to port, up) that are drawn to the right and up."""
 
 LEFT_IN, RIGHT_IN, TITLE_IN, FOOT_IN, GAP_IN = 0.8, 0.25, 0.55, 0.65, 0.4
 """Room (inches) beside, above, below and between the views."""

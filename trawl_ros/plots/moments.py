@@ -15,7 +15,7 @@ from trawl_ros.plots.records import Tow
 GEAR, MOUTH, POSE = 'truth/gear', 'truth/net/mouth', 'truth/sonar/pose'
 SECTION, IMAGE, SCAN = 'truth/sonar/section', 'sonar/image', 'sonar/scan'
 MOST_AWAY_S = {GEAR: 10.0, MOUTH: 10.0, POSE: 10.0, SECTION: 10.0, IMAGE: 120.0, SCAN: 120.0}
-"""What is further from a chosen time is not drawn for it."""
+"""Largest distance from a chosen time at which a message is drawn for it."""
 
 
 @dataclass(frozen=True)

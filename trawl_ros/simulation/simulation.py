@@ -21,7 +21,7 @@ from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
 NANOSECONDS = 1_000_000_000
 CALM = Sea()
 HALVINGS = 6
-"""How often a time step that fails is halved before the tow is given up."""
+"""Number of halvings of a time step that fails before the tow is given up."""
 
 
 @dataclass(frozen=True)

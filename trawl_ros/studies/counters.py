@@ -47,7 +47,7 @@ SEED = 46
 
 GEAR = 'kaifuha'
 ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
-"""What about 3 % and about 13 m are."""
+"""Ranges of a scale (%) of about 3 % and an offset (m) of about 13 m."""
 
 Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 

@@ -59,7 +59,7 @@ def write_page(folder: Path, page: Page, sections: Sequence[Section], figure: Fi
 
 
 def wanted(row: Row) -> str:
-    """What a row was asked for, in words."""
+    """Target of a row, in words."""
     if row.least is not None and row.target is not None:
         return f'{number(row.least)} to {number(row.target)}'
     if row.least is not None:

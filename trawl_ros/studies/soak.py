@@ -16,7 +16,7 @@ from trawl_ros.studies.chain import Glance, start_chain, watch_chain
 from trawl_ros.studies.long_tow import TRUTH_HZ, write_coarse_gear, write_long_tow
 
 GLANCES = 500
-"""How often a tow is looked at, however long it is."""
+"""Number of glances at a tow, however long it is."""
 
 SETTLE_S = 10.0
 """Wall time at the start of the run in real time that is not counted."""

@@ -6,7 +6,7 @@ REACH = 14
 """A line goes on at most so many cells nearer or further in the next beam."""
 
 BEND = 0.5
-"""What each of these cells costs, dB."""
+"""Cost of each of these cells, dB."""
 
 ENOUGH = 25.0
 """An echo counts no more for being brighter than this, dB: a fish outshines no row of ropes."""

@@ -44,7 +44,7 @@ REPERTOIRE: tuple[tuple[Kind, str], ...] = (
     ('stamp', 'vessel/heading'),
     ('progress', 'sync/progress'),
 )
-"""What happens once an hour, and to which node or topic; a clock is off by so many seconds.
+"""Faults of each hour, with their node or topic; a clock is off by so many seconds.
 
 The simulation is not killed: it is the sea, and with it the tow would begin anew.
 """

@@ -24,7 +24,7 @@ SPIN_EVERY = 100
 
 @dataclass
 class Tally:
-    """What an attack on a node came to.
+    """Tally of an attack on a node.
 
     ``sent`` hostile messages by topic; ``refused`` of them were counted; ``ended`` says why the
     node did not survive, '' if it did; ``not_finite`` names fields that were published with NaN or

@@ -72,7 +72,7 @@ Kind = Callable[..., TrawlNode]
 
 @dataclass(frozen=True)
 class Moved:
-    """How far hostile messages moved an estimate.
+    """Shift of an estimate by hostile messages.
 
     ``shift`` is the largest change of a coefficient in standard deviations of the undisturbed
     estimate, NaN where one of both is missing; ``told`` is how many messages were refused or
@@ -87,7 +87,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class Found:
-    """What came of all attacks."""
+    """Result of all attacks."""
 
     tallies: tuple[Tally, ...]
     moved: Moved

@@ -22,7 +22,7 @@ MOST_SWEEP = 2
 LOOKED_AT: tuple[State, ...] = (
     (200.0, 2.3), (300.0, 1.9), (400.0, 2.1), (500.0, 2.3), (700.0, 2.1), (900.0, 2.3),
 )  # fmt: skip
-"""Where model and plant are compared."""
+"""States in which model and plant are compared."""
 
 
 def planning_rows(gear: str) -> list[Row]:

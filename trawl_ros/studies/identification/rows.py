@@ -13,7 +13,7 @@ from trawl_ros.studies.identification.trial import Trial
 from trawl_ros.studies.row import Row
 
 COVERAGE = (90.0, 98.0)
-"""What 95 % intervals may cover, %."""
+"""Allowed coverage of 95 % intervals, %."""
 
 SPREAD = (0.9, 1.2)
 """Spread of estimates over its bound."""
@@ -22,7 +22,7 @@ MOST_ERROR = {'door_spread': 2.4, 'door_depth': 2.2, 'net_depth': 3.7, 'warp_ten
 """Errors on tows left out, %: half of the paper's."""
 
 OVER_FLOOR = 1.2
-"""How much larger than that of a perfect model they may be."""
+"""Largest allowed ratio to the errors of a perfect model."""
 
 DRAWN_AGAIN = 1000
 AGAIN = 'interval by drawing trials again'

@@ -19,7 +19,7 @@ from trawl_ros.validation.closed_forms.power import STORES, WORKS, Ledger
 from trawl_ros.validation.closed_forms.refinement import order
 
 WARP, SPEED = 500.0, 2.1
-"""Where the manoeuvre starts, m and m/s."""
+"""Operating point at the manoeuvre's start, m and m/s."""
 
 RATE, RAMP = 0.4, 8.0
 """Speed of hauling (m/s), and how long (s) the winches take to come up to it and to stop."""

@@ -51,7 +51,7 @@ WORKS: Mapping[str, str] = MappingProxyType(
         'damping': 'inner damping of the ropes',
     }
 )
-"""What does work on the gear, key → words."""
+"""Terms of work on the gear, key → words."""
 
 STORES: Mapping[str, str] = MappingProxyType(
     {
@@ -60,7 +60,7 @@ STORES: Mapping[str, str] = MappingProxyType(
         'motion': 'motion: kinetic energy',
     }
 )
-"""What the gear holds, key → words."""
+"""Terms of energy in the gear, key → words."""
 
 
 def strain_energy(strain: np.ndarray) -> np.ndarray:

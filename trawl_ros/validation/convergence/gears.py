@@ -21,7 +21,7 @@ AROUND_ZERO = ('pitch', 'slip')
 """Angles that may well be zero: pitch passes through it as warps grow longer."""
 
 REFERENCE = np.radians(30.0)
-"""What differences of these angles are set against: 30°, up to which the paper compares boards
+"""Reference of the differences of these angles: 30°, up to which the paper compares boards
 in Fig. 5."""
 
 

@@ -29,7 +29,7 @@ FINER: Mapping[str, dict[str, Any]] = {
     'net': {'net': 1.5},
     'all': {'warp': 2, 'bridle': 2, 'net': 1.5},
 }
-"""How gears are refined. With half as many meshes again the default net has more around its mouth
+"""Refinements of gears. With half as many meshes again the default net has more around its mouth
 than the real one; twice as many have no root that the solver finds from nothing."""
 
 WORDS: Mapping[str, str] = {

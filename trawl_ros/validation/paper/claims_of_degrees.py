@@ -9,7 +9,7 @@ ERRORS = {'door_spread': 4.8, 'door_depth': 4.5, 'net_depth': 7.4, 'warp_tension
 """Errors of the 6-DOF model that the paper reports, %."""
 
 CLOSE = 5.0
-"""What counts as close, %: the paper's own error against its trial."""
+"""Limit of close, %: the paper's own error against its trial."""
 
 DEPTHS = ('door_depth', 'net_depth')
 

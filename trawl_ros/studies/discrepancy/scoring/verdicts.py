@@ -9,7 +9,7 @@ from typing import Any
 from trawl_ros.studies.discrepancy.trials.trial import Scored
 
 Classes = Mapping[str, tuple[str, ...]]
-"""What is as good as each effect's own name, fixed before any trial is made."""
+"""Names as good as each effect's own, fixed before any trial is made."""
 
 
 def names_of(trial: Scored) -> set[str]:
