@@ -25,7 +25,7 @@ ResultT = TypeVar('ResultT')
 
 LOCALHOST = '127.0.0.1'
 PATIENCE_S = 5.0
-"""How long a scheduler has to answer."""
+"""Timeout of a scheduler's answer."""
 
 QUIET = {
     # A worker that dies takes its task along; the same task would kill the next one too.

@@ -151,7 +151,7 @@ class _Record:
 
 @dataclass
 class _Source:
-    """Whether one instrument gives the readings of a topic, and if not, why that is known."""
+    """Check that one instrument gives the readings of a topic; ``why`` says how others are known."""
 
     name: str
     why: str = ''

@@ -28,8 +28,8 @@ SHARE = 0.25
 """Part of a block that has stamps which one source does not give."""
 
 JUMP = 2.0
-"""How much larger the step to the next reading is than that to the one behind it, by which
-waves have moved on already."""
+"""Least ratio of the step to the next reading to that to the one behind it, by which waves have
+moved on already."""
 
 LONGEST_STEP = 1_500_000_000
 """Time (ns) between readings up to which they are looked at for this: slower ones may alternate

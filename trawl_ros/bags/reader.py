@@ -24,7 +24,7 @@ from trawl_ros.messages.topics import NAMESPACE, find_topic
 
 @dataclass(frozen=True)
 class RawMessage:
-    """A message as it lies in the bag: full topic name, type, times in ns, CDR bytes, channel."""
+    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel."""
 
     topic: str
     type: str
@@ -36,7 +36,7 @@ class RawMessage:
 
 @dataclass(frozen=True)
 class Received:
-    """A decoded message: full topic name, type, log time (ns), the message, and its channel."""
+    """Decoded message: full topic name, type, log time (ns), the message, and its channel."""
 
     topic: str
     type: str

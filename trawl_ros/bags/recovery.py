@@ -255,7 +255,7 @@ class _Recovery:
 
 
 def _is_of(topic: Topic, message: Any) -> bool:
-    """Whether a message has the frame and names that the project's topic has."""
+    """True if a message has the frame and names that the project's topic has."""
     header = getattr(message, 'header', None)
     if header is not None and header.frame_id != topic.frame:
         return False
@@ -272,4 +272,4 @@ _SIGNS: Mapping[str, Callable[[Any], bool]] = {
     'truth/winch': _measured,
     'command/winch': lambda message: len(message.effort) == 0,
 }
-"""What tells topics apart that have the same type and frame."""
+"""Signs by which topics of the same type and frame are told apart."""

@@ -32,7 +32,7 @@ class Definition:
 
 @dataclass(frozen=True)
 class StatedTopics:
-    """What ``metadata.yaml`` says of topics, in its order; definitions come without their text.
+    """Topics of ``metadata.yaml`` in its order; definitions come without their text.
 
     ``files`` is how many files these are in.
     """
