@@ -151,7 +151,7 @@ class _Record:
 
 @dataclass
 class _Source:
-    """Check that one instrument gives the readings of a topic; ``why`` says how others are known."""
+    """Check that a topic has one source; ``why`` names the evidence of several."""
 
     name: str
     why: str = ''
