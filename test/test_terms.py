@@ -1,4 +1,4 @@
-"""First lines of docstrings name their object by a term, and never ask a question."""
+"""Docstrings begin with a term, never with a question; the glossary names what there is."""
 
 import ast
 import re
@@ -8,6 +8,7 @@ from pathlib import Path
 import trawl_ros
 
 PACKAGE = Path(trawl_ros.__file__).parent
+GLOSSARY = Path(__file__).parents[1] / 'docs' / 'glossary.md'
 QUESTION = re.compile(r'(What|How|Whether|Where|Who|Whom|Whose|Which|That|When|Why)\b')
 DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -54,3 +55,22 @@ def test_docstrings_begin_with_a_term_or_a_verb() -> None:
         for line, text in offenders(path.read_text(encoding='utf-8'))
     ]
     assert not found, 'name the object or begin with a verb:\n' + '\n'.join(found)
+
+
+def test_the_glossary_names_what_is_in_the_package() -> None:
+    words = re.findall(r'`([A-Za-z_.]+)`', GLOSSARY.read_text('utf-8'))
+    named = {word.split('.')[0] for word in words if not word.endswith('.yaml')}
+    defined = {
+        node.name
+        for path in PACKAGE.rglob('*.py')
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8')))
+        if isinstance(node, ast.ClassDef | ast.FunctionDef)
+    }
+    assert sorted(named - defined) == []
+
+
+def test_the_glossary_is_alphabetical_within_its_sections() -> None:
+    for section in GLOSSARY.read_text('utf-8').split('\n## ')[1:]:
+        terms = [term.lower() for term in re.findall(r'^- \*\*(.+?)\*\*', section, re.MULTILINE)]
+        assert terms == sorted(terms)
+        assert terms
