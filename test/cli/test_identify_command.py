@@ -5,14 +5,13 @@ import json
 import math
 
 import pytest
-from rich.console import Console
 
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.cli.read_tows import read_tows
 from trawl_ros.gear.load import load_gear
 from trawl_ros.identification.bag_windows import BagTask, read_tow
 from trawl_ros.identification.laws import QUANTITIES
 from trawl_ros.identification.objective import PAPER_CHANNELS
+from trawl_ros.identification.read_tows import read_tows
 from trawl_ros.instruments.samples import RangeSample
 from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.model.board import COEFFICIENTS
@@ -90,7 +89,7 @@ def test_of_several_bags_each_is_left_out_and_what_is_readable_of_a_damaged_one_
 def test_bags_read_at_once_and_in_turn_hold_the_same(steady_tow, bag, coarse_gear, tmp_path):
     gear = load_gear(coarse_gear)
     bags = [bag, steady_tow.bag(tmp_path / 'other', seed=1), bag]
-    at_once = read_tows(bags, gear, NAMESPACE, Console(quiet=True))
+    at_once = read_tows(bags, gear, NAMESPACE)
     in_turn = [read_tow(BagTask(path, gear, NAMESPACE)) for path in bags]
     assert [part.name for part in at_once] == [str(path) for path in bags]
     for one, other in zip(at_once, in_turn, strict=True):

@@ -6,16 +6,12 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from trawl_ros import api
 from trawl_ros.cli.files import BAG, FOLDER
-from trawl_ros.cli.progress import error_console
-from trawl_ros.cli.read_tows import read_tows
-from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, unread
-from trawl_ros.diagnosis.repair import source
+from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.words import headline, sentences
-from trawl_ros.diagnosis.writing import MODEL, write_diagnosis
-from trawl_ros.files import empty_folder
-from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.tows import numbered
+from trawl_ros.diagnosis.writing import MODEL
 from trawl_ros.messages.topics import NAMESPACE
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
@@ -58,29 +54,21 @@ def command(
     model.yaml, the gear with the effect in it. Ends with 0 where there is no discrepancy, 10 where
     there is one, 11 where these bags cannot tell.
     """
-    empty_folder(out, force=force)
-    record = load_gear(gear)
     console = error_console()
-    paths = [*baseline, *bags]
-    found = read_tows(paths, record, namespace, console, scheduler)
-    for part in found:
-        for problem in part.problems:
-            console.print(f'Damaged: {problem}', style='yellow', markup=False)
-        if part.why_not is not None:
-            console.print(f'Not used: {part.name}: {part.why_not}', style='yellow', markup=False)
-    windows, names = numbered(found)
-    known, _ = numbered(found[: len(baseline)])
-    in_order = frozenset(window.tow for window in known)
-    sources = [source(path) for path in paths]
-    reasons = [f'{part.name}: {part.why_not}' for part in found if part.why_not is not None]
-    if len(reasons) == len(found):
-        said = unread(record, names, '; '.join(reasons))
-    else:
-        with console.status('diagnosing') as status:
-            said = diagnose(record, windows, names, in_order, lambda what: status.update(what))
-    write_diagnosis(said, sources, out)
-    _print(said, out)
-    context.exit(EXIT[said.verdict])
+    with ProgressDisplay(console) as display:
+        found = api.diagnose(
+            bags,
+            baseline=baseline,
+            gear=gear,
+            out=out,
+            namespace=namespace,
+            scheduler=scheduler,
+            force=force,
+            on_note=lambda note: console.print(note, style='yellow', markup=False),
+            on_progress=display,
+        )
+    _print(found, out)
+    context.exit(EXIT[found.verdict])
 
 
 def _print(found: Diagnosis, out: Path) -> None:

@@ -5,26 +5,18 @@ from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.progress import Progress
 
+from trawl_ros import api
 from trawl_ros.cli.files import BAG, FOLDER, SCENARIO
-from trawl_ros.cli.progress import error_console
-from trawl_ros.cli.read_tows import read_tows
-from trawl_ros.errors import TrawlError
-from trawl_ros.files import empty_folder, packaged
-from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.from_gear import estimator_options, identification_for
-from trawl_ros.identification.report import Report, report
+from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.identification.report import Report
 from trawl_ros.identification.table import (
     channel_table,
     closing_lines,
     coefficient_table,
     opening_line,
 )
-from trawl_ros.identification.tows import FoundWindows, estimate_tows
-from trawl_ros.identification.writing import write_report
 from trawl_ros.messages.topics import NAMESPACE
-from trawl_ros.scenario.scenario import true_coefficients
 
 TABLE_WIDTH = 100
 
@@ -69,31 +61,22 @@ def command(
     Writes report.html, identification.json and figures. Each tow is left out in turn and
     predicted from the others; with a single one, its steady states are.
     """
-    empty_folder(out, force=force)
-    true_values = None if truth is None else true_coefficients(packaged(truth, 'scenarios'))
-    options = estimator_options(prior=not no_prior, net=net)
-    record = load_gear(gear)
     console = error_console()
-    found = read_tows(bags, record, namespace, console, scheduler)
-    _warn(found, console)
-    identification = identification_for(record, estimator_options=options)
-    with Progress(console=console, transient=True) as progress:
-        fit = progress.add_task('fitting', total=None)
-        names = estimate_tows(
-            identification, found, lambda done, of: progress.update(fit, completed=done, total=of)
+    with ProgressDisplay(console) as display:
+        found = api.identify(
+            bags,
+            gear=gear,
+            out=out,
+            truth=truth,
+            prior=not no_prior,
+            net=net,
+            namespace=namespace,
+            scheduler=scheduler,
+            force=force,
+            on_note=lambda note: console.print(note, style='yellow', markup=False),
+            on_progress=display,
         )
-        if reason := identification.why_not():
-            raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
-        left = progress.add_task('leaving out, one after another', total=None)
-        said = report(
-            identification,
-            true_values,
-            tows=names,
-            gear=record,
-            begun=lambda number, of: progress.update(left, completed=number - 1, total=of),
-        )
-    write_report(said, out)
-    print_report(said)
+    print_report(found)
 
 
 def print_report(found: Report) -> None:
@@ -105,15 +88,3 @@ def print_report(found: Report) -> None:
     console.print(channel_table(found), width=width)
     for line in closing_lines(found):
         console.print(line)
-
-
-def _warn(found: Sequence[FoundWindows], console: Console) -> None:
-    """Warn of damage; refuse bags none of which has a window, with the first one's reason."""
-    for part in found:
-        for problem in part.problems:
-            console.print(f'Damaged: {problem}', style='yellow', markup=False)
-    empty = [part for part in found if part.why_not is not None]
-    if len(empty) == len(found):
-        raise TrawlError('; '.join(f'{part.name}: {part.why_not}' for part in found))
-    for part in empty:
-        console.print(f'Not used: {part.name}: {part.why_not}', style='yellow', markup=False)

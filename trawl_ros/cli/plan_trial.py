@@ -1,16 +1,13 @@
 """``trawl plan-trial``."""
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from rich.status import Status
 
 from trawl_ros.cli.files import FOLDER
-from trawl_ros.cli.progress import LINE_EVERY_S, error_console
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
-from trawl_ros.files import empty_folder
 
 if TYPE_CHECKING:
     from trawl_ros.identification.planning import TrialPlan
@@ -20,7 +17,7 @@ MOST_NUMBERS = 20
 
 
 class _Numbers(click.ParamType):
-    """Parameter type: different numbers between two limits, given with commas, sorted."""
+    """Different numbers between two limits, given with commas, put in order."""
 
     name = 'numbers'
 
@@ -30,7 +27,7 @@ class _Numbers(click.ParamType):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, ...]:
-        """Parse the list."""
+        """Read the list."""
         if isinstance(value, tuple):
             return value
         numbers = {float(self._one.convert(one.strip(), param, ctx)) for one in value.split(',')}
@@ -88,30 +85,26 @@ def command(
     after it and what will not, beside the paper's sweep of warp lengths at one speed. With --out
     it writes the plan, a scenario that ``trawl tow`` can run, and a picture.
     """
-    if out is not None:
-        empty_folder(out, force=force)
-    from trawl_ros.gear.load import load_gear
-    from trawl_ros.identification.planning import plan_trial
+    from trawl_ros import api
     from trawl_ros.identification.planning_states import Limits
-    from trawl_ros.identification.planning_writing import write_plan
 
-    record = load_gear(gear)
     limits = Limits(
         lengths=lengths_m or Limits.lengths,
         speeds=speeds_m_s or Limits.speeds,
         max_tension=None if max_tension_kn is None else 1e3 * max_tension_kn,
         seabed=seabed_m,
     )
-    with _Counting() as progress:
-        plan = plan_trial(record, hours=hours, limits=limits, progress=progress)
+    with ProgressDisplay(error_console()) as display:
+        plan = api.plan_trial(
+            gear, hours=hours, limits=limits, out=out, force=force, on_progress=display
+        )
     print_plan(plan)
     if out is not None:
-        write_plan(plan, gear, out)
         click.echo(f'\nWritten to {out}; to tow it: trawl tow {out}/trial.yaml --out BAG')
 
 
 def print_plan(plan: 'TrialPlan') -> None:
-    """Print legs, the quantities known after them, and the limits of the rest."""
+    """Print legs, what is known after them, and what limits the rest."""
     from trawl_ros.identification.laws import LAWS, QUANTITIES
 
     console = output_console()
@@ -165,31 +158,3 @@ def print_plan(plan: 'TrialPlan') -> None:
             f'had: {reasons}.',
             soft_wrap=True,
         )
-
-
-class _Counting:
-    """Progress counter: on a terminal always, else every ten seconds."""
-
-    def __init__(self) -> None:
-        self._console = error_console()
-        self._status: Status | None = None
-        self._said = time.monotonic()
-        if self._console.is_terminal:
-            self._status = self._console.status('planning')
-
-    def __call__(self, what: str, done: int, number: int) -> None:
-        words = f'{what}: {done} of {number}'
-        if self._status is not None:
-            self._status.update(words)
-        elif time.monotonic() - self._said >= LINE_EVERY_S:
-            self._said = time.monotonic()
-            self._console.print(words)
-
-    def __enter__(self) -> '_Counting':
-        if self._status is not None:
-            self._status.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._status is not None:
-            self._status.stop()

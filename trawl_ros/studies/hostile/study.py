@@ -14,7 +14,6 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity
 from rclpy.parameter import Parameter
 
-from trawl_ros.cli.tow import recorded
 from trawl_ros.identification.estimate import Estimate
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.commands import (
@@ -46,6 +45,7 @@ from trawl_ros.nodes.sync import HEADER
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
 from trawl_ros.nodes.vessel_node import VesselNode
 from trawl_ros.nodes.winch_node import WinchNode
+from trawl_ros.scenario.recording import recorded
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.studies.hostile.attack import Attack, Stream, Tally, examples_of

@@ -1,15 +1,12 @@
-"""Reading of bags for their steady windows, each apart from the others."""
+"""Steady windows of several bags, each read apart from the others."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import Progress
-
-from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.bag_windows import BagTask, read_tow
 from trawl_ros.identification.tows import FoundWindows
+from trawl_ros.progress import OnProgress, WorkProgress, ignore
 
 IN_TURN = 2
 """So many bags are read sooner than processes are started for them."""
@@ -19,28 +16,34 @@ def read_tows(
     paths: Sequence[Path],
     gear: GearRecord,
     namespace: str,
-    console: Console,
+    *,
     scheduler: str | None = None,
+    on_progress: OnProgress = ignore,
 ) -> list[FoundWindows]:
-    """Find the steady windows of each bag, with a progress display.
+    """Find the steady windows of each bag.
 
     Parameters
     ----------
     paths, gear, namespace
         As in `BagTask`.
-    console
-        Where to show it.
     scheduler
         Address of a Dask cluster. Without it a few bags are read in turn, more by processes of
         this machine; what is found is the same.
+    on_progress
+        Called as bags are read.
+
+    Raises
+    ------
+    BagError
+        If a bag cannot be read at all.
     """
     tasks = [BagTask(path, gear, namespace) for path in paths]
     if scheduler is None and len(tasks) <= IN_TURN:
-        return _in_turn(tasks, console)
-    return _at_once(tasks, console, scheduler)
+        return _in_turn(tasks, on_progress)
+    return _at_once(tasks, scheduler, on_progress)
 
 
-def _in_turn(tasks: Sequence[BagTask], console: Console) -> list[FoundWindows]:
+def _in_turn(tasks: Sequence[BagTask], on_progress: OnProgress) -> list[FoundWindows]:
     found: list[FoundWindows] = []
     before_s = reached_s = 0.0
 
@@ -49,17 +52,17 @@ def _in_turn(tasks: Sequence[BagTask], console: Console) -> list[FoundWindows]:
         reached_s = before_s + seconds
         bag = f'bag {len(found) + 1} of {len(tasks)}, ' if len(tasks) > 1 else ''
         windows += sum(len(part.windows) for part in found)
-        progress.update(reached_s, f'{bag}{windows} steady windows')
+        detail = f'{bag}{windows} steady windows'
+        on_progress(WorkProgress('reading', reached_s, None, 's', detail))
 
-    with TimeProgress('reading', None, console) as progress:
-        for task in tasks:
-            found.append(read_tow(task, show))
-            before_s = reached_s
+    for task in tasks:
+        found.append(read_tow(task, show))
+        before_s = reached_s
     return found
 
 
 def _at_once(
-    tasks: Sequence[BagTask], console: Console, scheduler: str | None
+    tasks: Sequence[BagTask], scheduler: str | None, on_progress: OnProgress
 ) -> list[FoundWindows]:
     # Dask takes a second to import, which a single bag need not wait for.
     from trawl_ros.parallel import run_tasks
@@ -67,9 +70,7 @@ def _at_once(
     # A bag may be given twice; its place among the others is unique.
     by_name = {f'{number}: {task.path}': task for number, task in enumerate(tasks, start=1)}
     found: dict[str, FoundWindows] = {}
-    with Progress(console=console, transient=True) as progress:
-        reading = progress.add_task('reading bags', total=len(tasks))
-        for name, windows in run_tasks(read_tow, by_name, scheduler=scheduler):
-            found[name] = windows
-            progress.advance(reading)
+    for name, windows in run_tasks(read_tow, by_name, scheduler=scheduler):
+        found[name] = windows
+        on_progress(WorkProgress('reading', len(found), len(tasks), 'bags'))
     return [found[name] for name in by_name]

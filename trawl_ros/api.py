@@ -1,0 +1,341 @@
+"""The use cases of the package as functions: tow, simulate, identify, diagnose, plan, draw.
+
+Commands and nodes are thin around them. Files are named as a user names them: a path, or the bare
+name of what comes with the package.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.diagnosis import diagnosis
+from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
+from trawl_ros.diagnosis.repair import source
+from trawl_ros.diagnosis.writing import write_diagnosis
+from trawl_ros.errors import BagError, TrawlError
+from trawl_ros.files import empty_folder, packaged
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.identification.from_gear import estimator_options, identification_for
+from trawl_ros.identification.planning import TrialPlan
+from trawl_ros.identification.planning import plan_trial as plan_for
+from trawl_ros.identification.planning_states import Limits
+from trawl_ros.identification.planning_writing import write_plan
+from trawl_ros.identification.read_tows import read_tows
+from trawl_ros.identification.report import Report, report
+from trawl_ros.identification.tows import FoundWindows, estimate_tows, numbered
+from trawl_ros.identification.writing import write_report
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.topics import NAMESPACE, absolute
+from trawl_ros.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.scenario.recording import recorded
+from trawl_ros.scenario.run import Trial
+from trawl_ros.scenario.scenario import load_scenario, true_coefficients
+from trawl_ros.simulation.truth import Truth
+
+DEFAULT_GEAR = 'kaifuha'
+
+OnNote = Callable[[str], None]
+"""Takes a sentence on input that was damaged or not used."""
+
+
+def _silent(sentence: str) -> None:
+    """Take no notice of a sentence."""
+
+
+@dataclass(frozen=True)
+class TowedBag:
+    """A bag that `tow` wrote.
+
+    Attributes
+    ----------
+    path
+        Of the bag.
+    messages
+        Full topic name → number of messages.
+    duration_s, planned_s
+        How long was towed, and how long the scenario is, s.
+    complete
+        Whether the scenario was towed to its end.
+    """
+
+    path: Path
+    messages: Mapping[str, int]
+    duration_s: float
+    planned_s: float
+    complete: bool
+
+
+def simulate(scenario: str | Path) -> Iterator[Truth]:
+    """Tow a scenario, without instruments and without a bag.
+
+    Parameters
+    ----------
+    scenario
+        A file, or the name of one that comes with the package.
+
+    Yields
+    ------
+    Truth
+        Doors, net, winches and ship at the scenario's ``truth_rate_hz``, SI units, ``map`` axes.
+
+    Raises
+    ------
+    ScenarioError
+        If the file is not in order, or the gear cannot be towed that way.
+    NoSteadyState
+        If the start is no usable steady state.
+
+    Examples
+    --------
+    >>> from itertools import islice
+    >>> import trawl_ros
+    >>> [round(truth.winches[0].length) for truth in islice(trawl_ros.simulate('demo'), 2)]
+    [400, 400]
+    """
+    trial = Trial(load_scenario(packaged(Path(scenario), 'scenarios')))
+    while (truth := trial.step()) is not None:
+        yield truth
+
+
+def tow(
+    scenario: str | Path,
+    out: str | Path,
+    *,
+    stopped: Callable[[], bool] = lambda: False,
+    on_progress: OnProgress = ignore,
+) -> TowedBag:
+    """Tow a scenario and record what its instruments report: same seed, same bytes.
+
+    Parameters
+    ----------
+    scenario
+        A file, or the name of one that comes with the package.
+    out
+        Folder of the bag; must not exist yet.
+    stopped
+        Asked between two moments; where it says yes the bag ends there, whole.
+    on_progress
+        Called as the tow goes on.
+
+    Raises
+    ------
+    BagError
+        If ``out`` exists, or cannot be written to.
+    ScenarioError, NoSteadyState
+        As in `simulate`.
+    """
+    out = Path(out)
+    if out.exists():
+        raise BagError(f'{out}: exists already and is not written over; expected a new path')
+    loaded = load_scenario(packaged(Path(scenario), 'scenarios'))
+    on_progress(WorkProgress('looking for the steady states'))
+    trial = Trial(loaded)
+    interrupted = False
+    with BagWriter(out) as bag:
+        for stamp, messages in recorded(trial):
+            for topic, message in messages:
+                bag.write(absolute(topic), message.__msgtype__, serialize(message), stamp)
+            step = loaded.step_at(trial.time_s).name
+            on_progress(WorkProgress('towing', trial.time_s, trial.duration_s, 's', step))
+            if interrupted := stopped():
+                break
+    return TowedBag(out, dict(bag.counts), trial.time_s, trial.duration_s, not interrupted)
+
+
+def identify(
+    bags: Sequence[str | Path],
+    *,
+    gear: str | Path | GearRecord = DEFAULT_GEAR,
+    out: str | Path | None = None,
+    truth: str | Path | None = None,
+    prior: bool = True,
+    net: bool = False,
+    namespace: str = NAMESPACE,
+    scheduler: str | None = None,
+    force: bool = False,
+    on_note: OnNote = _silent,
+    on_progress: OnProgress = ignore,
+) -> Report:
+    """Refit the twelve board coefficients of eq. 14 from bags, each of them a tow.
+
+    Each tow is left out in turn and predicted from the others; with one, its steady states are.
+
+    Parameters
+    ----------
+    bags
+        Folders or files.
+    gear
+        The gear as the model has it: a record, a file, or a name.
+    out
+        Folder for page, JSON and figures; none are written without.
+    truth
+        Scenario that made the bags, whose coefficients are set beside the estimates.
+    prior
+        Whether the gear file's prior takes part; else the data decide, within the bounds.
+    net
+        Whether drag and weight of the net are estimated along.
+    namespace
+        Of the topics.
+    scheduler
+        Address of a Dask cluster that reads the bags. A scheduler runs code: it must be trusted.
+    force
+        Whether results of an earlier run in ``out`` are replaced.
+    on_note, on_progress
+        Called with what is damaged or not used, and as the work goes on.
+
+    Returns
+    -------
+    Report
+        With ``estimate`` (values and covariance, SI), residuals, what was held out.
+
+    Raises
+    ------
+    TrawlError
+        If no bag has a steady window, with the reason, or ``out`` holds files already.
+    """
+    if out is not None:
+        empty_folder(Path(out), force=force)
+    known = None if truth is None else true_coefficients(packaged(Path(truth), 'scenarios'))
+    options = estimator_options(prior=prior, net=net)
+    record = _gear(gear)
+    paths = [Path(bag) for bag in bags]
+    found = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
+    _note(found, on_note)
+    if all(part.why_not is not None for part in found):
+        raise TrawlError('; '.join(f'{part.name}: {part.why_not}' for part in found))
+    identification = identification_for(record, estimator_options=options)
+    names = estimate_tows(
+        identification,
+        found,
+        lambda done, of: on_progress(WorkProgress('fitting', done, of, 'windows')),
+    )
+    if reason := identification.why_not():
+        raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
+    result = report(
+        identification,
+        known,
+        tows=names,
+        gear=record,
+        begun=lambda number, of: on_progress(
+            WorkProgress('leaving out, one after another', number - 1, of, 'fits')
+        ),
+    )
+    if out is not None:
+        write_report(result, Path(out))
+    return result
+
+
+def diagnose(
+    bags: Sequence[str | Path],
+    *,
+    baseline: Sequence[str | Path] = (),
+    gear: str | Path | GearRecord = DEFAULT_GEAR,
+    out: str | Path | None = None,
+    namespace: str = NAMESPACE,
+    scheduler: str | None = None,
+    force: bool = False,
+    on_note: OnNote = _silent,
+    on_progress: OnProgress = ignore,
+) -> Diagnosis:
+    """Find where model and bags disagree, and name the effect that the model lacks.
+
+    Parameters
+    ----------
+    bags
+        Tows to examine: folders or files.
+    baseline
+        Tows of when the gear was known to be in order.
+    gear, out, namespace, scheduler, force, on_note, on_progress
+        As in `identify`. Where an effect is named, ``out`` also takes ``model.yaml``.
+
+    Returns
+    -------
+    Diagnosis
+        With ``verdict``, reason, evidence, and the ``repair`` where there is one.
+
+    Raises
+    ------
+    TrawlError
+        If a bag cannot be read, or ``out`` holds files already.
+    """
+    if out is not None:
+        empty_folder(Path(out), force=force)
+    record = _gear(gear)
+    paths = [Path(bag) for bag in (*baseline, *bags)]
+    found = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
+    _note(found, on_note)
+    windows, names = numbered(found)
+    known, _ = numbered(found[: len(baseline)])
+    reasons = [f'{part.name}: {part.why_not}' for part in found if part.why_not is not None]
+    if len(reasons) == len(found):
+        result = unread(record, names, '; '.join(reasons))
+    else:
+        in_order = frozenset(window.tow for window in known)
+        result = diagnosis.diagnose(
+            record,
+            windows,
+            names,
+            in_order,
+            lambda stage: on_progress(WorkProgress('diagnosing', detail=stage)),
+        )
+    if out is not None:
+        write_diagnosis(result, [source(path) for path in paths], Path(out))
+    return result
+
+
+def plan_trial(
+    gear: str | Path = DEFAULT_GEAR,
+    *,
+    hours: float = 6.0,
+    limits: Limits | None = None,
+    out: str | Path | None = None,
+    force: bool = False,
+    on_progress: OnProgress = ignore,
+) -> TrialPlan:
+    """Plan the trial that tells most about the boards in a given time at sea.
+
+    Parameters
+    ----------
+    gear
+        A file or a name.
+    hours
+        Time at sea.
+    limits
+        Warp lengths (m) and speeds (m/s) to choose from, largest tension (N), depth of water (m).
+    out
+        Folder for ``plan.json``, the scenario ``trial.yaml`` and a picture.
+    force
+        Whether results of an earlier run in ``out`` are replaced.
+    on_progress
+        Called as manoeuvres are explored.
+
+    Raises
+    ------
+    TrawlError
+        When there is nothing to choose from, or no time for two legs.
+    """
+    if out is not None:
+        empty_folder(Path(out), force=force)
+    plan = plan_for(
+        load_gear(gear),
+        hours=hours,
+        limits=limits,
+        progress=lambda stage, done, of: on_progress(WorkProgress(stage, done, of)),
+    )
+    if out is not None:
+        write_plan(plan, str(gear), Path(out))
+    return plan
+
+
+def _gear(gear: str | Path | GearRecord) -> GearRecord:
+    return gear if isinstance(gear, GearRecord) else load_gear(gear)
+
+
+def _note(found: Sequence[FoundWindows], on_note: OnNote) -> None:
+    for part in found:
+        for problem in part.problems:
+            on_note(f'Damaged: {problem}')
+        if part.why_not is not None:
+            on_note(f'Not used: {part.name}: {part.why_not}')

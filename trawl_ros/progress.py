@@ -1,0 +1,35 @@
+"""Progress of long work, as records that a callback is given."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class WorkProgress:
+    """A moment of a long piece of work.
+
+    Attributes
+    ----------
+    stage
+        Of the work, in a word or two: ``'towing'``.
+    done, total
+        How much of this stage is done, and of how much; None where that is not known.
+    unit
+        Of both: ``'s'`` for simulated or recorded time, or a noun such as ``'bags'``.
+    detail
+        A few words more, such as the step of a scenario.
+    """
+
+    stage: str
+    done: float = 0.0
+    total: float | None = None
+    unit: str = ''
+    detail: str = ''
+
+
+OnProgress = Callable[[WorkProgress], None]
+"""A callback for progress. It may raise: the work then ends as if it were interrupted."""
+
+
+def ignore(progress: WorkProgress) -> None:
+    """Take no notice of progress."""

@@ -1,0 +1,34 @@
+"""Messages that a trial records: truth and what its instruments report."""
+
+from collections.abc import Iterator
+
+from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.pieces import TopicMessage
+from trawl_ros.messages.stamps import SECOND
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.topics import PICTURES
+from trawl_ros.messages.truth_to_messages import truth_messages
+from trawl_ros.scenario.run import Trial
+
+
+def recorded(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
+    """Tow a trial to its end; give each stamp (ns) with all messages its scenario records."""
+    scenario = trial.scenario
+    suite = InstrumentSuite(
+        scenario.instruments,
+        surroundings=scenario.surroundings,
+        draws=scenario.draws,
+        faults=scenario.faults,
+    )
+    showing = scenario.showing()
+    while (truth := trial.step()) is not None:
+        messages: list[TopicMessage] = []
+        if 'truth' in scenario.record.record:
+            messages += truth_messages(truth)
+            if truth.stamp % SECOND == 0:
+                messages.append(gear_markers(trial.simulation.picture()))
+        for topic, message in map(sample_message, map(showing, suite.observe(truth))):
+            if ('pictures' if topic in PICTURES else 'instruments') in scenario.record.record:
+                messages.append((topic, message))
+        yield truth.stamp, messages
