@@ -17,12 +17,12 @@ from trawl_ros.errors import BagError, TrawlError
 from trawl_ros.files import empty_folder, packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.identification.bag_windows import read_tows
 from trawl_ros.identification.from_gear import estimator_options, identification_for
 from trawl_ros.identification.planning import TrialPlan
 from trawl_ros.identification.planning import plan_trial as plan_for
 from trawl_ros.identification.planning_states import Limits
 from trawl_ros.identification.planning_writing import write_plan
-from trawl_ros.identification.read_tows import read_tows
 from trawl_ros.identification.report import Report, report
 from trawl_ros.identification.tows import FoundWindows, estimate_tows, numbered
 from trawl_ros.identification.writing import write_report

@@ -8,10 +8,9 @@ import pytest
 
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.bag_windows import BagTask, read_tow
+from trawl_ros.identification.bag_windows import BagTask, read_tow, read_tows
 from trawl_ros.identification.laws import QUANTITIES
 from trawl_ros.identification.objective import PAPER_CHANNELS
-from trawl_ros.identification.read_tows import read_tows
 from trawl_ros.instruments.samples import RangeSample
 from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.model.board import COEFFICIENTS

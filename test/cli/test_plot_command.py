@@ -6,7 +6,7 @@ import signal
 import pytest
 from PIL import Image
 
-from trawl_ros.cli.progress import TimeProgress
+from trawl_ros.cli.progress import ProgressDisplay
 
 
 @pytest.fixture
@@ -72,7 +72,11 @@ def test_readings_alone_are_drawn_and_the_page_says_so(run, steady_tow, tmp_path
 
 
 def test_an_interrupted_film_ends_with_what_was_drawn(run, steady_tow, tmp_path, monkeypatch):
-    monkeypatch.setattr(TimeProgress, 'update', lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    def interrupt(_, progress):
+        if progress.stage == 'filming':
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(ProgressDisplay, '__call__', interrupt)
     bag, out = steady_tow.bag(tmp_path / 'bag', leg_s=5), tmp_path / 'pictures'
     done = run('plot', bag, '--out', out, '--at', '2', '--animate')
     assert done.exit_code == 130
@@ -84,7 +88,7 @@ def test_an_interrupted_film_ends_with_what_was_drawn(run, steady_tow, tmp_path,
 def test_what_cannot_be_drawn_is_said_before_anything_is_written(run, steady_tow, tmp_path):
     bag, out = steady_tow.bag(tmp_path / 'bag', leg_s=5), tmp_path / 'pictures'
     for arguments, words in (
-        (['--at', '1:00'], '--at 1:00: after the end; expected a time within the 0:09 of bag'),
+        (['--at', '1:00'], 'at 1:00: after the end; expected a time within the 0:09 of bag'),
         (['--at', 'soon'], "found 'soon', expected seconds, minutes:seconds or"),
         ([part for k in range(101) for part in ('--at', f'{k / 100}')],
          'found 101 times, expected at most 100'),
