@@ -1,6 +1,11 @@
-"""Emulates the instruments of a mid-water trawler and keeps the model of its gear honest."""
+"""Emulates the instruments of a mid-water trawler and keeps the model of its gear honest.
+
+The names of `__all__` are the public face; each is loaded when it is first used.
+"""
 
 import os
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 # On matrices as sparse and small as a gear's, threads of BLAS only wait for one another: on a
 # busy machine a check of stability takes ten times as long with them. This has an effect
@@ -8,3 +13,82 @@ import os
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 __version__ = '0.1.0'
+
+if TYPE_CHECKING:
+    from trawl_ros.api import TowedBag, diagnose, identify, plan_trial, read_bag, simulate, tow
+    from trawl_ros.bags.check import check_bag
+    from trawl_ros.bags.export import export_bag
+    from trawl_ros.bags.import_log import import_log
+    from trawl_ros.bags.reader import Bag, read_messages
+    from trawl_ros.bags.repair import repair_bag
+    from trawl_ros.diagnosis.diagnosis import Diagnosis
+    from trawl_ros.effects.catalogue import catalogue
+    from trawl_ros.effects.effect import Effect, Parameter
+    from trawl_ros.errors import BagError, GearError, NoSteadyState, ScenarioError, TrawlError
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.gear.records import GearRecord
+    from trawl_ros.identification.planning import TrialPlan
+    from trawl_ros.identification.report import Report
+    from trawl_ros.instruments.parameters import load_instruments
+    from trawl_ros.instruments.suite import InstrumentSuite
+    from trawl_ros.model.gear_model import GearModel, build_model
+    from trawl_ros.model.observables import Observables
+    from trawl_ros.plots.album import plot
+    from trawl_ros.progress import WorkProgress
+    from trawl_ros.scenario.scenario import Scenario, load_scenario
+    from trawl_ros.simulation.simulation import Command, Simulation
+    from trawl_ros.simulation.truth import Truth
+    from trawl_ros.solver.equilibrium import SteadyState, steady_state
+    from trawl_ros.solver.trim import trim
+
+_MODULES = {
+    'trawl_ros.api': (
+        'TowedBag', 'diagnose', 'identify', 'plan_trial', 'read_bag', 'simulate', 'tow',
+    ),
+    'trawl_ros.bags.check': ('check_bag',),
+    'trawl_ros.bags.export': ('export_bag',),
+    'trawl_ros.bags.import_log': ('import_log',),
+    'trawl_ros.bags.reader': ('Bag', 'read_messages'),
+    'trawl_ros.bags.repair': ('repair_bag',),
+    'trawl_ros.diagnosis.diagnosis': ('Diagnosis',),
+    'trawl_ros.effects.catalogue': ('catalogue',),
+    'trawl_ros.effects.effect': ('Effect', 'Parameter'),
+    'trawl_ros.errors': (
+        'BagError', 'GearError', 'NoSteadyState', 'ScenarioError', 'TrawlError',
+    ),
+    'trawl_ros.gear.load': ('load_gear',),
+    'trawl_ros.gear.records': ('GearRecord',),
+    'trawl_ros.identification.planning': ('TrialPlan',),
+    'trawl_ros.identification.report': ('Report',),
+    'trawl_ros.instruments.parameters': ('load_instruments',),
+    'trawl_ros.instruments.suite': ('InstrumentSuite',),
+    'trawl_ros.model.gear_model': ('GearModel', 'build_model'),
+    'trawl_ros.model.observables': ('Observables',),
+    'trawl_ros.plots.album': ('plot',),
+    'trawl_ros.progress': ('WorkProgress',),
+    'trawl_ros.scenario.scenario': ('Scenario', 'load_scenario'),
+    'trawl_ros.simulation.simulation': ('Command', 'Simulation'),
+    'trawl_ros.simulation.truth': ('Truth',),
+    'trawl_ros.solver.equilibrium': ('SteadyState', 'steady_state'),
+    'trawl_ros.solver.trim': ('trim',),
+}  # fmt: skip
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+
+__all__ = [
+    'Bag', 'BagError', 'Command', 'Diagnosis', 'Effect', 'GearError', 'GearModel', 'GearRecord',
+    'InstrumentSuite', 'NoSteadyState', 'Observables', 'Parameter', 'Report', 'Scenario',
+    'ScenarioError', 'Simulation', 'SteadyState', 'TowedBag', 'TrawlError', 'TrialPlan', 'Truth',
+    'WorkProgress', 'build_model', 'catalogue', 'check_bag', 'diagnose', 'export_bag', 'identify',
+    'import_log', 'load_gear', 'load_instruments', 'load_scenario', 'plan_trial', 'plot',
+    'read_bag', 'read_messages', 'repair_bag', 'simulate', 'steady_state', 'tow', 'trim',
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

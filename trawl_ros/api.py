@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.diagnosis import diagnosis
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
@@ -26,6 +27,7 @@ from trawl_ros.identification.planning_writing import write_plan
 from trawl_ros.identification.report import Report, report
 from trawl_ros.identification.tows import FoundWindows, estimate_tows, numbered
 from trawl_ros.identification.writing import write_report
+from trawl_ros.instruments.samples import Sample
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.topics import NAMESPACE, absolute
 from trawl_ros.progress import OnProgress, WorkProgress, ignore
@@ -142,6 +144,38 @@ def tow(
             if interrupted := stopped():
                 break
     return TowedBag(out, dict(bag.counts), trial.time_s, trial.duration_s, not interrupted)
+
+
+def read_bag(bag: str | Path, *, namespace: str = NAMESPACE) -> Iterator[Sample]:
+    """Give the readings of a bag's instruments in the order of their log times.
+
+    Parameters
+    ----------
+    bag
+        Folder or file, MCAP or SQLite, of any ROS 2 distribution; it may be damaged.
+    namespace
+        Of the topics.
+
+    Yields
+    ------
+    Sample
+        A `WinchSample`, `PressureSample`, `RangeSample`, …, each with its ``stamp`` in ns, SI
+        units and radians.
+
+    Raises
+    ------
+    BagError
+        If the bag cannot be read, or a topic has two sources.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> samples = trawl_ros.read_bag('bags/sea_trial')
+    >>> type(next(samples)).__name__.endswith('Sample')
+    True
+    """
+    for _, sample in SampleStream([Path(bag)], namespace):
+        yield sample
 
 
 def identify(

@@ -1,0 +1,69 @@
+"""The names at the root of the package."""
+
+import ast
+import doctest
+import inspect
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import trawl_ros
+from trawl_ros import api
+
+
+def test_it_is_some_forty_names_each_with_a_docstring():
+    assert 25 <= len(trawl_ros.__all__) <= 45
+    assert trawl_ros.__all__ == sorted(trawl_ros.__all__)
+    for name in trawl_ros.__all__:
+        assert inspect.getdoc(getattr(trawl_ros, name)), name
+
+
+def test_what_is_loaded_late_is_what_type_checkers_are_told():
+    tree = ast.parse(Path(trawl_ros.__file__).read_text())
+    branch = next(node for node in tree.body if isinstance(node, ast.If))
+    told = {
+        alias.name: statement.module
+        for statement in branch.body
+        if isinstance(statement, ast.ImportFrom)
+        for alias in statement.names
+    }
+    assert told == trawl_ros._HOMES
+    assert sorted(told) == trawl_ros.__all__
+
+
+def test_a_name_that_there_is_not_is_told_as_python_tells_it():
+    with pytest.raises(AttributeError, match="'trawl_ros' has no attribute 'haul'"):
+        _ = trawl_ros.haul
+    assert 'tow' in dir(trawl_ros)
+
+
+def test_the_package_alone_imports_nothing_heavy():
+    code = 'import sys, trawl_ros; print(sorted({"numpy", "numba", "scipy"} & set(sys.modules)))'
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == '[]'
+
+
+def test_functions_name_parameters_and_errors():
+    for name in trawl_ros.__all__:
+        found = getattr(trawl_ros, name)
+        if inspect.isfunction(found):
+            text = inspect.getdoc(found)
+            for parameter in inspect.signature(found).parameters:
+                assert parameter in text, f'{name}: {parameter}'
+            if found.__module__ == api.__name__:
+                assert 'Raises\n------' in text, name
+
+
+def test_examples_hold():
+    root = Path(trawl_ros.__file__).parents[1]
+    before = Path.cwd()
+    os.chdir(root)
+    try:
+        failed, tried = doctest.testmod(api)
+    finally:
+        os.chdir(before)
+    assert tried > 0
+    assert failed == 0
