@@ -1,5 +1,6 @@
 """Fields of a message and of all messages within it."""
 
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,12 +23,20 @@ def fields_of(message: Any) -> Iterator[tuple[Any, str]]:
 
 def not_finite(message: Any) -> set[str]:
     """Name the fields of a message in which there is a number that is not finite."""
+    return beyond(message, sys.float_info.max)
+
+
+def beyond(message: Any, most: float, *, unknown: bool = False) -> set[str]:
+    """Name the fields of a message in which a number is not finite, or larger than ``most``.
+
+    With ``unknown`` those that are not finite say that something is unknown, and pass.
+    """
     found = set()
     for owner, name in fields_of(message):
         value = getattr(owner, name)
         numbers = (
             isinstance(value, float) or getattr(getattr(value, 'dtype', None), 'kind', '') == 'f'
         )
-        if numbers and not np.all(np.isfinite(value)):
+        if numbers and not np.all((np.abs(value) <= most) | (unknown & ~np.isfinite(value))):
             found.add(f'{type(owner).__name__}.{name}')
     return found

@@ -24,11 +24,11 @@ from trawl_ros.instruments.samples import (
 )
 from trawl_ros.messages.commands import VESSEL_COMMAND, vessel_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.parameters import Number, ParameterError, Parameters, Text
 from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.reading import possible_sample
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.scenario.driving import SteerRecord
@@ -208,7 +208,7 @@ class AutopilotNode(TrawlNode):
 
     def _listen_to(self, topic: str) -> None:
         def take(message: Any) -> None:
-            sample = to_sample(topic, message)
+            sample = possible_sample(topic, message)
             if isinstance(sample, HeadingSample | FixSample | VelocitySample | SchoolsSample):
                 self._take(topic, sample)
 

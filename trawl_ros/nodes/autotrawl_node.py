@@ -11,11 +11,11 @@ from trawl_ros.errors import MessageError
 from trawl_ros.instruments.samples import WinchSample
 from trawl_ros.messages.commands import WINCH_COMMAND, winch_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.stamps import SECOND
 from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.parameters import Number, Text
 from trawl_ros.nodes.qos import CONSUMER
+from trawl_ros.nodes.reading import possible_sample
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 
@@ -128,7 +128,7 @@ class AutotrawlNode(TrawlNode):
         )
 
     def _take(self, message: Any) -> None:
-        sample = to_sample(WINCH, message)
+        sample = possible_sample(WINCH, message)
         if not isinstance(sample, WinchSample):
             raise MessageError(f'{WINCH}: expected counters and load cells')
         if self._latest is not None and sample.stamp < self._latest - BACK_NS:

@@ -6,8 +6,6 @@ from threading import Lock
 from typing import Any, ClassVar
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.clock import JumpThreshold
-from rclpy.duration import Duration
 from std_srvs.srv import Trigger
 
 from trawl_ros.errors import TrawlError
@@ -46,7 +44,7 @@ from trawl_ros.nodes.node import TrawlNode
 from trawl_ros.nodes.outcome import Outcome
 from trawl_ros.nodes.parameters import Flag, Text
 from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.rewinding import BACK_NS, Rewinding
+from trawl_ros.nodes.rewinding import Rewinding
 from trawl_ros.nodes.runtime import run
 from trawl_ros.nodes.sync import Progress
 from trawl_ros.nodes.window_parameters import WINDOW_SPECS, window_options
@@ -112,12 +110,6 @@ class IdentificationNode(TrawlNode):
         self._publish(self._worker.outcome)
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
-        self._jump = self.get_clock().create_jump_callback(
-            JumpThreshold(
-                min_forward=None, min_backward=Duration(nanoseconds=-BACK_NS), on_clock_change=False
-            ),
-            post_callback=lambda jump: self._reset('/clock was set back'),
-        )
         # Alone in its group: samples still come in while the service waits for the worker.
         alone = MutuallyExclusiveCallbackGroup()
         self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
@@ -182,7 +174,6 @@ class IdentificationNode(TrawlNode):
 
     def finish_work(self) -> None:
         """Bring the estimate to convergence, write the report, and end the thread."""
-        self._jump.unregister()
         if self._adviser is not None:
             self._adviser.stop()
         wish = self._worker.finish()
@@ -193,20 +184,16 @@ class IdentificationNode(TrawlNode):
         def feed(message: Any) -> None:
             anew, samples = self._rewinding.take(to_sample(topic, message))
             if anew:
-                self._forget('stamps of the winch went back')
+                self._begin_anew()
             for sample in samples:
                 self._worker.feed(sample)
 
         return feed
 
-    def _reset(self, reason: str) -> None:
-        self._rewinding.forget()
-        self._forget(reason)
-
-    def _forget(self, reason: str) -> None:
+    def _begin_anew(self) -> None:
         self._resets += 1
         self._worker.reset()
-        self.get_logger().warning(f'{reason}; the estimate begins anew')
+        self.get_logger().warning('stamps of the winch went back; the estimate begins anew')
 
     def _save(self, identification: Identification) -> None:
         if self._state is not None:

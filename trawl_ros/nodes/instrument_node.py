@@ -17,9 +17,10 @@ from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
 from trawl_ros.instruments.samples import Sample
 from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.limits import TRUTH
 from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.fields import not_finite
+from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.topics import INSTRUMENTS
@@ -33,7 +34,7 @@ from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.scenario.surroundings import build_surroundings
 
 SEABED = 'truth/seabed'
-"""Not a number where a scenario has no seabed."""
+"""Not finite where a scenario has no seabed."""
 
 
 @dataclass(frozen=True)
@@ -178,9 +179,12 @@ class InstrumentNode(TrawlNode, ABC):
 
     def _look_at(self, topic: str) -> None:
         def take(message: Any) -> None:
-            wrong = topic != SEABED and not_finite(message)
-            if wrong:
-                raise MessageError(f'{topic}: {min(wrong)} is not finite; expected numbers')
+            # What is huge and finite is infinite in the shorter numbers of a reading.
+            if wrong := beyond(message, TRUTH.value, unknown=topic == SEABED):
+                raise MessageError(
+                    f'{topic}: {min(wrong)} is not finite, or beyond ±{TRUTH.value:g}; expected '
+                    'numbers of a tow'
+                )
             stamp = stamp_of(message)
             complete = self._joiner.add(topic, stamp, message)
             if complete is None:

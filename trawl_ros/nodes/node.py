@@ -19,7 +19,7 @@ from std_srvs.srv import Trigger
 
 from trawl_ros.errors import MessageError, TrawlError
 from trawl_ros.foreign import one_line
-from trawl_ros.limits import SENTENCE
+from trawl_ros.limits import DIAGNOSIS, SENTENCE
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.topics import CLOCK, NAMESPACE, find_topic
@@ -356,10 +356,14 @@ class TrawlNode(Node):
             raise MessageError(f'{topic}: not a topic of the project, so its type is needed')
         return row.type
 
-    def _diagnose(self) -> None:
+    def all_statuses(self) -> list[Status]:
+        """Give what the node says of itself on /diagnostics, each sentence and value bounded."""
         clock = clock_status(self)
         clock = replace(clock, values={**clock.values, **self.headway.report()})
-        statuses = [self._traffic_status(), clock, *self.statuses()]
+        return [_bounded(one) for one in (self._traffic_status(), clock, *self.statuses())]
+
+    def _diagnose(self) -> None:
+        statuses = self.all_statuses()
         for status in statuses:
             self.say(status.name, status.level, status.message)
         prefix = self.get_fully_qualified_name()
@@ -396,3 +400,9 @@ class TrawlNode(Node):
             what, sentence = list(self._troubles.items())[-1]
             level, message = ERROR, f'{what}: {sentence}'
         return Status('messages', level, message, values)
+
+
+def _bounded(status: Status) -> Status:
+    """Cut what may repeat something foreign, as the names of consumers."""
+    values = {key: one_line(value, DIAGNOSIS.value) for key, value in status.values.items()}
+    return replace(status, message=one_line(status.message, DIAGNOSIS.value), values=values)

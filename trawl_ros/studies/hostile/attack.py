@@ -1,5 +1,6 @@
 """Attack on a node: hostile messages on each of its subscriptions, and what came of them."""
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,7 +13,7 @@ from rclpy.subscription import Subscription
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.fields import not_finite
 from trawl_ros.messages.topics import find_topic
-from trawl_ros.nodes.node import TrawlNode
+from trawl_ros.nodes.node import DIAGNOSTICS, TrawlNode
 from trawl_ros.studies.hostile.mutations import hostile
 
 Stream = Sequence[tuple[str, str, bytes]]
@@ -20,6 +21,10 @@ Stream = Sequence[tuple[str, str, bytes]]
 
 SPIN_EVERY = 100
 """Messages after which the node's timers get their turn."""
+
+PATIENCE_S = 15.0
+"""Wall time in which a node must answer. A source that was told of consumers that never were goes
+on without them after 10 s."""
 
 
 @dataclass
@@ -78,13 +83,22 @@ class Attack:
 
     def feed_sound(self) -> int:
         """Feed the sound stream; give how many messages the node answered with."""
-        before = self._node.traffic.total('published')
+        before = self._answers()
         for number, (topic, _, data) in enumerate(self._stream):
             self._give(topic, data)
             if number % SPIN_EVERY == 0:
                 self._spin()
         self._spin()
-        return self._node.traffic.total('published') - before
+        return self._answers() - before
+
+    def feed_until_answered(self) -> int:
+        """Feed the sound stream, and wait for a node that goes by wall time; give its answers."""
+        answers = self.feed_sound()
+        before, end = self._answers(), time.monotonic() + PATIENCE_S
+        while not answers and time.monotonic() < end:
+            self._spin(0.05)
+            answers = self._answers() - before
+        return answers
 
     def feed_hostile(self, examples: Mapping[str, tuple[str, Sequence[bytes]]], count: int) -> None:
         """Feed a number of hostile messages, the same to each topic, in random order."""
@@ -118,6 +132,11 @@ class Attack:
             if number % SPIN_EVERY == 0:
                 self._spin()
 
+    def _answers(self) -> int:
+        """Give how much was published so far, without what a node says of itself."""
+        counts = self._node.traffic.counts('published')
+        return sum(count for topic, count in counts.items() if topic != DIAGNOSTICS)
+
     def _give(self, topic: str, data: bytes) -> None:
         entry = self._entries[topic]
         self._number += 1
@@ -128,9 +147,9 @@ class Attack:
             return
         self._guard(lambda: entry.callback(message, {'publication_sequence_number': self._number}))
 
-    def _spin(self) -> None:
-        self._guard(lambda: self._executor.spin_once(timeout_sec=0.0))
-        said = max((len(status.message) for status in self._node.statuses()), default=0)
+    def _spin(self, timeout_s: float = 0.0) -> None:
+        self._guard(lambda: self._executor.spin_once(timeout_sec=timeout_s))
+        said = max(len(status.message) for status in self._node.all_statuses())
         self.tally.longest_report = max(self.tally.longest_report, said)
 
     def _guard(self, act: Callable[[], Any]) -> None:

@@ -122,7 +122,7 @@ def run_hostile(
                 attack.feed_sound()
                 attack.feed_hostile(examples, -(-count // len(kinds)))
                 if not attack.tally.ended:
-                    attack.tally.answers = attack.feed_sound()
+                    attack.tally.answers = attack.feed_until_answered()
                 tallies.append(attack.tally)
             step()
         moved = _moved(context, gear, stream, seed)
