@@ -55,6 +55,8 @@ def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
     """
     try:
         number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except FileNotFoundError:
+        raise error(f'{path}: no such file') from None
     except OSError as reason:
         raise error(f'{path}: cannot be read ({reason.strerror})') from reason
     if not stat.S_ISREG(os.fstat(number).st_mode):

@@ -4,12 +4,15 @@ import codecs
 import csv
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from io import TextIOWrapper
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Literal, TextIO
 
 from pydantic import Field, model_validator
 
 from trawl_ros.errors import LogError
+from trawl_ros.foreign import one_line, open_file, reading
 from trawl_ros.schema import Record
 
 MAX_LINE = 1_000_000
@@ -120,22 +123,20 @@ def read_rows(
     LogError
         If there is no file, it is not such a table, or a column is not there exactly once.
     """
-    try:
-        # A mark at the beginning, as Windows programs put there, is no part of the first name.
-        encoding = 'utf-8-sig' if layout.encoding.lower() in ('utf-8', 'utf8') else layout.encoding
-        with path.open(encoding=encoding, newline='') as stream:
+    # A mark at the beginning, as Windows programs put there, is no part of the first name.
+    encoding = 'utf-8-sig' if layout.encoding.lower() in ('utf-8', 'utf8') else layout.encoding
+    with reading(path, LogError), open_file(path, LogError) as content:
+        try:
+            stream = TextIOWrapper(content, encoding, newline='')
             rows = _wide(path, layout, needed, _Lines(path, stream, layout))
             yield from (
                 rows if layout.long is None else _joined(path, layout.long, rows, needed, keys)
             )
-    except FileNotFoundError:
-        raise LogError(f'{path}: no such file') from None
-    except OSError as reason:
-        raise LogError(f'{path}: cannot be read ({reason.strerror})') from reason
-    except (UnicodeError, csv.Error) as reason:
-        raise LogError(
-            f'{path}: not CSV in {layout.encoding.upper()} ({reason}); expected what layout says'
-        ) from reason
+        except (UnicodeError, csv.Error) as reason:
+            raise LogError(
+                f'{path}: not CSV in {layout.encoding.upper()} ({reason}); expected what layout '
+                'says'
+            ) from reason
 
 
 class _Lines:
@@ -147,7 +148,8 @@ class _Lines:
         self._stream = stream
         self._comment = layout.comment
         for _ in range(layout.skip_lines):
-            self._next()
+            if not self._next():
+                break
 
     def __iter__(self) -> '_Lines':
         return self
@@ -185,10 +187,10 @@ def _wide(
             found = 'more than one' if column in names else 'no'
             raise LogError(
                 f'{path}: {found} column {column!r} (wanted by {where}); '
-                f'columns are {", ".join(names)}'
+                f'columns are {one_line(", ".join(names), 500)}'
             )
-    for _ in range(layout.skip_after_names):
-        next(table, None)
+    for _ in islice(table, layout.skip_after_names):
+        pass
     for cells in table:
         if not any(cell.strip() for cell in cells):
             continue
@@ -241,5 +243,5 @@ def _joined(
         if column not in seen and where not in OF_THE_ROW:
             raise LogError(
                 f'{path}: no row with {column!r} in column {long.name!r} (wanted by {where}); '
-                f'there are {", ".join(sorted(seen)[:50])}'
+                f'there are {one_line(", ".join(sorted(seen)), 500)}'
             )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pynmeagps import NMEAReader
-from pynmeagps.exceptions import NMEAMessageError, NMEAParseError, NMEATypeError
+from pynmeagps.exceptions import NMEAParseError
 from pynmeagps.nmeahelpers import calc_checksum
 
 from trawl_ros.bags.import_log import Imported, listed, write_samples
@@ -19,6 +19,8 @@ from trawl_ros.bags.nmea_readings import NoReading, SampleAt, reading
 from trawl_ros.bags.nmea_times import SentenceTimes, spread
 from trawl_ros.bags.possible import impossible
 from trawl_ros.errors import LogError
+from trawl_ros.foreign import open_file
+from trawl_ros.foreign import reading as reading_file
 from trawl_ros.instruments.samples import Sample
 
 MAX_LINE = 4096
@@ -120,26 +122,21 @@ class _Listening:
 
     def _lines(self) -> Iterator[tuple[str, bytes]]:
         """Yield the text in front of each sentence, and the sentence."""
-        try:
-            with self._path.open('rb') as stream:
-                while line := stream.readline(MAX_LINE):
-                    self.lines += 1
-                    if len(line) == MAX_LINE:
-                        raise LogError(
-                            f'{self._path}: line {self.lines} has {MAX_LINE} bytes or more; '
-                            'expected sentences of NMEA 0183'
-                        )
-                    # Where a sentence was cut short by the next one, the next one is whole.
-                    start = line.rfind(b'$')
-                    if start >= 0:
-                        front = line[: line.find(b'$')].decode('ascii', 'replace')
-                        yield front, line[start:].strip()
-                    elif line.strip():
-                        self.left['a line without a sentence ($…)'] += 1
-        except FileNotFoundError:
-            raise LogError(f'{self._path}: no such file') from None
-        except OSError as reason:
-            raise LogError(f'{self._path}: cannot be read ({reason.strerror})') from reason
+        with reading_file(self._path, LogError), open_file(self._path, LogError) as stream:
+            while line := stream.readline(MAX_LINE):
+                self.lines += 1
+                if len(line) == MAX_LINE:
+                    raise LogError(
+                        f'{self._path}: line {self.lines} has {MAX_LINE} bytes or more; '
+                        'expected sentences of NMEA 0183'
+                    )
+                # Where a sentence was cut short by the next one, the next one is whole.
+                start = line.rfind(b'$')
+                if start >= 0:
+                    front = line[: line.find(b'$')].decode('ascii', 'replace')
+                    yield front, line[start:].strip()
+                elif line.strip():
+                    self.left['a line without a sentence ($…)'] += 1
 
     def _parse(self, text: bytes) -> Any | None:
         if b'*' not in text:
@@ -152,7 +149,8 @@ class _Listening:
         except NMEAParseError:
             self.left['a sentence whose checksum is wrong'] += 1
             return None
-        except (NMEATypeError, NMEAMessageError):
+        # The library also raises what Python does, by sentences whose checksum is right.
+        except Exception:
             sentence = None
         if sentence is None:
             self.left['a sentence that cannot be understood'] += 1

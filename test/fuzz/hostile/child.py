@@ -8,6 +8,7 @@ import os
 import resource
 import sys
 import time
+import traceback
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -67,7 +68,10 @@ def _fork(job: Job, place: Path, outcomes: Path) -> int | None:
         try:
             _work(job, place, outcomes)
             code = 0
+        except BaseException:
+            traceback.print_exc()
         finally:
+            sys.stderr.flush()
             os._exit(code)
     _, status = os.waitpid(pid, 0)
     if status == 0:

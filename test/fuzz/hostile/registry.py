@@ -5,10 +5,12 @@ from pathlib import Path
 from types import MappingProxyType
 
 from hostile.target import Files, Target
-from hostile.targets import bag_files, yaml_files
+from hostile.targets import bag_files, checkpoints, logs, messages, tows, yaml_files
+
+_MODULES = (yaml_files, bag_files, logs, messages, checkpoints, tows)
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
-    {target.name: target for module in (yaml_files, bag_files) for target in module.TARGETS}
+    {target.name: target for module in _MODULES for target in module.TARGETS}
 )
 
 CORPUS = Path(__file__).parents[1] / 'corpus'
