@@ -1,6 +1,7 @@
 """Build of the ROS 2 package trawl_ros; the only place that declares dependencies for pip."""
 
 from pathlib import Path
+from runpy import run_path
 
 from setuptools import find_packages, setup
 
@@ -80,7 +81,7 @@ def tree(folder: str) -> list[tuple[str, list[str]]]:
 
 setup(
     name=PACKAGE,
-    version='0.1.0',
+    version=run_path(f'{PACKAGE}/version.py')['__version__'],
     description='Emulates the instruments of a mid-water trawler and refits the model of its gear',
     license='Apache-2.0',
     maintainer='trawl_ros developers',

@@ -7,12 +7,12 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from trawl_ros.version import __version__ as __version__
+
 # On matrices as sparse and small as a gear's, threads of BLAS only wait for one another: on a
 # busy machine a check of stability takes ten times as long with them. This has an effect
 # where numpy has not been imported before.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-
-__version__ = '0.1.0'
 
 if TYPE_CHECKING:
     from trawl_ros.api import TowedBag, diagnose, identify, plan_trial, read_bag, simulate, tow

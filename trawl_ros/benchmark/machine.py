@@ -5,7 +5,7 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from trawl_ros import __version__
+from trawl_ros.version import __version__
 
 LIBRARIES = ('numpy', 'scipy', 'numba', 'moordyn', 'MoorPy', 'trawlkit')
 CPU_INFO = Path('/proc/cpuinfo')

@@ -12,8 +12,8 @@ from typing import Any
 
 import click
 
-from trawl_ros import __version__
 from trawl_ros.errors import TrawlError
+from trawl_ros.version import __version__
 
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import yaml
 
-from trawl_ros import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.weighing import Weighed
@@ -19,6 +18,7 @@ from trawl_ros.gear.records import (
     SourceRecord,
 )
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.version import __version__
 
 RECORDINGS = ('.mcap', '.db3', '.csv')
 PIECE = 1 << 20

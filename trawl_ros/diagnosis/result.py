@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from trawl_ros import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown, values_of
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import Source
@@ -12,6 +11,7 @@ from trawl_ros.diagnosis.screen import Screen
 from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.version import __version__
 
 
 def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:

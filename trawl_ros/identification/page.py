@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from trawl_ros import __version__
 from trawl_ros.identification.figures import Drawing
 from trawl_ros.identification.laws import LAWS
 from trawl_ros.identification.objective import PAPER_CHANNELS
@@ -17,6 +16,7 @@ from trawl_ros.identification.verdict import BEYOND, verdict
 from trawl_ros.identification.window_records import REASONS
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.reporting import page as filled
+from trawl_ros.version import __version__
 
 PAGE = 'report.html'
 

@@ -16,7 +16,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from trawl_ros import __version__
 from trawl_ros.complaints import shown
 from trawl_ros.errors import TrawlError
 from trawl_ros.files import written
@@ -24,6 +23,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.identification.channels import CHANNELS
 from trawl_ros.identification.packing import Packer, Unpacker
 from trawl_ros.identification.pipeline import Identification
+from trawl_ros.version import __version__
 
 WHAT = 'state of an identification'
 FORMAT = 1

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from trawl_ros import __version__
 from trawl_ros.files import write_text
 from trawl_ros.plots import style
 from trawl_ros.plots.records import Tow
 from trawl_ros.reporting import page
+from trawl_ros.version import __version__
 
 PAGE = 'index.html'
 

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from trawl_ros import __version__
 from trawl_ros.files import write_json, write_text
 from trawl_ros.reporting import number, page
 from trawl_ros.validation.cases import NAMES, TITLES
 from trawl_ros.validation.check import Check
 from trawl_ros.validation.run import Finished
+from trawl_ros.version import __version__
 
 JSON, REPORTS = 'validation.json', ('report.html', 'report.md')
 

@@ -7,11 +7,11 @@ from datetime import datetime, timezone
 from hashlib import sha256
 from pathlib import Path
 
-from trawl_ros import __version__
 from trawl_ros.diagnosis import rules
 from trawl_ros.files import appending
 from trawl_ros.studies.discrepancy.study import Plan
 from trawl_ros.studies.row import Row
+from trawl_ros.version import __version__
 
 SCORINGS = 'scorings.jsonl'
 

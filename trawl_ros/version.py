@@ -1,0 +1,3 @@
+"""Version of the package, in this one place; package.xml is held equal to it by a test."""
+
+__version__ = '0.2.0'
