@@ -37,7 +37,8 @@ NEVER = (CLOCK.name, '/rosout', '/parameter_events')
 FLUSH_S = 0.4
 """A bag is behind by less than a second, so that much remains for a machine that is fully loaded.
 
-Chunks that end early are larger: at the pace of a ship a bag takes a tenth more than with 0.8 s.
+Chunks that end early compress less well: at the pace of a ship a bag takes a tenth more than with
+0.8 s.
 """
 
 NO_HASH = 'INVALID'
