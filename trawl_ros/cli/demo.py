@@ -70,7 +70,7 @@ def command(out: Path, scenario: Path, diagnosis: bool) -> None:
     default gear are diagnosed, three of them in a current that the model does not know; it is
     found, and repaired: the folder's part 'hidden' has bags and reports.
     """
-    path = packaged(scenario, 'scenarios').resolve()
+    path = packaged(scenario, 'scenarios').absolute()
     loaded = load_scenario(path)
     truth = dict(zip(COEFFICIENTS, true_coefficients(path).tolist(), strict=True))
     folder = DemoFolder(out)

@@ -4,6 +4,7 @@ import sqlite3
 import struct
 import zlib
 from contextlib import closing, suppress
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -37,6 +38,7 @@ FIELDS = (
 CONSTANTS = ('1', '((((1))))', '1 << 30000000000', '-1', '9' * 5000, '1/0', 'X', '"a"', '1.5e999')
 
 
+@cache
 def texts(name: str) -> SearchStrategy[tuple[str, bytes]]:
     """Encodings with definitions of a type: its own, damaged, made of hostile fields, or IDL."""
     own = definition(name).encode()

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ SCALARS = (
 )
 
 
+@cache
 def values() -> SearchStrategy[str]:
     """Values in flow style: scalars, lists and mappings, with tags and keys of any kind."""
     tagged = st.sampled_from(TAGS).map('!!{} '.format) | st.sampled_from(('', '! ', '!<x> ', '&a '))
