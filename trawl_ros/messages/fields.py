@@ -1,6 +1,6 @@
 """Fields of a message and of all messages within it."""
 
-import sys
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -23,7 +23,7 @@ def fields_of(message: Any) -> Iterator[tuple[Any, str]]:
 
 def not_finite(message: Any) -> set[str]:
     """Name the fields of a message in which there is a number that is not finite."""
-    return beyond(message, sys.float_info.max)
+    return beyond(message, math.inf)
 
 
 def beyond(message: Any, most: float, *, unknown: bool = False) -> set[str]:
@@ -37,6 +37,9 @@ def beyond(message: Any, most: float, *, unknown: bool = False) -> set[str]:
         numbers = (
             isinstance(value, float) or getattr(getattr(value, 'dtype', None), 'kind', '') == 'f'
         )
-        if numbers and not np.all((np.abs(value) <= most) | (unknown & ~np.isfinite(value))):
+        if not numbers:
+            continue
+        finite = np.isfinite(value)
+        if not np.all(np.where(finite, np.abs(value) <= most, unknown)):
             found.add(f'{type(owner).__name__}.{name}')
     return found
