@@ -18,8 +18,8 @@ BIN := $(VENV)/bin
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 # Tests of what needs no steady state: some 1200 in half a minute.
-QUICK := $(addprefix test/,bags config effects gear instruments launch messages model peers \
-    test_schema.py test_share.py)
+QUICK := $(addprefix test/,bags config effects gear instruments launch messages model lab/reference_codes \
+    core/test_schema.py core/test_resources.py test_layers.py)
 
 # Nodes of a demo or test talk to nobody outside this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE := LOCALHOST
@@ -43,7 +43,7 @@ help:
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
-	@echo 'make lint       style and types only'
+	@echo 'make lint       style, types and layers only'
 	@echo 'make promises   run every command of the documents and write docs/promises.md'
 	@echo 'make lock       choose the newest allowed versions anew and write requirements.lock'
 	@echo 'make clean      remove .venv, out/ and what builds and tools leave behind'
@@ -70,6 +70,7 @@ lint: $(VENV)/ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
+	@$(BIN)/lint-imports --no-cache > $(VENV)/layers.log || { cat $(VENV)/layers.log; exit 1; }
 
 lock: $(VENV)/ready
 	@$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.10 \

@@ -51,6 +51,7 @@ TEST = [
     'colcon-ros>=0.5,<1',
     'hypothesis>=6.100,<7',
     'markdown-it-py>=3,<5',
+    'import-linter>=2.6,<3',
     'mypy>=1.13,<3',
     'pytest>=7.4,<10',
     'pytest-timeout>=2.3,<3',
@@ -81,14 +82,14 @@ def tree(folder: str) -> list[tuple[str, list[str]]]:
 
 setup(
     name=PACKAGE,
-    version=run_path(f'{PACKAGE}/version.py')['__version__'],
+    version=run_path(f'{PACKAGE}/core/version.py')['__version__'],
     description='Emulates the instruments of a mid-water trawler and refits the model of its gear',
     license='Apache-2.0',
     maintainer='trawl_ros developers',
     maintainer_email='trawl_ros@example.org',
     python_requires='>=3.10',
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
-    package_data={PACKAGE: ['py.typed', '*/templates/*.j2']},
+    package_data={PACKAGE: ['py.typed', '**/templates/*.j2']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),

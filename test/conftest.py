@@ -10,9 +10,14 @@ import pytest
 import yaml
 
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.instruments.samples import (
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import Observables
+from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
     RangeSample,
@@ -20,12 +25,7 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.messages.cdr import serialize
-from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
-from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import Observables
-from trawl_ros.share import share_path
+from trawl_ros.records.topics import absolute
 from trawl_ros.solver.equilibrium import steady_state
 
 SECOND = 1_000_000_000

@@ -7,7 +7,7 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trawl_ros.version import __version__ as __version__
+from trawl_ros.core.version import __version__ as __version__
 
 # On matrices as sparse and small as a gear's, threads of BLAS only wait for one another: on a
 # busy machine a check of stability takes ten times as long with them. This has an effect
@@ -18,26 +18,26 @@ if TYPE_CHECKING:
     from trawl_ros.api import TowedBag, diagnose, identify, plan_trial, read_bag, simulate, tow
     from trawl_ros.bags.check import check_bag
     from trawl_ros.bags.export import export_bag
-    from trawl_ros.bags.import_log import import_log
+    from trawl_ros.bags.logs.import_log import import_log
     from trawl_ros.bags.reader import Bag, read_messages
     from trawl_ros.bags.repair import repair_bag
+    from trawl_ros.core.errors import BagError, GearError, NoSteadyState, ScenarioError, TrawlError
+    from trawl_ros.core.progress import WorkProgress
     from trawl_ros.diagnosis.diagnosis import Diagnosis
-    from trawl_ros.effects.catalogue import catalogue
-    from trawl_ros.effects.effect import Effect, Parameter
-    from trawl_ros.errors import BagError, GearError, NoSteadyState, ScenarioError, TrawlError
+    from trawl_ros.effects.base.effect import Effect, Parameter
+    from trawl_ros.effects.registry import catalogue
+    from trawl_ros.estimation.planning.plan import TrialPlan
+    from trawl_ros.estimation.report.report import Report
     from trawl_ros.gear.load import load_gear
     from trawl_ros.gear.records import GearRecord
-    from trawl_ros.identification.planning import TrialPlan
-    from trawl_ros.identification.report import Report
     from trawl_ros.instruments.parameters import load_instruments
     from trawl_ros.instruments.suite import InstrumentSuite
     from trawl_ros.model.gear_model import GearModel, build_model
     from trawl_ros.model.observables import Observables
     from trawl_ros.plots.album import plot
-    from trawl_ros.progress import WorkProgress
+    from trawl_ros.records.truth import Truth
     from trawl_ros.scenario.scenario import Scenario, load_scenario
     from trawl_ros.simulation.simulation import Command, Simulation
-    from trawl_ros.simulation.truth import Truth
     from trawl_ros.solver.equilibrium import SteadyState, steady_state
     from trawl_ros.solver.trim import trim
 
@@ -47,28 +47,28 @@ _MODULES = {
     ),
     'trawl_ros.bags.check': ('check_bag',),
     'trawl_ros.bags.export': ('export_bag',),
-    'trawl_ros.bags.import_log': ('import_log',),
+    'trawl_ros.bags.logs.import_log': ('import_log',),
     'trawl_ros.bags.reader': ('Bag', 'read_messages'),
     'trawl_ros.bags.repair': ('repair_bag',),
     'trawl_ros.diagnosis.diagnosis': ('Diagnosis',),
-    'trawl_ros.effects.catalogue': ('catalogue',),
-    'trawl_ros.effects.effect': ('Effect', 'Parameter'),
-    'trawl_ros.errors': (
+    'trawl_ros.effects.registry': ('catalogue',),
+    'trawl_ros.effects.base.effect': ('Effect', 'Parameter'),
+    'trawl_ros.core.errors': (
         'BagError', 'GearError', 'NoSteadyState', 'ScenarioError', 'TrawlError',
     ),
     'trawl_ros.gear.load': ('load_gear',),
     'trawl_ros.gear.records': ('GearRecord',),
-    'trawl_ros.identification.planning': ('TrialPlan',),
-    'trawl_ros.identification.report': ('Report',),
+    'trawl_ros.estimation.planning.plan': ('TrialPlan',),
+    'trawl_ros.estimation.report.report': ('Report',),
     'trawl_ros.instruments.parameters': ('load_instruments',),
     'trawl_ros.instruments.suite': ('InstrumentSuite',),
     'trawl_ros.model.gear_model': ('GearModel', 'build_model'),
     'trawl_ros.model.observables': ('Observables',),
     'trawl_ros.plots.album': ('plot',),
-    'trawl_ros.progress': ('WorkProgress',),
+    'trawl_ros.core.progress': ('WorkProgress',),
     'trawl_ros.scenario.scenario': ('Scenario', 'load_scenario'),
     'trawl_ros.simulation.simulation': ('Command', 'Simulation'),
-    'trawl_ros.simulation.truth': ('Truth',),
+    'trawl_ros.records.truth': ('Truth',),
     'trawl_ros.solver.equilibrium': ('SteadyState', 'steady_state'),
     'trawl_ros.solver.trim': ('trim',),
 }  # fmt: skip

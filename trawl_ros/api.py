@@ -10,31 +10,31 @@ from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.errors import BagError, TrawlError
+from trawl_ros.core.files import empty_folder, packaged
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis import diagnosis
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.repair import source
-from trawl_ros.diagnosis.writing import write_diagnosis
-from trawl_ros.errors import BagError, TrawlError
-from trawl_ros.files import empty_folder, packaged
+from trawl_ros.diagnosis.report.writing import write_diagnosis
+from trawl_ros.estimation.bag_windows import read_tows
+from trawl_ros.estimation.from_gear import estimator_options, identification_for
+from trawl_ros.estimation.planning.plan import TrialPlan
+from trawl_ros.estimation.planning.plan import plan_trial as plan_for
+from trawl_ros.estimation.planning.states import Limits
+from trawl_ros.estimation.planning.writing import write_plan
+from trawl_ros.estimation.report.report import Report, report
+from trawl_ros.estimation.report.writing import write_report
+from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.identification.bag_windows import read_tows
-from trawl_ros.identification.from_gear import estimator_options, identification_for
-from trawl_ros.identification.planning import TrialPlan
-from trawl_ros.identification.planning import plan_trial as plan_for
-from trawl_ros.identification.planning_states import Limits
-from trawl_ros.identification.planning_writing import write_plan
-from trawl_ros.identification.report import Report, report
-from trawl_ros.identification.tows import FoundWindows, estimate_tows, numbered
-from trawl_ros.identification.writing import write_report
-from trawl_ros.instruments.samples import Sample
 from trawl_ros.messages.cdr import serialize
-from trawl_ros.messages.topics import NAMESPACE, absolute
-from trawl_ros.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.topics import NAMESPACE, absolute
+from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.recording import recorded
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario, true_coefficients
-from trawl_ros.simulation.truth import Truth
 
 DEFAULT_GEAR = 'kaifuha'
 

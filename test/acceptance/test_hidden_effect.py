@@ -17,9 +17,9 @@ from rich.console import Console
 
 from trawl_ros.bags.reader import summarise
 from trawl_ros.bags.samples import SampleStream
-from trawl_ros.cli.demo_hidden import AGAIN, FOUND, hidden_effect
-from trawl_ros.cli.own_graph import own_graph
-from trawl_ros.cli.processes import Processes
+from trawl_ros.lab.demo.hidden import AGAIN, FOUND, hidden_effect
+from trawl_ros.lab.running.own_graph import own_graph
+from trawl_ros.lab.running.processes import Processes
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow, pytest.mark.timeout(1200)]
 

@@ -9,10 +9,10 @@ from mcap.writer import Writer
 
 from trawl_ros.bags.reader import Bag, read_messages
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.instruments.samples import PressureSample, WinchSample
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
+from trawl_ros.records.samples import PressureSample, WinchSample
+from trawl_ros.records.topics import absolute
 
 SECOND = 1_000_000_000
 START = 1_785_000_000 * SECOND

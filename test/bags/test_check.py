@@ -8,14 +8,14 @@ from mcap.writer import IndexType, Writer
 from rosbags.interfaces import QosDurability, QosReliability
 
 from trawl_ros.bags.check import check_bag
-from trawl_ros.bags.qos import dump_profiles, project_profile
+from trawl_ros.bags.storage.qos import dump_profiles, project_profile
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
-from trawl_ros.instruments.samples import PressureSample, RangeSample
+from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import definition, serialize
 from trawl_ros.messages.estimates import estimate_message
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import INSTRUMENTS, TRUTH, absolute
+from trawl_ros.records.samples import PressureSample, RangeSample
+from trawl_ros.records.topics import INSTRUMENTS, TRUTH, absolute
 
 SECOND = 1_000_000_000
 START = 1_785_000_000 * SECOND

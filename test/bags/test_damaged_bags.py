@@ -7,10 +7,10 @@ import pytest
 import yaml
 from mcap.reader import make_reader
 
-from trawl_ros.bags.chunks import MAX_CHUNK_BYTES
 from trawl_ros.bags.reader import Bag, summarise
+from trawl_ros.bags.storage.chunks import MAX_CHUNK_BYTES
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
+from trawl_ros.core.errors import BagError
 
 WINCH, PRESSURE = '/trawl/winch/joint_states', '/trawl/door/port/pressure'
 

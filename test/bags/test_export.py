@@ -11,12 +11,12 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 from trawl_ros.bags.export import DICTIONARY, export_bag
 from trawl_ros.bags.flattening import MAX_COLUMNS
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
-from trawl_ros.instruments.samples import RangeSample, WinchSample
+from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import definition, serialize
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
+from trawl_ros.records.samples import RangeSample, WinchSample
+from trawl_ros.records.topics import absolute
 
 STAMP = 1_785_000_000_123_456_789
 

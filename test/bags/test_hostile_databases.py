@@ -6,7 +6,7 @@ from contextlib import closing
 import pytest
 
 from trawl_ros.bags.reader import Bag
-from trawl_ros.errors import BagError
+from trawl_ros.core.errors import BagError
 
 TABLES = (
     'CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format, '

@@ -2,10 +2,10 @@
 
 import pytest
 
-from trawl_ros.bags.decoding import BagTypes
-from trawl_ros.bags.stored import Definition
-from trawl_ros.errors import BagError, MessageError
-from trawl_ros.limits import DEFINITION_BYTES, DEFINITION_FIELDS, MESSAGE_OBJECTS
+from trawl_ros.bags.storage.decoding import BagTypes
+from trawl_ros.bags.storage.stored import Definition
+from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.limits import DEFINITION_BYTES, DEFINITION_FIELDS, MESSAGE_OBJECTS
 from trawl_ros.messages.cdr import STORE, definition
 
 

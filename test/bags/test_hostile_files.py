@@ -13,7 +13,7 @@ from mcap.writer import CompressionType, Writer
 from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.repair import repair_bag
-from trawl_ros.errors import BagError
+from trawl_ros.core.errors import BagError
 
 MAGIC = b'\x89MCAP0\r\n'
 CHANNEL = struct.pack('<HH', 1, 0) + b'\2\0\0\0/a\3\0\0\0cdr\0\0\0\0'

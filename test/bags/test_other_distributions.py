@@ -14,15 +14,15 @@ from rosbags.typesys import Stores, get_typestore
 
 from trawl_ros.bags import unpacked
 from trawl_ros.bags.check import check_bag
-from trawl_ros.bags.qos import dump_profiles, project_profile
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.samples import SampleStream
+from trawl_ros.bags.storage.qos import dump_profiles, project_profile
 from trawl_ros.cli.main import trawl
-from trawl_ros.errors import BagError
-from trawl_ros.instruments.samples import PressureSample, RangeSample, WinchSample
+from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import STORE
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import NAMESPACE, absolute
+from trawl_ros.records.samples import PressureSample, RangeSample, WinchSample
+from trawl_ros.records.topics import NAMESPACE, absolute
 
 SECOND = 1_000_000_000
 SAMPLES = [
@@ -391,7 +391,7 @@ def test_a_compressed_file_takes_no_more_than_there_is_room_for(tmp_path, monkey
 
 
 def test_a_message_that_unpacks_to_too_much_takes_no_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr('trawl_ros.bags.chunks.MAX_CHUNK_BYTES', 1 << 16)
+    monkeypatch.setattr('trawl_ros.bags.storage.chunks.MAX_CHUNK_BYTES', 1 << 16)
     bomb = zstandard.ZstdCompressor().compress(bytes(1 << 24))
     bag = Bag(packed(tmp_path, 'MESSAGE', lambda data: bomb))
     assert len(list(bag.messages())) == len(SAMPLES) - 1

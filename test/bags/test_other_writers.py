@@ -11,7 +11,7 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.cli.main import trawl
-from trawl_ros.messages.topics import NAMESPACE
+from trawl_ros.records.topics import NAMESPACE
 
 WITH_INDEX = [
     {'repeat_channels': False},

@@ -12,11 +12,11 @@ from rosbags.rosbag2 import Writer as RosbagsWriter
 
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError, MessageError
-from trawl_ros.instruments.samples import PressureSample
+from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.messages.cdr import STORE, definition, serialize
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.records.samples import PressureSample
 
 WINCH, PRESSURE = '/trawl/winch/joint_states', '/trawl/door/port/pressure'
 

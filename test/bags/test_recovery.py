@@ -8,16 +8,16 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.bags.mcap_output import LIBRARY
-from trawl_ros.bags.metadata import FileEntry, TopicEntry, dump_metadata
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
-from trawl_ros.bags.writer import describe
-from trawl_ros.instruments.samples import WinchSample
+from trawl_ros.bags.storage.mcap_output import LIBRARY
+from trawl_ros.bags.storage.metadata import FileEntry, TopicEntry, dump_metadata
+from trawl_ros.bags.storage.stored import describe
+from trawl_ros.core.resources import share_path
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.pieces import topic_header, vector
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.share import share_path
+from trawl_ros.records.samples import WinchSample
 
 WINCH, PRESSURE = '/trawl/winch/joint_states', '/trawl/door/port/pressure'
 

@@ -10,12 +10,12 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 from rosbags.rosbag2 import Reader
 
-from trawl_ros.bags.mcap_file import McapFile
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
+from trawl_ros.bags.storage.mcap_file import McapFile
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.cli.main import trawl
-from trawl_ros.errors import BagError
+from trawl_ros.core.errors import BagError
 
 WINCH, PRESSURE = '/trawl/winch/joint_states', '/trawl/door/port/pressure'
 

@@ -6,13 +6,13 @@ import numpy as np
 
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.identification.window_records import SteadyWindow
-from trawl_ros.identification.windows import SteadyWindowFinder
-from trawl_ros.instruments.samples import VelocitySample, WinchSample
+from trawl_ros.estimation.windows.finder import SteadyWindowFinder
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import NAMESPACE, WINCH_NAMES, absolute
 from trawl_ros.model.water import Water
+from trawl_ros.records.samples import VelocitySample, WinchSample
+from trawl_ros.records.topics import NAMESPACE, WINCH_NAMES, absolute
 
 SECOND = 1_000_000_000
 

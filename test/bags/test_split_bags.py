@@ -8,8 +8,8 @@ from rosbags.rosbag2 import Reader
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
-from trawl_ros.messages.stamps import SECOND
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.time import SECOND
 
 
 def metadata(path):

@@ -9,11 +9,11 @@ from mcap.writer import Writer
 from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
-from trawl_ros.instruments.samples import WinchSample
+from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import definition, serialize
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
+from trawl_ros.records.samples import WinchSample
+from trawl_ros.records.topics import absolute
 
 SECOND = 1_000_000_000
 

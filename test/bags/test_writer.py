@@ -16,7 +16,7 @@ from rosbags.rosbag2 import Reader
 
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
+from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import serialize, type_hash
 from trawl_ros.messages.estimates import estimate_message
 

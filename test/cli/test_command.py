@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from trawl_ros.cli.main import COMMANDS
-from trawl_ros.version import __version__
+from trawl_ros.core.version import __version__
 
 
 def test_the_list_of_commands_loads_none_of_them():

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
-from trawl_ros.instruments.samples import RangeSample
+from trawl_ros.records.samples import RangeSample
 
 
 @pytest.fixture

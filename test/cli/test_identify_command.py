@@ -7,13 +7,13 @@ import math
 import pytest
 
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.estimation.bag_windows import BagTask, read_tow, read_tows
+from trawl_ros.estimation.fit.laws import QUANTITIES
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.bag_windows import BagTask, read_tow, read_tows
-from trawl_ros.identification.laws import QUANTITIES
-from trawl_ros.identification.objective import PAPER_CHANNELS
-from trawl_ros.instruments.samples import RangeSample
-from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.samples import RangeSample
+from trawl_ros.records.topics import NAMESPACE
 
 
 @pytest.fixture

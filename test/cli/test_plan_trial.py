@@ -5,7 +5,7 @@ import json
 import pytest
 import yaml
 
-from trawl_ros.identification.laws import QUANTITIES
+from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.scenario.scenario import load_scenario
 
 FEW = ('--lengths-m', '200', '--speeds-m-s', '2.5,2.3', '--hours', '0.6')

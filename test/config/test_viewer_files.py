@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 import yaml
 
+from trawl_ros.core.resources import share_path
 from trawl_ros.messages.cdr import STORE
-from trawl_ros.messages.topics import MAP, NAMESPACE, TOPICS, WINCH_NAMES, absolute
-from trawl_ros.share import share_path
+from trawl_ros.records.topics import MAP, NAMESPACE, TOPICS, WINCH_NAMES, absolute
 
 BY_FULL_NAME = {absolute(name): topic for name, topic in TOPICS.items()}
 

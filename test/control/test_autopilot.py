@@ -14,13 +14,13 @@ from trawl_ros.control.autopilot import (
     HoldHeading,
     ToSchool,
 )
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.core.geodesy import Datum
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.instruments.geodesy import Datum
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import load_instruments
-from trawl_ros.instruments.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
 from trawl_ros.instruments.vessel import GpsFix, GpsVelocity, Heading, SpeedLog
+from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
 from trawl_ros.simulation.ship import Ship
 
 SECOND = 1_000_000_000

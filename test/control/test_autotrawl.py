@@ -8,7 +8,7 @@ import pytest
 
 from trawl_ros.control.autotrawl import Autotrawl
 from trawl_ros.control.autotrawl_records import AutotrawlSettings
-from trawl_ros.instruments.samples import WinchSample
+from trawl_ros.records.samples import WinchSample
 from trawl_ros.simulation.heave import regular_heave
 from trawl_ros.simulation.sea import Sea
 from trawl_ros.simulation.simulation import Command, Simulation

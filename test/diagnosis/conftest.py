@@ -8,17 +8,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.identification.from_gear import board_prior
-from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.lab.studies.identification.plant import Look
+from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
-from trawl_ros.studies.identification.plant import Look
-from trawl_ros.studies.identification.readings import AS_STATED, steady_windows
 
 TOWS = 3
 STATES = ((800.0, 2.2), (600.0, 2.4), (450.0, 2.2), (300.0, 2.4), (600.0, 2.2))

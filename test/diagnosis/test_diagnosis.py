@@ -13,12 +13,12 @@ from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
 from trawl_ros.diagnosis.refit import refit, was_in_order
 from trawl_ros.diagnosis.repair import repaired, source
-from trawl_ros.diagnosis.result import result
-from trawl_ros.diagnosis.words import headline, sentences
-from trawl_ros.diagnosis.writing import write_diagnosis
+from trawl_ros.diagnosis.report.result import result
+from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.writing import write_diagnosis
+from trawl_ros.estimation.fit.estimator import POOR
+from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.estimator import POOR
-from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 

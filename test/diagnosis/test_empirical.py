@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from trawl_ros.diagnosis.diagnosis import diagnose
-from trawl_ros.diagnosis.words import headline, sentences
-from trawl_ros.diagnosis.writing import write_diagnosis
-from trawl_ros.effects.acting import Active, acting
-from trawl_ros.effects.catalogue import catalogue
-from trawl_ros.effects.effect import Situation
-from trawl_ros.empirical.dictionary import dictionary
+from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.writing import write_diagnosis
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.effects.effect_set import Active, acting
+from trawl_ros.effects.empirical.library import dictionary
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import EffectRecord
-from trawl_ros.identification.from_gear import board_prior
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 

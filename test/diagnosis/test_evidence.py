@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.diagnosis.evidence import Evidence, detectable, tail, threshold
-from trawl_ros.diagnosis.screen import looks_at
+from trawl_ros.diagnosis.score_test import looks_at
 
 
 @pytest.fixture(scope='module')

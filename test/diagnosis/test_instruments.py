@@ -6,8 +6,8 @@ import pytest
 
 from trawl_ros.diagnosis.diagnosis import diagnose
 from trawl_ros.diagnosis.instruments import over_ground
-from trawl_ros.diagnosis.words import sentences
-from trawl_ros.identification.over_ground import GroundTrack
+from trawl_ros.diagnosis.report.sentences import sentences
+from trawl_ros.estimation.windows.over_ground import GroundTrack
 
 
 @pytest.fixture(scope='module')

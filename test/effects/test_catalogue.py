@@ -4,11 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from trawl_ros.effects import catalogue as module
-from trawl_ros.effects.acting import acting
-from trawl_ros.effects.catalogue import catalogue
-from trawl_ros.effects.effect import Effect, Parameter
-from trawl_ros.errors import GearError, TrawlError
+from trawl_ros.core.errors import GearError, TrawlError
+from trawl_ros.effects import registry as module
+from trawl_ros.effects.base.effect import Effect, Parameter
+from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.records import EffectRecord
 
 PROMISED = {

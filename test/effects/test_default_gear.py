@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from trawl_ros.diagnosis.repair import gear_text
-from trawl_ros.effects.acting import acting
+from trawl_ros.effects.effect_set import acting
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.model.gear_model import build_model

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trawl_ros.effects.acting import NONE, Acting, Active
-from trawl_ros.effects.catalogue import catalogue
-from trawl_ros.effects.effect import Situation
-from trawl_ros.identification.from_gear import board_prior
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.effects.effect_set import NONE, Acting, Active
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 

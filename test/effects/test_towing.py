@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.effects.acting import acting
-from trawl_ros.effects.showing import Showing
+from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.sensor_effects import Showing
+from trawl_ros.estimation.from_gear import board_prior, predictor_for
 from trawl_ros.gear.records import EffectRecord
-from trawl_ros.identification.from_gear import board_prior, predictor_for
-from trawl_ros.instruments.samples import (
+from trawl_ros.model.gear_model import build_model, build_water
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
     RangeSample,
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.model.gear_model import build_model, build_water
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.simulation.simulation import Command, Simulation
 
 EFFECTS = (

@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 import yaml
 
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.resources import share_path
 from trawl_ros.diagnosis.repair import gear_text
-from trawl_ros.errors import GearError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.share import share_path
 
 
 @pytest.fixture

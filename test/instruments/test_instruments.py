@@ -5,16 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from trawl_ros.core.geodesy import Datum, to_latitude_longitude
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument
 from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, pitch_and_roll
-from trawl_ros.instruments.error_records import (
-    ForceErrors,
-    LengthErrors,
-    SpeedErrors,
-    TurnErrors,
-)
-from trawl_ros.instruments.geodesy import Datum, to_latitude_longitude
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.records import ForceErrors, LengthErrors, SpeedErrors, TurnErrors
 from trawl_ros.instruments.parameters import (
     AttitudeParameters,
     FixParameters,
@@ -26,12 +22,11 @@ from trawl_ros.instruments.parameters import (
     WinchParameters,
 )
 from trawl_ros.instruments.pressure import PressureInstrument
-from trawl_ros.instruments.sampling import SECOND
-from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.vessel import GpsFix, GpsVelocity, Heading, SpeedLog
 from trawl_ros.instruments.winch import WinchInstrument
 from trawl_ros.model.water import Water
-from trawl_ros.simulation.truth import DoorTruth, WinchTruth
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import DoorTruth, WinchTruth
 
 DRAWS = Draws(seed=4)
 SEA = Surroundings(Water().pressure)

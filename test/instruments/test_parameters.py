@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from trawl_ros.errors import InstrumentError, ScenarioError
+from trawl_ros.core.errors import InstrumentError, ScenarioError
+from trawl_ros.core.resources import share_path
 from trawl_ros.instruments.parameters import default_instruments_with, load_instruments
-from trawl_ros.share import share_path
 
 
 def changed(folder: Path, old: str, new: str) -> Path:

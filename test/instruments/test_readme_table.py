@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from trawl_ros.instruments.faults import KINDS
+from trawl_ros.instruments.errors.faults import KINDS
 from trawl_ros.instruments.parameters import load_instruments
-from trawl_ros.messages.topics import INSTRUMENTS
+from trawl_ros.records.topics import INSTRUMENTS
 
 README = Path(__file__).parents[2] / 'README.md'
 

@@ -8,10 +8,16 @@ from typing import Protocol
 import numpy as np
 import pytest
 
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.doors import DoorInstruments
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
-from trawl_ros.instruments.samples import (
+from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.instruments.trawl_sonar import SonarInstruments
+from trawl_ros.instruments.vessel import VesselInstruments
+from trawl_ros.instruments.winch import WinchInstruments
+from trawl_ros.model.water import Water
+from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
     RangeSample,
@@ -19,14 +25,8 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.instruments.sampling import SECOND
-from trawl_ros.instruments.suite import InstrumentSuite
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.instruments.trawl_sonar import SonarInstruments
-from trawl_ros.instruments.vessel import VesselInstruments
-from trawl_ros.instruments.winch import WinchInstruments
-from trawl_ros.model.water import Water
-from trawl_ros.simulation.truth import DoorTruth, NetTruth, Truth, VesselTruth, WinchTruth
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import DoorTruth, NetTruth, Truth, VesselTruth, WinchTruth
 
 PRESSURE = Water().pressure
 SEA = Surroundings(PRESSURE)

@@ -10,27 +10,27 @@ from typing import Any
 import numpy as np
 import pytest
 
-from trawl_ros.instruments.faults import Fault, FaultPanel
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.core.time import SECOND
+from trawl_ros.instruments.errors.faults import Fault, FaultPanel
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import SweepParameters, load_instruments
-from trawl_ros.instruments.samples import (
+from trawl_ros.instruments.sonar.reading import read_openings
+from trawl_ros.instruments.sonar.records import InterferenceRecord
+from trawl_ros.instruments.sonar.sweep import Sweep
+from trawl_ros.instruments.trawl_sonar import SonarInstruments, TrawlSonar
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.water import Water
+from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.samples import (
     RangeSample,
     Sample,
     SonarImageSample,
     SonarPointsSample,
     SonarScanSample,
 )
-from trawl_ros.instruments.sampling import SECOND
-from trawl_ros.instruments.sonar.reading import read_openings
-from trawl_ros.instruments.sonar.records import InterferenceRecord
-from trawl_ros.instruments.sonar.sweep import Sweep
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.instruments.trawl_sonar import SonarInstruments, TrawlSonar
-from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.water import Water
-from trawl_ros.nodes.partial_truth import partial_truth
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import NetTruth, SchoolTruth, SeabedTruth, Truth
 from trawl_ros.simulation.simulation import Command, Simulation
-from trawl_ros.simulation.truth import NetTruth, SchoolTruth, SeabedTruth, Truth
 
 SEA = Surroundings(Water().pressure)
 DEPTH = 100.0

@@ -5,20 +5,20 @@ import math
 import numpy as np
 import pytest
 
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.echo_sounder import EchoSounder, cone
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
-from trawl_ros.instruments.samples import RangeSample
-from trawl_ros.instruments.sampling import SECOND
-from trawl_ros.instruments.schools import inside
-from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.instruments.sonar.schools import inside
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.water import Water
-from trawl_ros.nodes.partial_truth import partial_truth
+from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.samples import RangeSample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import SchoolTruth, SeabedTruth, Truth, VesselTruth
 from trawl_ros.simulation.sea import School, Sea
 from trawl_ros.simulation.seabed import Seabed
 from trawl_ros.simulation.simulation import Command, Simulation
-from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth, Truth, VesselTruth
 
 DRAUGHT = 6.5
 SEA = Surroundings(Water().pressure)

@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
+from trawl_ros.core.time import SECOND
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.fish_sonar import FishSonar
-from trawl_ros.instruments.instrument import Draws
 from trawl_ros.instruments.parameters import FishSonarParameters, load_instruments
-from trawl_ros.instruments.samples import VelocitySample
-from trawl_ros.instruments.sampling import SECOND
-from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.model.water import Water
-from trawl_ros.nodes.partial_truth import partial_truth
-from trawl_ros.simulation.truth import SchoolTruth, VesselTruth
+from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.samples import VelocitySample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import SchoolTruth, VesselTruth
 
 DRAUGHT = 6.5
 SEA = Surroundings(Water().pressure)

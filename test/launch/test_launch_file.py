@@ -10,7 +10,7 @@ from types import ModuleType, SimpleNamespace
 
 import pytest
 
-from trawl_ros.share import share_path
+from trawl_ros.core.resources import share_path
 
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trawl_ros.errors import MessageError
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.cdr import STORE, definition, deserialize, serialize, type_hash
 from trawl_ros.messages.stamps import from_time, to_time
-from trawl_ros.messages.topics import TOPICS
+from trawl_ros.records.topics import TOPICS
 
 TYPES = sorted({topic.type for topic in TOPICS.values()})
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.messages.markers import VESSEL_LENGTH, gear_markers
-from trawl_ros.simulation.truth import DoorTruth, GearPicture, Polyline, SchoolTruth
+from trawl_ros.records.truth import DoorTruth, GearPicture, Polyline, SchoolTruth
 
 DOOR = DoorTruth(
     position=np.array([-500.0, 30.0, -100.0]),

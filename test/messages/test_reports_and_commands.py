@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from trawl_ros.errors import MessageError
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.commands import (
     read_vessel_command,
@@ -23,7 +23,7 @@ from trawl_ros.messages.estimates import (
     read_estimate,
     read_innovations,
 )
-from trawl_ros.messages.topics import TOPICS
+from trawl_ros.records.topics import TOPICS
 
 VALUES = np.linspace(-1.0, 1.0, 12)
 MATRIX = np.arange(144.0).reshape(12, 12)

@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.errors import MessageError
-from trawl_ros.instruments.samples import (
+from trawl_ros.core.errors import MessageError
+from trawl_ros.messages.cdr import deserialize, serialize
+from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
+from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -22,11 +26,7 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.messages.cdr import deserialize, serialize
-from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
-from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import TOPICS
+from trawl_ros.records.topics import TOPICS
 
 STAMP = 1_785_000_000_123_456_789
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.errors import MessageError
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.from_messages import (
     door_truth,
@@ -19,10 +19,9 @@ from trawl_ros.messages.from_messages import (
 from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.messages.topics import TOPICS, TRUTH
-from trawl_ros.messages.transforms import transforms_message
-from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
-from trawl_ros.simulation.truth import (
+from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
+from trawl_ros.records.topics import TOPICS, TRUTH
+from trawl_ros.records.truth import (
     DoorTruth,
     GearPicture,
     NetTruth,

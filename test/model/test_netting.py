@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.errors import GearError
+from trawl_ros.core.errors import GearError
 from trawl_ros.gear.records import GearRecord, NettingRecord, SectionRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.netting import NetMesh, build_net

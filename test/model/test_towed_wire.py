@@ -4,7 +4,7 @@ wire: the same line kernel, assembly and solver as the whole gear."""
 import numpy as np
 import pytest
 
-from trawl_ros.validation.closed_forms.towed_wire import KNOWN, Wire, integrated, modelled
+from trawl_ros.lab.validation.closed_forms.towed_wire import KNOWN, Wire, integrated, modelled
 
 
 def errors(segments: int) -> np.ndarray:

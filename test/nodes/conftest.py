@@ -146,8 +146,8 @@ def estimate_listener():
     """Give the class of a node that looks at what the identification says."""
     from trawl_ros.messages.diagnostics import read_statuses
     from trawl_ros.messages.estimates import read_covariance, read_estimate, read_innovations
-    from trawl_ros.nodes.node import TrawlNode
-    from trawl_ros.nodes.qos import CONSUMER, LATCHED
+    from trawl_ros.nodes.runtime.node import TrawlNode
+    from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED
 
     class EstimateListener(TrawlNode):
         def __init__(self, name='listener', **kwargs):
@@ -193,7 +193,7 @@ def steady_samples(steady_tow):
     """
     from dataclasses import replace
 
-    from trawl_ros.instruments.samples import HeadingSample, RangeSample, VelocitySample
+    from trawl_ros.records.samples import HeadingSample, RangeSample, VelocitySample
 
     second = 1_000_000_000
 

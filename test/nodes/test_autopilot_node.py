@@ -8,20 +8,21 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from rclpy.parameter import Parameter  # noqa: E402
 
-from trawl_ros.instruments.samples import HeadingSample, VelocitySample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.commands import read_vessel_command  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes import autopilot_node  # noqa: E402
 from trawl_ros.nodes.autopilot_node import AutopilotNode  # noqa: E402
 from trawl_ros.nodes.autotrawl_node import AutotrawlNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.parameters import ParameterError  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.parameters import ParameterError  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
+from trawl_ros.records.samples import HeadingSample, VelocitySample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

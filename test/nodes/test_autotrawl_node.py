@@ -9,15 +9,16 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from rclpy.parameter import Parameter  # noqa: E402
 
-from trawl_ros.instruments.samples import WinchSample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.commands import read_winch_command  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes import autotrawl_node  # noqa: E402
 from trawl_ros.nodes.autotrawl_node import AutotrawlNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
+from trawl_ros.records.samples import WinchSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

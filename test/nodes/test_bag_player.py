@@ -10,20 +10,21 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from rclpy.qos import DurabilityPolicy  # noqa: E402
 
-from trawl_ros.bags.qos import project_profile  # noqa: E402
 from trawl_ros.bags.reader import Bag  # noqa: E402
-from trawl_ros.bags.stored import Definition  # noqa: E402
+from trawl_ros.bags.storage.qos import project_profile  # noqa: E402
+from trawl_ros.bags.storage.stored import Definition  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.errors import BagError, TrawlError  # noqa: E402
-from trawl_ros.instruments.samples import HeadingSample, PressureSample  # noqa: E402
+from trawl_ros.core.errors import BagError, TrawlError  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.cdr import STORE, definition, serialize  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, from_time, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import from_time, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer, main  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
+from trawl_ros.records.samples import HeadingSample, PressureSample  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -12,16 +12,16 @@ from rclpy.parameter import Parameter  # noqa: E402
 
 import trawl_ros.nodes  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.instruments.samples import HeadingSample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.parameters import FIXED, Number, Text  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.parameters import FIXED, Number, Text  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
+from trawl_ros.records.samples import HeadingSample  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -10,16 +10,17 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
 
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, header, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import header, stamp_of  # noqa: E402
 from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
-from trawl_ros.nodes import sync  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
-from trawl_ros.nodes.message_classes import message_class  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime import credit  # noqa: E402
+from trawl_ros.nodes.runtime.credit import HEADER, SYNC  # noqa: E402
+from trawl_ros.nodes.runtime.message_classes import message_class  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
-from trawl_ros.nodes.sync import HEADER, SYNC  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 
@@ -103,7 +104,7 @@ class Consumer(TrawlNode):
 def test_a_needed_consumer_that_dies_holds_the_tow_up_for_a_while_only(
     graph, scenario_path, monkeypatch
 ):
-    monkeypatch.setattr(sync, 'SILENT_S', 1000.0)
+    monkeypatch.setattr(credit, 'SILENT_S', 1000.0)
     consumer = graph.add(Consumer, use_sim_time=True)
     simulation = graph.add(
         SimNode, scenario=str(scenario_path), time_scale=0.0, exit_at_end=True,
@@ -114,7 +115,7 @@ def test_a_needed_consumer_that_dies_holds_the_tow_up_for_a_while_only(
     held_at = simulation._tow.time_s
     graph.rest(0.5)
     assert simulation._tow.time_s <= held_at + simulation.parameters['lead_s'] + 0.6
-    monkeypatch.setattr(sync, 'SILENT_S', 0.1)
+    monkeypatch.setattr(credit, 'SILENT_S', 0.1)
     graph.until(lambda: 'goes on without consumer' in simulation.statuses()[0].message)
     graph.until(lambda: simulation.exit_code is not None)
     assert simulation.exit_code == 1, 'a tow that was not followed to its end'

@@ -9,13 +9,13 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 
-from trawl_ros.instruments.samples import WinchSample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.discrepancy_node import FINDINGS, FINISH, DiscrepancyNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
+from trawl_ros.records.samples import WinchSample  # noqa: E402
 from trawl_ros.solver.equilibrium import steady_state  # noqa: E402
 
 pytestmark = pytest.mark.ros

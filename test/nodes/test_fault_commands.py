@@ -7,13 +7,13 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from rclpy.parameter import Parameter  # noqa: E402
 
-from trawl_ros.errors import InstrumentError  # noqa: E402
+from trawl_ros.core.errors import InstrumentError  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.commands import fault_command  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
 from trawl_ros.messages.pieces import joint_state  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 
 pytestmark = pytest.mark.ros

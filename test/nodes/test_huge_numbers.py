@@ -5,15 +5,15 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.instruments.samples import VelocitySample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, Status  # noqa: E402
 from trawl_ros.messages.pieces import joint_state  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.autopilot_node import AutopilotNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
+from trawl_ros.records.samples import VelocitySample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 DOMAIN = 219

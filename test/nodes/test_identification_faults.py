@@ -7,15 +7,11 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.instruments.samples import (  # noqa: E402
-    PressureSample,
-    RangeSample,
-    WinchSample,
-)
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.identification_node import SAMPLES, IdentificationNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.records.samples import PressureSample, RangeSample, WinchSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -10,23 +10,21 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.bags.import_log import import_log  # noqa: E402
+from trawl_ros.bags.logs.import_log import import_log  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.errors import TrawlError  # noqa: E402
-from trawl_ros.instruments.instrument import Draws  # noqa: E402
+from trawl_ros.core.errors import TrawlError  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
+from trawl_ros.instruments.errors.instrument import Draws  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
-from trawl_ros.instruments.surroundings import Surroundings  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.diagnostics import ERROR, WARN  # noqa: E402
-from trawl_ros.messages.estimates import (  # noqa: E402
-    COEFFICIENTS,
-)
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
+from trawl_ros.messages.estimates import COEFFICIENTS  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.records.surroundings import Surroundings  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
 
 pytestmark = pytest.mark.ros

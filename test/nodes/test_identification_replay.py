@@ -10,19 +10,19 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from trawl_ros.bags.samples import SampleStream  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.cli.processes import Processes  # noqa: E402
-from trawl_ros.errors import TrawlError  # noqa: E402
+from trawl_ros.core.errors import TrawlError  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
+from trawl_ros.estimation.from_gear import identification_for  # noqa: E402
+from trawl_ros.estimation.pipeline import WindowUsed  # noqa: E402
+from trawl_ros.estimation.windows.records import WindowOptions  # noqa: E402
 from trawl_ros.gear.load import load_gear  # noqa: E402
-from trawl_ros.identification.from_gear import identification_for  # noqa: E402
-from trawl_ros.identification.pipeline import WindowUsed  # noqa: E402
-from trawl_ros.identification.window_records import WindowOptions  # noqa: E402
-from trawl_ros.instruments.samples import PressureSample, WinchSample  # noqa: E402
+from trawl_ros.lab.running.processes import Processes  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.records.samples import PressureSample, WinchSample  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

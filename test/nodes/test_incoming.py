@@ -6,15 +6,16 @@ import itertools
 import numpy as np
 import pytest
 
-from trawl_ros.errors import MessageError, TrawlError
-from trawl_ros.limits import IMAGE_BYTES, MESSAGE_BYTES
+from trawl_ros.core.errors import MessageError, TrawlError
+from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES
+from trawl_ros.core.time import SECOND
+from trawl_ros.lab.studies.hostile.mutations import hostile
 from trawl_ros.messages.cdr import STORE, serialize
 from trawl_ros.messages.commands import winch_command
-from trawl_ros.messages.stamps import SECOND, header
+from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
-from trawl_ros.nodes.incoming import Incoming, Leaps, believing_clock, decoding
-from trawl_ros.nodes.source import Source
-from trawl_ros.studies.hostile.mutations import hostile
+from trawl_ros.nodes.runtime.incoming import Incoming, Leaps, believing_clock, decoding
+from trawl_ros.nodes.runtime.source import Source
 
 JOINTS = 'sensor_msgs/msg/JointState'
 WINCH = 'winch/joint_states'
@@ -59,7 +60,9 @@ def test_an_error_with_which_the_node_cannot_do_its_work_ends_it():
 @pytest.mark.parametrize(('kind', 'limit'), [(JOINTS, MESSAGE_BYTES),
                                              ('sensor_msgs/msg/Image', IMAGE_BYTES)])  # fmt: skip
 def test_what_is_too_large_is_not_decoded(kind, limit, monkeypatch):
-    monkeypatch.setattr('trawl_ros.nodes.incoming.deserialize', lambda *_: pytest.fail('decoded'))
+    monkeypatch.setattr(
+        'trawl_ros.nodes.runtime.incoming.deserialize', lambda *_: pytest.fail('decoded')
+    )
     take = decoding(WINCH, kind, print)
     with pytest.raises(MessageError, match=f'expected at most {limit}'):
         take(bytes(limit.value + 1))
@@ -138,8 +141,8 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from rclpy.impl.implementation_singleton import rclpy_implementation  # noqa: E402
 
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 
 
 @pytest.fixture(scope='module')

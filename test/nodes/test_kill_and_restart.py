@@ -4,11 +4,12 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.cli.processes import Processes  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
+from trawl_ros.lab.running.processes import Processes  # noqa: E402
 from trawl_ros.messages.diagnostics import ERROR, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.messages.stamps import stamp_of  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -8,12 +8,13 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.diagnostics import read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import stamp_of  # noqa: E402
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402

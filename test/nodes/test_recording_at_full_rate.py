@@ -4,9 +4,9 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.benchmark.full_chain import TOPICS, schedule  # noqa: E402
-from trawl_ros.benchmark.recording import record  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
+from trawl_ros.lab.benchmark.full_chain import TOPICS, schedule  # noqa: E402
+from trawl_ros.lab.benchmark.recording import record  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -11,14 +11,14 @@ from rosbags.interfaces import QosDurability, QosReliability  # noqa: E402
 from rosbags.rosbag2 import Reader  # noqa: E402
 
 from trawl_ros.bags.reader import Bag  # noqa: E402
-from trawl_ros.errors import TrawlError  # noqa: E402
-from trawl_ros.instruments.samples import HeadingSample  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
+from trawl_ros.core.errors import TrawlError  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER, STREAM  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM  # noqa: E402
+from trawl_ros.records.samples import HeadingSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

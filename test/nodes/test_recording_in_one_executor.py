@@ -13,11 +13,10 @@ from mcap.reader import make_reader  # noqa: E402
 from rosbags.rosbag2 import Reader  # noqa: E402
 
 from trawl_ros.bags.reader import Bag  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
 from trawl_ros.messages.truth_to_messages import truth_messages  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
@@ -26,6 +25,7 @@ from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 from trawl_ros.scenario.run import Trial  # noqa: E402
 from trawl_ros.scenario.scenario import load_scenario  # noqa: E402
 

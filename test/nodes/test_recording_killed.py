@@ -14,14 +14,14 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 import yaml  # noqa: E402
 from rosbags.rosbag2 import Reader  # noqa: E402
 
-from trawl_ros.bags.mcap_file import McapFile  # noqa: E402
 from trawl_ros.bags.reader import Bag  # noqa: E402
 from trawl_ros.bags.repair import repair_bag  # noqa: E402
-from trawl_ros.bags.rosbag2_keys import lacking  # noqa: E402
-from trawl_ros.instruments.samples import HeadingSample  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
+from trawl_ros.bags.storage.mcap_file import McapFile  # noqa: E402
+from trawl_ros.bags.storage.rosbag2_keys import lacking  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.records.samples import HeadingSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -15,8 +15,8 @@ from rosbags.rosbag2 import Reader  # noqa: E402
 
 from trawl_ros.bags.reader import Bag  # noqa: E402
 from trawl_ros.messages.diagnostics import read_statuses  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

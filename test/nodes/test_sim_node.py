@@ -9,14 +9,15 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.parameter_client import AsyncParameterClient  # noqa: E402
 
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.commands import vessel_command, winch_command  # noqa: E402
 from trawl_ros.messages.diagnostics import ERROR, WARN, read_statuses  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, header, stamp_of  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.parameters import ParameterError  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.messages.stamps import header, stamp_of  # noqa: E402
+from trawl_ros.nodes.runtime.credit import HEADER, SYNC  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.parameters import ParameterError  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
-from trawl_ros.nodes.sync import HEADER, SYNC  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -231,7 +232,7 @@ def test_two_clocks_are_an_error_that_names_both(graph, simulation, crew):
     ],
 )
 def test_what_cannot_be_at_the_start_is_an_error(open_graph, name, value, reason):
-    from trawl_ros.errors import TrawlError
+    from trawl_ros.core.errors import TrawlError
 
     with open_graph(DOMAIN + 1) as graph, pytest.raises(TrawlError) as raised:
         graph.add(SimNode, **{name: value})

@@ -6,14 +6,15 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.instruments.samples import RangeSample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
+from trawl_ros.lab.running.stranger import Stranger  # noqa: E402
 from trawl_ros.messages.cdr import deserialize  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, from_time, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import from_time, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
-from trawl_ros.nodes.stranger import Stranger  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
+from trawl_ros.records.samples import RangeSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -8,23 +8,24 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.gear.load import load_gear  # noqa: E402
-from trawl_ros.instruments.instrument import Draws  # noqa: E402
+from trawl_ros.instruments.errors.instrument import Draws  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.trawl_sonar import SonarInstruments  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.commands import fault_command  # noqa: E402
 from trawl_ros.messages.from_messages import to_sample  # noqa: E402
-from trawl_ros.messages.stamps import SECOND, stamp_of  # noqa: E402
+from trawl_ros.messages.stamps import stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.messages.truth_to_messages import truth_messages  # noqa: E402
 from trawl_ros.model.gear_model import GearModel  # noqa: E402
-from trawl_ros.nodes.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.qos import CONSUMER  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
-from trawl_ros.scenario.surroundings import build_surroundings  # noqa: E402
+from trawl_ros.records.truth import SchoolTruth, SeabedTruth, Truth  # noqa: E402
+from trawl_ros.scenario.sea import build_surroundings  # noqa: E402
 from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
-from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth, Truth  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

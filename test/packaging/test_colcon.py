@@ -87,7 +87,9 @@ def test_the_ament_index_finds_the_package(workspace):
 
 
 def test_the_share_look_up_finds_the_installed_data_and_not_the_checkout(workspace):
-    share = python(workspace, 'from trawl_ros.share import share_path; print(share_path())')
+    share = python(
+        workspace, 'from trawl_ros.core.resources import share_path; print(share_path())'
+    )
     assert Path(share) == workspace.prefix / 'share' / 'trawl_ros'
 
 

@@ -17,11 +17,11 @@ from rclpy.context import Context  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.instruments.samples import HeadingSample  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
-from trawl_ros.messages.stamps import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.messages.topics import absolute  # noqa: E402
+from trawl_ros.records.samples import HeadingSample  # noqa: E402
+from trawl_ros.records.topics import absolute  # noqa: E402
 
 NODES = (
     'sim_node',

@@ -13,8 +13,16 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.instruments.geodesy import Datum, to_latitude_longitude
-from trawl_ros.instruments.samples import (
+from trawl_ros.core.geodesy import Datum, to_latitude_longitude
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.rotations import to_quaternion
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.truth_to_messages import truth_messages
+from trawl_ros.model.water import Water
+from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.records import Tow
+from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -26,16 +34,8 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.messages.cdr import serialize
-from trawl_ros.messages.markers import gear_markers
-from trawl_ros.messages.rotations import to_quaternion
-from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import absolute
-from trawl_ros.messages.truth_to_messages import truth_messages
-from trawl_ros.model.water import Water
-from trawl_ros.plots.reading import read_tow
-from trawl_ros.plots.records import Tow
-from trawl_ros.simulation.truth import (
+from trawl_ros.records.topics import absolute
+from trawl_ros.records.truth import (
     DoorTruth,
     GearPicture,
     NetTruth,

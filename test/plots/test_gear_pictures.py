@@ -7,19 +7,14 @@ import pytest
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.markers import gear_markers
-from trawl_ros.messages.topics import DOOR_FRAMES
 from trawl_ros.model.water import Water
 from trawl_ros.plots.gear import extent, gear_figure
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, read_moments
 from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.records import SCHOOLS
-from trawl_ros.plots.shapes import (
-    FROM_MARKERS,
-    FROM_READINGS,
-    FROM_TRUTH,
-    gear_shape,
-)
-from trawl_ros.simulation.truth import SchoolTruth
+from trawl_ros.plots.shapes import FROM_MARKERS, FROM_READINGS, FROM_TRUTH, gear_shape
+from trawl_ros.records.topics import DOOR_FRAMES
+from trawl_ros.records.truth import SchoolTruth
 
 
 @pytest.fixture(scope='module')

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.colors import to_hex
 
 from trawl_ros.model.water import Water
-from trawl_ros.plots import style
 from trawl_ros.plots.histories import PANELS, history_figure, left_out, silences
 from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.records import Series
+from trawl_ros.report import style
 
 
 def panel(figure, label):

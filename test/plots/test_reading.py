@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.errors import BagError
+from trawl_ros.core.errors import BagError
 from trawl_ros.model.water import Water
 from trawl_ros.plots import reading
 from trawl_ros.plots.reading import read_tow

@@ -7,11 +7,11 @@ import pytest
 
 from trawl_ros.control.autopilot import Autopilot, FollowTrack
 from trawl_ros.control.autotrawl import Autotrawl
-from trawl_ros.errors import NoSteadyState, ScenarioError
-from trawl_ros.instruments.geodesy import Datum
-from trawl_ros.instruments.samples import FixSample, HeadingSample, VelocitySample, WinchSample
+from trawl_ros.core.errors import NoSteadyState, ScenarioError
+from trawl_ros.core.geodesy import Datum
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.samples import FixSample, HeadingSample, VelocitySample, WinchSample
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.scenario.steadiness import require_steady_states

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from trawl_ros.errors import ScenarioError
-from trawl_ros.instruments.fault_plan import PlannedFault
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.instruments.errors.fault_plan import PlannedFault
 from trawl_ros.scenario.scenario import load_scenario
 
 TRIAL = """\

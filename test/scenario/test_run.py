@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.scenario.run import Trial, periods_per_truth
 from trawl_ros.scenario.scenario import load_scenario
 

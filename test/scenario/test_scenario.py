@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.core.resources import share_path
 from trawl_ros.scenario.scenario import load_scenario
-from trawl_ros.share import share_path
 from trawl_ros.simulation.simulation import Command
 
 TRIAL = """\

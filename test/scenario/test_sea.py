@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.water import Water
 from trawl_ros.scenario.run import Trial, periods_per_truth

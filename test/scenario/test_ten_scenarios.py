@@ -13,12 +13,12 @@ import pytest
 from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
+from trawl_ros.core.resources import share_path
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.scenario.recording import recorded
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
-from trawl_ros.share import share_path
 
 TEN = (
     'shakedown',

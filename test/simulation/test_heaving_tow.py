@@ -7,10 +7,10 @@ import pytest
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.records.truth import Truth
 from trawl_ros.simulation.heave import Heave, irregular_heave, regular_heave
 from trawl_ros.simulation.sea import Sea
 from trawl_ros.simulation.simulation import Command, Simulation, tow_of
-from trawl_ros.simulation.truth import Truth
 
 START = Command(500.0, 500.0, 2.1)
 

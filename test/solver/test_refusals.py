@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from trawl_ros.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint

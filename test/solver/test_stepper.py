@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from trawl_ros.lab.validation.closed_forms.free_rotation import momentum_and_energy, spinning
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
@@ -14,7 +15,6 @@ from trawl_ros.model.state import Tow
 from trawl_ros.solver import stepper as stepper_module
 from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.stepper import Motion, Stepper, at_rest
-from trawl_ros.validation.closed_forms.free_rotation import momentum_and_energy, spinning
 
 Boundary = Callable[[float], Tow]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import steady_state
 from trawl_ros.solver.trim import trim

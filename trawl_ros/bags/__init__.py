@@ -1,1 +1,1 @@
-"""Bags of messages: writing, reading (also of damaged ones), and import of foreign logs."""
+"""Bags of messages: written, read, checked, repaired and exported."""

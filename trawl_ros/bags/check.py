@@ -17,10 +17,10 @@ from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
 from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.errors import BagError, MessageError
+from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import (
+from trawl_ros.records.topics import (
     COMMANDS,
     ESTIMATES,
     INSTRUMENTS,

@@ -11,9 +11,9 @@ from trawl_ros.bags.csv_output import CsvOutput
 from trawl_ros.bags.field_units import unit_of
 from trawl_ros.bags.flattening import Column, Layout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
-from trawl_ros.errors import BagError, MessageError
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import NAMESPACE, absolute, find_topic
+from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.time import SECOND
+from trawl_ros.records.topics import NAMESPACE, absolute, find_topic
 
 ARRAY_LIMIT = 128
 """Elements up to which an array is spread over columns, unless another number is asked for."""

@@ -13,7 +13,7 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
-from trawl_ros.messages.stamps import SECOND
+from trawl_ros.core.time import SECOND
 
 MAX_COLUMNS = 1000
 """Columns that one field of a message may spread over."""

@@ -4,8 +4,8 @@ import struct
 from collections.abc import Callable
 
 from trawl_ros.bags.reader import Bag
-from trawl_ros.errors import BagError
-from trawl_ros.messages.stamps import SECOND
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.time import SECOND
 
 StampReader = Callable[[bytes], int | None]
 

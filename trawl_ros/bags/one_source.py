@@ -9,7 +9,7 @@ from collections import deque
 from itertools import pairwise
 from statistics import median
 
-from trawl_ros.instruments.samples import (
+from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
     RangeSample,

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trawl_ros.instruments.samples import (
+from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
     PressureSample,

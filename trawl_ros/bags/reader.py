@@ -12,14 +12,14 @@ from typing import Any
 from rosbags.interfaces import Qos
 from rosbags.typesys.store import Typestore
 
-from trawl_ros.bags.decoding import BagTypes, Decoder
-from trawl_ros.bags.qos import parse_profiles
 from trawl_ros.bags.sources import BagFacts, open_source
-from trawl_ros.bags.stored import Definition
+from trawl_ros.bags.storage.decoding import BagTypes, Decoder
+from trawl_ros.bags.storage.qos import parse_profiles
+from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.bags.summary import BagSummary, count_topics
-from trawl_ros.errors import BagError, MessageError
-from trawl_ros.foreign import reading
-from trawl_ros.messages.topics import NAMESPACE, find_topic
+from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.foreign import reading
+from trawl_ros.records.topics import NAMESPACE, find_topic
 
 
 @dataclass(frozen=True)

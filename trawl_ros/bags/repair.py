@@ -11,13 +11,13 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from trawl_ros.bags.mcap_file import McapFile
-from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata, read_information
-from trawl_ros.bags.rosbag2_keys import lacking
-from trawl_ros.bags.stored import Definition, Stored
+from trawl_ros.bags.storage.mcap_file import McapFile
+from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata, read_information
+from trawl_ros.bags.storage.rosbag2_keys import lacking
+from trawl_ros.bags.storage.stored import Definition, Stored
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.errors import BagError
-from trawl_ros.foreign import reading
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.foreign import reading
 
 SUFFIX = '_repaired'
 

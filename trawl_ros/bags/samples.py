@@ -7,10 +7,10 @@ from pathlib import Path
 
 from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.reader import Bag
-from trawl_ros.errors import BagError, MessageError
-from trawl_ros.instruments.samples import Sample
+from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
-from trawl_ros.messages.topics import absolute
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.topics import absolute
 
 BETWEEN_BAGS = 3_600_000_000_000
 """Time (ns) put between two bags whose own stamps overlap, as those of simulations do."""

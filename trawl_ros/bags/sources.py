@@ -8,16 +8,16 @@ from typing import Protocol
 
 from mcap.records import Message
 
-from trawl_ros.bags.allowance import Allowance
-from trawl_ros.bags.chunks import Damaged, inflate
-from trawl_ros.bags.database import Database
-from trawl_ros.bags.mcap_file import McapFile
-from trawl_ros.bags.metadata import FILE_NAME, BagMetadata, load_metadata
-from trawl_ros.bags.stored import Definition, StatedTopics, Stored
+from trawl_ros.bags.storage.allowance import Allowance
+from trawl_ros.bags.storage.chunks import Damaged, inflate
+from trawl_ros.bags.storage.database import Database
+from trawl_ros.bags.storage.mcap_file import McapFile
+from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata
+from trawl_ros.bags.storage.stored import Definition, StatedTopics, Stored
 from trawl_ros.bags.unpacked import Unpacked
-from trawl_ros.errors import BagError
-from trawl_ros.foreign import one_line
-from trawl_ros.limits import BAG_FILES, BAG_TOPICS, NAME
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.foreign import one_line
+from trawl_ros.core.limits import BAG_FILES, BAG_TOPICS, NAME
 
 Report = Callable[[str], None]
 Found = tuple[str, str, Message]

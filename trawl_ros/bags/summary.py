@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros.bags.sources import BagFacts
-from trawl_ros.messages.stamps import SECOND
+from trawl_ros.core.time import SECOND
 
 
 @dataclass(frozen=True)

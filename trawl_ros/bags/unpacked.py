@@ -4,11 +4,11 @@ import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from trawl_ros.bags.allowance import RATIO
-from trawl_ros.bags.chunks import Damaged, inflate_file
-from trawl_ros.errors import BagError
-from trawl_ros.foreign import open_file
-from trawl_ros.limits import BAG_UNPACKED
+from trawl_ros.bags.storage.allowance import RATIO
+from trawl_ros.bags.storage.chunks import Damaged, inflate_file
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.foreign import open_file
+from trawl_ros.core.limits import BAG_UNPACKED
 
 SPARE_BYTES = 1 << 30
 """Bytes left free on the disk when a compressed file is unpacked."""

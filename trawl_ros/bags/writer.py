@@ -7,13 +7,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from trawl_ros.bags.mcap_output import COMPRESSIONS, McapOutput
-from trawl_ros.bags.metadata import FILE_NAME, FileEntry, TopicEntry, dump_metadata
-from trawl_ros.bags.qos import dump_profiles, project_profile
-from trawl_ros.bags.stored import Definition
-from trawl_ros.errors import BagError
-from trawl_ros.messages.cdr import STORE, definition, type_hash
-from trawl_ros.messages.topics import NAMESPACE, find_topic
+from trawl_ros.bags.storage.mcap_output import COMPRESSIONS, McapOutput
+from trawl_ros.bags.storage.metadata import FILE_NAME, FileEntry, TopicEntry, dump_metadata
+from trawl_ros.bags.storage.qos import dump_profiles, project_profile
+from trawl_ros.bags.storage.stored import Definition, describe
+from trawl_ros.core.errors import BagError
+from trawl_ros.records.topics import NAMESPACE, find_topic
 
 
 class BagWriter:
@@ -235,23 +234,3 @@ class BagWriter:
 
     def _refused(self, reason: OSError) -> BagError:
         return BagError(f'{self.path}: cannot be written ({reason.strerror})')
-
-
-def describe(type_name: str, qos: str) -> Definition:
-    """Return the definition for a topic: its type's text and hash, and offered QoS.
-
-    Raises
-    ------
-    BagError
-        If the type's definition is unknown.
-    """
-    if type_name not in STORE.types:
-        raise BagError(f'type {type_name}, whose definition is unknown')
-    return Definition(
-        type=type_name,
-        message_encoding='cdr',
-        schema_encoding='ros2msg',
-        text=definition(type_name).encode(),
-        qos=qos,
-        type_hash=type_hash(type_name),
-    )

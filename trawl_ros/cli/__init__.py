@@ -1,0 +1,1 @@
+"""The command `trawl`, one file per sub-command."""

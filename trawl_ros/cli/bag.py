@@ -12,8 +12,8 @@ from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, p
 from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.cli.tables import output_console
-from trawl_ros.errors import BagError
-from trawl_ros.messages.topics import NAMESPACE
+from trawl_ros.core.errors import BagError
+from trawl_ros.records.topics import NAMESPACE
 
 FINDINGS = 3
 """Exit code of ``trawl bag check`` where something was found; 1 is an error, 2 a wrong call."""

@@ -16,7 +16,7 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.sources import BagFacts
 from trawl_ros.bags.summary import BagSummary
 from trawl_ros.cli.tables import figure, plain_table
-from trawl_ros.messages.stamps import SECOND
+from trawl_ros.core.time import SECOND
 
 UNKNOWN = 'unknown'
 

@@ -10,9 +10,9 @@ from trawl_ros import api
 from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.diagnosis.diagnosis import Diagnosis
-from trawl_ros.diagnosis.words import headline, sentences
-from trawl_ros.diagnosis.writing import MODEL
-from trawl_ros.messages.topics import NAMESPACE
+from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.writing import MODEL
+from trawl_ros.records.topics import NAMESPACE
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
 """Exit codes by verdict; 1 and 2 are for errors of input and usage."""

@@ -4,8 +4,8 @@ import click
 from rich.console import Console
 
 from trawl_ros.cli.tables import output_console, plain_table
-from trawl_ros.effects.catalogue import catalogue
-from trawl_ros.effects.effect import Effect, Parameter
+from trawl_ros.effects.base.effect import Effect, Parameter
+from trawl_ros.effects.registry import catalogue
 
 
 @click.command('effects')

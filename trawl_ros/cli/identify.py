@@ -9,14 +9,14 @@ from rich.console import Console
 from trawl_ros import api
 from trawl_ros.cli.files import BAG, FOLDER, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.identification.report import Report
-from trawl_ros.identification.table import (
+from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.table import (
     channel_table,
     closing_lines,
     coefficient_table,
     opening_line,
 )
-from trawl_ros.messages.topics import NAMESPACE
+from trawl_ros.records.topics import NAMESPACE
 
 TABLE_WIDTH = 100
 

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import click
 
-from trawl_ros.bags.import_log import import_log
-from trawl_ros.bags.nmea import import_nmea
-from trawl_ros.bags.nmea_mapping import is_nmea
+from trawl_ros.bags.logs.import_log import import_log
+from trawl_ros.bags.logs.nmea import import_nmea
+from trawl_ros.bags.logs.nmea_mapping import is_nmea
 from trawl_ros.cli.files import BAG
-from trawl_ros.files import packaged
+from trawl_ros.core.files import packaged
 
 
 @click.command('import-log')

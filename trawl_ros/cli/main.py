@@ -12,28 +12,34 @@ from typing import Any
 
 import click
 
-from trawl_ros.errors import TrawlError
-from trawl_ros.version import __version__
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.version import __version__
 
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        'demo': ('demo', 'Tow, record, replay and refit through the real ROS graph.'),
-        'tow': ('tow', 'Tow a scenario and record what the instruments report as a bag.'),
-        'identify': ('identify', 'Refit the twelve board coefficients from recorded bags.'),
-        'plan-trial': ('plan_trial', 'Plan the trial that tells most about the boards.'),
-        'diagnose': ('diagnose', 'Find where model and bags disagree, and name what is missing.'),
-        'effects': ('effects', 'List the effects that a gear may have beyond the model.'),
-        'trim': ('trim', 'Find fastening points that give the boards wanted angles.'),
-        'validate': ('validate', "Check the model's claims and write the report."),
-        'benchmark': ('benchmark', 'Measure how fast things are, beside other tools.'),
-        'study': ('study', 'Run the whole chain for long, and report what that shows.'),
-        'scenarios': ('scenarios', 'List the scenarios that come with the package.'),
-        'import-log': ('import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
-        'bag': ('bag', 'Look into bags, check, repair and export them.'),
-        'plot': ('plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
+        'demo': ('lab.demo.command', 'Tow, record, replay and refit through the real ROS graph.'),
+        'tow': ('cli.tow', 'Tow a scenario and record what the instruments report as a bag.'),
+        'identify': ('cli.identify', 'Refit the twelve board coefficients from recorded bags.'),
+        'plan-trial': ('cli.plan_trial', 'Plan the trial that tells most about the boards.'),
+        'diagnose': (
+            'cli.diagnose',
+            'Find where model and bags disagree, and name what is missing.',
+        ),
+        'effects': ('cli.effects', 'List the effects that a gear may have beyond the model.'),
+        'trim': ('cli.trim', 'Find fastening points that give the boards wanted angles.'),
+        'validate': ('lab.commands.validate', "Check the model's claims and write the report."),
+        'benchmark': ('lab.commands.benchmark', 'Measure how fast things are, beside other tools.'),
+        'study': (
+            'lab.commands.study',
+            'Run the whole chain for long, and report what that shows.',
+        ),
+        'scenarios': ('cli.scenarios', 'List the scenarios that come with the package.'),
+        'import-log': ('cli.import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
+        'bag': ('cli.bag', 'Look into bags, check, repair and export them.'),
+        'plot': ('cli.plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
     }
 )
-"""Name → module of `trawl_ros.cli` (its ``command``), and what the list of commands says.
+"""Name → module of `trawl_ros` (its ``command``), and what the list of commands says.
 
 The sentences stand here so that the list needs none of the modules.
 """
@@ -51,7 +57,7 @@ class Trawl(click.Group):
         if cmd_name not in COMMANDS:
             return None
         module, _ = COMMANDS[cmd_name]
-        command = import_module(f'trawl_ros.cli.{module}').command
+        command = import_module(f'trawl_ros.{module}').command
         assert isinstance(command, click.Command)
         return command
 

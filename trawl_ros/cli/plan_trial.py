@@ -10,7 +10,7 @@ from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
 
 if TYPE_CHECKING:
-    from trawl_ros.identification.planning import TrialPlan
+    from trawl_ros.estimation.planning.plan import TrialPlan
 
 MOST_NUMBERS = 20
 """Each length at each speed takes seconds to look up."""
@@ -86,7 +86,7 @@ def command(
     it writes the plan, a scenario that ``trawl tow`` can run, and a picture.
     """
     from trawl_ros import api
-    from trawl_ros.identification.planning_states import Limits
+    from trawl_ros.estimation.planning.states import Limits
 
     limits = Limits(
         lengths=lengths_m or Limits.lengths,
@@ -105,7 +105,7 @@ def command(
 
 def print_plan(plan: 'TrialPlan') -> None:
     """Print legs, what is known after them, and what limits the rest."""
-    from trawl_ros.identification.laws import LAWS, QUANTITIES
+    from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES
 
     console = output_console()
     legs = plain_table(

@@ -9,8 +9,8 @@ import click
 from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.plots.album import plot
+from trawl_ros.records.topics import NAMESPACE
 
 
 class _Time(click.ParamType[float]):

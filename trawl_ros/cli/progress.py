@@ -6,7 +6,7 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
-from trawl_ros.progress import WorkProgress
+from trawl_ros.core.progress import WorkProgress
 
 LINE_EVERY_S = 10.0
 """Without a terminal a line this often (s) says how far things are."""

@@ -6,10 +6,10 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.core.resources import share_path
+from trawl_ros.core.schema import load_yaml, validated
 from trawl_ros.scenario.records import ScenarioRecord
-from trawl_ros.schema import load_yaml, validated
-from trawl_ros.share import share_path
 
 WIDTH = 140
 

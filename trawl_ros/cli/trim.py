@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from trawl_ros.files import packaged
+from trawl_ros.core.files import packaged
 
 
 @click.command('trim')

@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.control.bearings import LOST_S, Bearings, NavigationSample
 from trawl_ros.control.drift import Way
 from trawl_ros.control.track import Track
-from trawl_ros.instruments.geodesy import Datum
+from trawl_ros.core.geodesy import Datum
 
 GAIN_PER_S = 0.05
 """Rate of turn per angle that is left: 0.15 deg/s at 3 degrees."""

@@ -24,9 +24,9 @@ from trawl_ros.control.autotrawl_records import (
 )
 from trawl_ros.control.low_pass import LowPass
 from trawl_ros.control.watch import Watch
-from trawl_ros.instruments.samples import WinchSample
-from trawl_ros.instruments.sampling import SECOND
-from trawl_ros.simulation.truth import SIDES
+from trawl_ros.core.time import SECOND
+from trawl_ros.records.samples import WinchSample
+from trawl_ros.records.truth import SIDES
 
 LONGEST_GAP_S = 2.0
 """Integrals grow by no more than this for one sample: what happened in a gap is not known."""

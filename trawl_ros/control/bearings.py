@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from trawl_ros.control.low_pass import LowPass
-from trawl_ros.instruments.geodesy import Datum, to_east_north
-from trawl_ros.instruments.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
-from trawl_ros.instruments.sampling import SECOND
+from trawl_ros.core.geodesy import Datum, to_east_north
+from trawl_ros.core.time import SECOND
+from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
 
 NavigationSample = HeadingSample | FixSample | VelocitySample | SchoolsSample
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.control.drift import Way
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
 
 SHORTEST_LEG_M = 1.0
 

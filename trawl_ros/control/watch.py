@@ -4,7 +4,7 @@ import math
 from collections import deque
 from statistics import median
 
-from trawl_ros.instruments.sampling import SECOND
+from trawl_ros.core.time import SECOND
 
 
 class Watch:

@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from trawl_ros.effects.acting import Active
-from trawl_ros.effects.effect import Effect
-from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.fit import AS_STATED, Fit
-from trawl_ros.identification.linearised import Linearised
-from trawl_ros.identification.prior import BoardPrior
+from trawl_ros.effects.base.effect import Effect
+from trawl_ros.effects.effect_set import Active
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.fit import AS_STATED, Fit
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor

@@ -7,8 +7,8 @@ from scipy.stats import norm
 
 from trawl_ros.diagnosis.evidence import BLIND, evidence
 from trawl_ros.diagnosis.locating import Where
-from trawl_ros.diagnosis.screen import Screen, blocks_of
-from trawl_ros.identification.linearised import Linearised
+from trawl_ros.diagnosis.score_test import Screen, blocks_of
+from trawl_ros.estimation.fit.linearised import Linearised
 
 TIME = 'time'
 CHANCE = 0.01

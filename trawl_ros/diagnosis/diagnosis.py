@@ -8,20 +8,20 @@ import numpy as np
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
+from trawl_ros.diagnosis.holdout import Errors, Split, errors, split
 from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
 from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, Verdict
-from trawl_ros.diagnosis.screen import Screen, screen
-from trawl_ros.diagnosis.showing import Errors, Split, errors, split
+from trawl_ros.diagnosis.score_test import Screen, screen
 from trawl_ros.diagnosis.weighing import Weighed
-from trawl_ros.effects.acting import acting
-from trawl_ros.effects.catalogue import catalogue
+from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.identification.from_gear import board_prior
-from trawl_ros.identification.window_records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor

@@ -14,10 +14,10 @@ from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.naming import refitted
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import EMPIRICAL_OVER_PLACEBO, LEAST_BIC
-from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.diagnosis.score_test import Screen
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, weigh
-from trawl_ros.empirical.dictionary import dictionary
-from trawl_ros.empirical.term import Term
+from trawl_ros.effects.base.term import Term
+from trawl_ros.effects.empirical.library import dictionary
 from trawl_ros.solver.predict import Predictor
 
 PLACEBOS = 20

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2, norm
 
-from trawl_ros.identification.error_terms import GROUP_OF, TowErrors, spread
-from trawl_ros.identification.fit import Fit
-from trawl_ros.identification.marginal import marginalise, triangular
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, spread
+from trawl_ros.estimation.fit.fit import Fit
+from trawl_ros.estimation.fit.nuisance import marginalise, triangular
 from trawl_ros.model.board import COEFFICIENTS
 
 BLIND = 1e-9

@@ -6,11 +6,11 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
 from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refit
-from trawl_ros.effects.acting import Active
-from trawl_ros.identification.estimator import POOR, Estimator
-from trawl_ros.identification.linearised import Linearised
-from trawl_ros.identification.prior import BoardPrior
-from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.effects.effect_set import Active
+from trawl_ros.estimation.fit.estimator import POOR, Estimator
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor

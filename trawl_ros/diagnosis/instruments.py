@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from trawl_ros.identification.over_ground import OverGround
-from trawl_ros.identification.prior import BoardPrior
-from trawl_ros.identification.screening import Screening
-from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.screening import Screening
+from trawl_ros.estimation.windows.over_ground import OverGround
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.evidence import BLIND
 from trawl_ros.diagnosis.patterns import SHAPES, Pattern
-from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.diagnosis.score_test import Screen
 
 TELLING = 3.0
 """Standard deviations from where a pattern is worth a word."""

@@ -20,10 +20,10 @@ from trawl_ros.diagnosis.rules import (
     Verdict,
     judge,
 )
-from trawl_ros.diagnosis.screen import Screen
+from trawl_ros.diagnosis.score_test import Screen
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
-from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.relinearise import with_those_of
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.relinearise import with_those_of
 from trawl_ros.solver.predict import Predictor
 
 REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)

@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.candidates import Candidate, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
-from trawl_ros.diagnosis.screen import Screen
-from trawl_ros.errors import NoSteadyState
-from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.identification.linearised import Linearised, linearise
-from trawl_ros.identification.over_ground import GroundTrack
-from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.estimation.fit.linearised import Linearised, linearise
+from trawl_ros.estimation.windows.over_ground import GroundTrack
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.solver.predict import Predictor
 
 STATES = 3

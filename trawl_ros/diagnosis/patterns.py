@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.identification.channels import MEASURED
-from trawl_ros.identification.linearised import Linearised
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.records.channels import MEASURED
 
 VARIABLES = ('warp length', 'warp length²', 'speed', 'warp length × speed', 'time in tow', 'course')
 """Variables that a channel's residuals may follow, beside a constant."""

@@ -7,13 +7,13 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, extended_prior
 from trawl_ros.diagnosis.rules import NEAR
-from trawl_ros.identification.estimate import Estimate, on_bound
-from trawl_ros.identification.estimator import Estimator
-from trawl_ros.identification.estimator_options import EstimatorOptions
-from trawl_ros.identification.fit import Fit
-from trawl_ros.identification.linearised import Linearised
-from trawl_ros.identification.prior import BoardPrior
-from trawl_ros.identification.window_records import SteadyWindow
+from trawl_ros.estimation.fit.estimate import Estimate, on_bound
+from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.fit import Fit
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import yaml
 
+from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.weighing import Weighed
@@ -18,7 +19,6 @@ from trawl_ros.gear.records import (
     SourceRecord,
 )
 from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.version import __version__
 
 RECORDINGS = ('.mcap', '.db3', '.csv')
 PIECE = 1 << 20

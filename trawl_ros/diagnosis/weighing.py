@@ -9,7 +9,7 @@ from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
-from trawl_ros.diagnosis.screen import Screen, blocks_of
+from trawl_ros.diagnosis.score_test import Screen, blocks_of
 from trawl_ros.model.board import COEFFICIENTS
 
 DRAWS = 100

@@ -1,0 +1,1 @@
+"""Physics and errors of instruments beyond the paper: registry, and the set of a gear file."""

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from trawl_ros.errors import GearError, TrawlError
+from trawl_ros.core.errors import GearError, TrawlError
+from trawl_ros.core.resources import share_path
+from trawl_ros.core.schema import load_yaml, validated
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.schema import load_yaml, validated
-from trawl_ros.share import share_path
 
 
 def load_gear(path: str | Path) -> GearRecord:

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from trawl_ros.schema import FrozenDict, Numbers, Record
+from trawl_ros.core.schema import FrozenDict, Numbers, Record
 
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]

@@ -1,1 +1,1 @@
-"""Emulated instruments of a trawler: truth in, samples with errors out. No ROS."""
+"""Instruments of a trawler: truth in, samples with errors out; no ROS."""

@@ -2,9 +2,9 @@
 
 import math
 
-from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import RangeParameters
-from trawl_ros.instruments.samples import RangeSample
+from trawl_ros.records.samples import RangeSample
 
 
 def within(distance: float, low: float, high: float) -> float:

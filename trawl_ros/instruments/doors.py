@@ -5,17 +5,13 @@ import math
 import numpy as np
 
 from trawl_ros.instruments.distance import within
-from trawl_ros.instruments.faults import Faulty
-from trawl_ros.instruments.instrument import Draws, Instrument
-from trawl_ros.instruments.parameters import (
-    AttitudeParameters,
-    DoorParameters,
-    SpreadParameters,
-)
+from trawl_ros.instruments.errors.faults import Faulty
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.parameters import AttitudeParameters, DoorParameters, SpreadParameters
 from trawl_ros.instruments.pressure import PressureInstrument
-from trawl_ros.instruments.samples import AttitudeSample, RangeSample, Sample
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.simulation.truth import SIDES, DoorTruth, Truth
+from trawl_ros.records.samples import AttitudeSample, RangeSample, Sample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import SIDES, DoorTruth, Truth
 
 Doors = tuple[DoorTruth, DoorTruth]
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.instruments.distance import within
-from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
-from trawl_ros.instruments.samples import RangeSample, Sample
-from trawl_ros.instruments.schools import inside
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.simulation.truth import SchoolTruth, Truth
+from trawl_ros.instruments.sonar.schools import inside
+from trawl_ros.records.samples import RangeSample, Sample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import SchoolTruth, Truth
 
 RINGS, RAYS_PER_RING = 4, 12
 

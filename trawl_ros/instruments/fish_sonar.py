@@ -5,14 +5,14 @@ import math
 import numpy as np
 from scipy.special import expit
 
-from trawl_ros.instruments.draws import generator
-from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.random_streams import generator
 from trawl_ros.instruments.parameters import FishSonarParameters
-from trawl_ros.instruments.samples import SchoolsSample
-from trawl_ros.instruments.schools import fish_in
 from trawl_ros.instruments.sonar.absorption import absorption
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.simulation.truth import SchoolTruth, VesselTruth
+from trawl_ros.instruments.sonar.schools import fish_in
+from trawl_ros.records.samples import SchoolsSample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import SchoolTruth, VesselTruth
 
 Around = tuple[VesselTruth, tuple[SchoolTruth, ...]]
 """The ship and the schools around her."""

@@ -5,8 +5,10 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from trawl_ros.errors import InstrumentError, TrawlError
-from trawl_ros.instruments.error_records import (
+from trawl_ros.core.errors import InstrumentError, TrawlError
+from trawl_ros.core.resources import share_path
+from trawl_ros.core.schema import Record, load_yaml, validated
+from trawl_ros.instruments.errors.records import (
     AngleErrors,
     ForceErrors,
     LengthErrors,
@@ -16,10 +18,8 @@ from trawl_ros.instruments.error_records import (
     SpeedErrors,
     TurnErrors,
 )
+from trawl_ros.instruments.errors.timing import Sent, Timed
 from trawl_ros.instruments.sonar.records import SweepRecord
-from trawl_ros.instruments.timing_records import Sent, Timed
-from trawl_ros.schema import Record, load_yaml, validated
-from trawl_ros.share import share_path
 
 BASE = 'base'
 

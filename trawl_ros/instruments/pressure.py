@@ -1,9 +1,9 @@
 """Pressure sensors of doors and trawl sonar."""
 
-from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import PressureParameters
-from trawl_ros.instruments.samples import PressureSample
-from trawl_ros.instruments.surroundings import PressureAt
+from trawl_ros.records.samples import PressureSample
+from trawl_ros.records.surroundings import PressureAt
 
 
 class PressureInstrument(Instrument[float, PressureSample]):

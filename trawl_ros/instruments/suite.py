@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 
 from trawl_ros.instruments.doors import DoorInstruments
-from trawl_ros.instruments.fault_plan import FaultPlan, PlannedFault
-from trawl_ros.instruments.faults import FaultPanel, Faulty
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
+from trawl_ros.instruments.errors.faults import FaultPanel, Faulty
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters
-from trawl_ros.instruments.samples import Sample
-from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.instruments.winch import WinchInstruments
-from trawl_ros.simulation.truth import Truth
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import Truth
 
 
 class InstrumentSuite:

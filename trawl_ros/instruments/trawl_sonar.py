@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 
-from trawl_ros.instruments.bursts import BurstModel, Bursts
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument, within
-from trawl_ros.instruments.draws import generator
-from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.random_streams import generator
+from trawl_ros.instruments.errors.sampling import TOLERANCE
 from trawl_ros.instruments.parameters import (
     BottomParameters,
     OpeningParameters,
@@ -15,20 +17,19 @@ from trawl_ros.instruments.parameters import (
     SweepParameters,
 )
 from trawl_ros.instruments.pressure import PressureInstrument
-from trawl_ros.instruments.samples import (
+from trawl_ros.instruments.sonar.detection import first_echoes
+from trawl_ros.instruments.sonar.echoes import Ping
+from trawl_ros.instruments.sonar.reading import read_openings
+from trawl_ros.instruments.sonar.sweep import Luck, Sweep, image_of
+from trawl_ros.records.samples import (
     RangeSample,
     Sample,
     SonarImageSample,
     SonarPointsSample,
     SonarScanSample,
 )
-from trawl_ros.instruments.sampling import SECOND, TOLERANCE
-from trawl_ros.instruments.sonar.detection import first_echoes
-from trawl_ros.instruments.sonar.echoes import Ping
-from trawl_ros.instruments.sonar.reading import read_openings
-from trawl_ros.instruments.sonar.sweep import Luck, Sweep, image_of
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.simulation.truth import NetTruth, Truth
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import NetTruth, Truth
 
 
 class TrawlSonar(Instrument[Truth, Sweep]):

@@ -4,20 +4,20 @@ import math
 
 import numpy as np
 
+from trawl_ros.core.geodesy import Datum, to_latitude_longitude
 from trawl_ros.instruments.echo_sounder import EchoSounder
-from trawl_ros.instruments.faults import Faulty
+from trawl_ros.instruments.errors.faults import Faulty
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
 from trawl_ros.instruments.fish_sonar import FishSonar
-from trawl_ros.instruments.geodesy import Datum, to_latitude_longitude
-from trawl_ros.instruments.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import (
     FixParameters,
     HeadingParameters,
     VelocityParameters,
     VesselParameters,
 )
-from trawl_ros.instruments.samples import FixSample, HeadingSample, Sample, VelocitySample
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.simulation.truth import Truth
+from trawl_ros.records.samples import FixSample, HeadingSample, Sample, VelocitySample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.truth import Truth
 
 Moving = tuple[np.ndarray, float]
 """A velocity (3,) in m/s and the rate of turn in rad/s."""

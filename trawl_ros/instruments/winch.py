@@ -2,10 +2,10 @@
 
 import math
 
-from trawl_ros.instruments.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Draws, Instrument
 from trawl_ros.instruments.parameters import WinchParameters
-from trawl_ros.instruments.samples import Sample, WinchSample
-from trawl_ros.simulation.truth import SIDES, Truth, WinchTruth
+from trawl_ros.records.samples import Sample, WinchSample
+from trawl_ros.records.truth import SIDES, Truth, WinchTruth
 
 
 class CountingWheel:

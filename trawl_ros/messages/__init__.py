@@ -1,1 +1,1 @@
-"""The one boundary between the project's records and ROS messages."""
+"""The one boundary between records and ROS messages, and their bytes (CDR)."""

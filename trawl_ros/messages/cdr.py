@@ -9,7 +9,7 @@ from typing import Any
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
 
-from trawl_ros.errors import MessageError
+from trawl_ros.core.errors import MessageError
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 """Types are named 'package/msg/Name'; its classes are what the project calls messages."""

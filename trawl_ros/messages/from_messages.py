@@ -11,9 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.errors import MessageError
-from trawl_ros.foreign import short
-from trawl_ros.instruments.samples import (
+from trawl_ros.core.errors import MessageError
+from trawl_ros.core.foreign import short
+from trawl_ros.messages.pieces import ABSENT
+from trawl_ros.messages.point_clouds import read_point_cloud
+from trawl_ros.messages.rotations import about_z, to_angles
+from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.messages.truth_to_messages import SCHOOL_FIELDS
+from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -27,13 +32,8 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.messages.pieces import ABSENT
-from trawl_ros.messages.point_clouds import read_point_cloud
-from trawl_ros.messages.rotations import about_z, to_angles
-from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.messages.topics import RANGES, WINCH_NAMES
-from trawl_ros.messages.truth_to_messages import SCHOOL_FIELDS
-from trawl_ros.simulation.truth import (
+from trawl_ros.records.topics import RANGES, WINCH_NAMES
+from trawl_ros.records.truth import (
     DoorTruth,
     NetTruth,
     SchoolTruth,

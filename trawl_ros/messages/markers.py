@@ -12,8 +12,8 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import header
-from trawl_ros.messages.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
-from trawl_ros.simulation.truth import SIDES, DoorTruth, GearPicture, Polyline, SchoolTruth
+from trawl_ros.records.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
+from trawl_ros.records.truth import SIDES, DoorTruth, GearPicture, Polyline, SchoolTruth
 
 FULL_SCALE = 200e3
 """Tension (N) that is drawn in full red; fixed, so that colours compare between pictures."""

@@ -11,7 +11,7 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import header
-from trawl_ros.messages.topics import TOPICS, WINCH_NAMES
+from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 
 TopicMessage = tuple[str, Any]
 

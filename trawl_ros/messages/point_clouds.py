@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.errors import MessageError
+from trawl_ros.core.errors import MessageError
 
 _WIDTH = np.dtype('<f4').itemsize
 

@@ -5,9 +5,8 @@ from typing import Any
 from rosbags.typesys.stores.ros2_jazzy import builtin_interfaces__msg__Time as Time
 from rosbags.typesys.stores.ros2_jazzy import std_msgs__msg__Header as Header
 
-from trawl_ros.errors import MessageError
-
-SECOND = 1_000_000_000
+from trawl_ros.core.errors import MessageError
+from trawl_ros.core.time import SECOND
 
 
 def to_time(stamp: int) -> Time:

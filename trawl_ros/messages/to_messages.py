@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.instruments.samples import (
+from trawl_ros.messages import pieces
+from trawl_ros.messages.pieces import UNKNOWN_VARIANCE, TopicMessage
+from trawl_ros.messages.point_clouds import point_cloud
+from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -20,10 +23,7 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.messages import pieces
-from trawl_ros.messages.pieces import UNKNOWN_VARIANCE, TopicMessage
-from trawl_ros.messages.point_clouds import point_cloud
-from trawl_ros.messages.topics import RANGES
+from trawl_ros.records.topics import RANGES
 
 FIELDS_OF_VIEW = {
     'spread': 0.35,

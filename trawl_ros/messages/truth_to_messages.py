@@ -1,15 +1,17 @@
 """Conversion of truth into messages, each as (relative topic name, message)."""
 
+from typing import Any
+
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.messages import pieces
-from trawl_ros.messages.pieces import TopicMessage
+from trawl_ros.messages.pieces import TopicMessage, vector
 from trawl_ros.messages.point_clouds import point_cloud
 from trawl_ros.messages.rotations import about_z, to_quaternion
-from trawl_ros.messages.stamps import to_time
-from trawl_ros.messages.topics import DOOR_FRAMES
-from trawl_ros.simulation.truth import (
+from trawl_ros.messages.stamps import header, to_time
+from trawl_ros.records.topics import DOOR_FRAMES, MAP, SONAR, TRANSFORMS, VESSEL
+from trawl_ros.records.truth import (
     SIDES,
     DoorTruth,
     NetTruth,
@@ -163,3 +165,26 @@ def _seabed(stamp: int, seabed: SeabedTruth) -> TopicMessage:
     topic = 'truth/seabed'
     depths = pieces.vector((seabed.under_ship, seabed.under_headrope, 0.0))
     return topic, ros.geometry_msgs__msg__Vector3Stamped(pieces.topic_header(stamp, topic), depths)
+
+
+def transforms_message(truth: Truth) -> TopicMessage:
+    """Return the poses of all frames in ``map`` at one instant."""
+    poses: dict[str, tuple[np.ndarray, Any]] = {
+        VESSEL: (truth.vessel.position, to_quaternion(0.0, 0.0, truth.vessel.heading)),
+        SONAR: (truth.net.sonar_position, truth.net.sonar_orientation),
+    }
+    for side, door in zip(SIDES, truth.doors, strict=True):
+        poses[DOOR_FRAMES[side]] = (door.position, door.orientation)
+    return TRANSFORMS.name, ros.tf2_msgs__msg__TFMessage(
+        [_transform(truth.stamp, frame, *pose) for frame, pose in poses.items()]
+    )
+
+
+def _transform(stamp: int, frame: str, position: np.ndarray, orientation: Any) -> Any:
+    return ros.geometry_msgs__msg__TransformStamped(
+        header(stamp, MAP),
+        frame,
+        ros.geometry_msgs__msg__Transform(
+            vector(position), ros.geometry_msgs__msg__Quaternion(*map(float, orientation))
+        ),
+    )

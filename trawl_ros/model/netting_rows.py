@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.errors import GearError
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.limits import GEAR_NODES
 from trawl_ros.gear.records import SectionRecord
-from trawl_ros.limits import GEAR_NODES
 
 SLICES = 64
 """Slices along a row over which the sections' properties are summed."""

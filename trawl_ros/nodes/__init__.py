@@ -1,0 +1,1 @@
+"""ROS nodes, one file per executable; no physics."""

@@ -13,26 +13,21 @@ from trawl_ros.control.autopilot import (
     Target,
     ToSchool,
 )
-from trawl_ros.errors import ScenarioError, TrawlError
-from trawl_ros.instruments.geodesy import Datum
+from trawl_ros.core.errors import ScenarioError, TrawlError
+from trawl_ros.core.geodesy import Datum
+from trawl_ros.core.schema import load_yaml, validated
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.parameters import load_instruments
-from trawl_ros.instruments.samples import (
-    FixSample,
-    HeadingSample,
-    SchoolsSample,
-    VelocitySample,
-)
 from trawl_ros.messages.commands import VESSEL_COMMAND, vessel_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.parameters import Number, ParameterError, Parameters, Text
-from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.reading import possible_sample
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import Progress
+from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.parameters import Number, ParameterError, Parameters, Text
+from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.reading import possible_sample
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
 from trawl_ros.scenario.driving import SteerRecord
-from trawl_ros.schema import load_yaml, validated
 
 HEADING = 'vessel/heading'
 SENSORS = (

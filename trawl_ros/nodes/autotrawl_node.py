@@ -7,17 +7,17 @@ from typing import Any, ClassVar
 
 from trawl_ros.control.autotrawl import Autotrawl
 from trawl_ros.control.autotrawl_records import AutotrawlSettings
-from trawl_ros.errors import MessageError
-from trawl_ros.instruments.samples import WinchSample
+from trawl_ros.core.errors import MessageError
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.commands import WINCH_COMMAND, winch_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.parameters import Number, Text
-from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.reading import possible_sample
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import Progress
+from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.parameters import Number, Text
+from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.reading import possible_sample
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.samples import WinchSample
 
 WINCH = 'winch/joint_states'
 OFF = 'off'

@@ -7,19 +7,19 @@ from typing import Any, ClassVar
 from rclpy.qos import HistoryPolicy
 
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.errors import TrawlError
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import CLOCK
 from trawl_ros.messages.truth_to_messages import clock_message
-from trawl_ros.nodes.excerpt import Excerpt
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.pacer import Pacer
-from trawl_ros.nodes.parameters import Flag, Names, Number, Text
-from trawl_ros.nodes.qos import PUBLISHED_DEPTH
-from trawl_ros.nodes.replay import replayed
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import STALLED_S, Consumers
+from trawl_ros.nodes.playback.excerpt import Excerpt
+from trawl_ros.nodes.playback.replay import replayed
+from trawl_ros.nodes.runtime.credit import STALLED_S, Consumers
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.pacer import Pacer
+from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
+from trawl_ros.nodes.runtime.qos import PUBLISHED_DEPTH
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.topics import CLOCK
 
 BURST_S = 0.05
 TICK_S = 0.002

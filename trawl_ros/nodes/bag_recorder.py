@@ -6,30 +6,24 @@ from typing import Any, ClassVar
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from trawl_ros.bags.mcap_output import COMPRESSIONS
-from trawl_ros.bags.qos import dump_profiles
-from trawl_ros.bags.writer import BagWriter, describe
-from trawl_ros.errors import TrawlError
+from trawl_ros.bags.storage.mcap_output import COMPRESSIONS
+from trawl_ros.bags.storage.qos import dump_profiles
+from trawl_ros.bags.storage.stored import describe
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import (
-    CLOCK,
-    COMMANDS,
-    ESTIMATES,
-    INSTRUMENTS,
-    TRUTH,
-    absolute,
-)
-from trawl_ros.nodes.graph_checks import SYNC
-from trawl_ros.nodes.node import DIAGNOSTICS, TrawlNode
-from trawl_ros.nodes.parameters import Names, Number, Text
-from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.recorded_qos import matching, profiles_of
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.stamping import stamp_in
-from trawl_ros.nodes.sync import Progress
-from trawl_ros.nodes.topic_choice import ALL, TopicChoice
+from trawl_ros.nodes.playback.recorded_qos import matching, profiles_of
+from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
+from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.graph_checks import SYNC
+from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.runtime.parameters import Names, Number, Text
+from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.runtime.stamping import stamp_in
+from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, TRUTH, absolute
 
 CONTRACT = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
 NEVER = (CLOCK.name, '/rosout', '/parameter_events')

@@ -8,25 +8,25 @@ from typing import Any, ClassVar
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
+from trawl_ros.core.files import empty_folder
 from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, unread
-from trawl_ros.diagnosis.words import headline
-from trawl_ros.diagnosis.writing import write_diagnosis
-from trawl_ros.files import empty_folder
+from trawl_ros.diagnosis.report.sentences import headline
+from trawl_ros.diagnosis.report.writing import write_diagnosis
+from trawl_ros.estimation.from_gear import finder_for
+from trawl_ros.estimation.windows.records import RejectedWindow, SteadyWindow
 from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.identification.from_gear import finder_for
-from trawl_ros.identification.window_records import RejectedWindow, SteadyWindow
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.nodes.finding_status import CALM, finding_statuses
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.parameters import Number, Text
-from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.rewinding import Reached, Rewinding
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import Progress
-from trawl_ros.nodes.watching import Tried, WatchingThread
-from trawl_ros.nodes.window_parameters import WINDOW_SPECS, window_options
+from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.parameters import Number, Text
+from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.rewinding import Reached, Rewinding
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.workers.diagnosis_worker import Tried, WatchingThread
+from trawl_ros.nodes.workers.finding_status import CALM, finding_statuses
+from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
+from trawl_ros.records.channels import CHANNELS
 
 FINDINGS = 'discrepancy/findings'
 FINISH = 'discrepancy/finish'

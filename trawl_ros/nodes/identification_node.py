@@ -8,21 +8,16 @@ from typing import Any, ClassVar
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
-from trawl_ros.errors import TrawlError
-from trawl_ros.files import empty_folder, packaged
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import empty_folder, packaged
+from trawl_ros.estimation.checkpoint.file import load_state, save_state
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.from_gear import estimator_options, identification_for, predictor_for
+from trawl_ros.estimation.pipeline import Identification
+from trawl_ros.estimation.planning.next_manoeuvre import Advice, Adviser
+from trawl_ros.estimation.report.report import report
+from trawl_ros.estimation.report.writing import write_report
 from trawl_ros.gear.load import load_gear
-from trawl_ros.identification.channels import CHANNELS
-from trawl_ros.identification.estimate import Estimate
-from trawl_ros.identification.from_gear import (
-    estimator_options,
-    identification_for,
-    predictor_for,
-)
-from trawl_ros.identification.pipeline import Identification
-from trawl_ros.identification.planning_next import Advice, Adviser
-from trawl_ros.identification.report import report
-from trawl_ros.identification.saving import load_state, save_state
-from trawl_ros.identification.writing import write_report
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
     COVARIANCE,
@@ -33,21 +28,22 @@ from trawl_ros.messages.estimates import (
     innovation_message,
 )
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.nodes.advising import AdvisingThread
-from trawl_ros.nodes.estimate_status import (
+from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.parameters import Flag, Text
+from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.rewinding import Rewinding
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.workers.advice_worker import AdvisingThread
+from trawl_ros.nodes.workers.estimate_status import (
     advice_status,
     identification_statuses,
     innovations_of,
 )
-from trawl_ros.nodes.identification_worker import IdentificationWorker
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.outcome import Outcome
-from trawl_ros.nodes.parameters import Flag, Text
-from trawl_ros.nodes.qos import CONSUMER
-from trawl_ros.nodes.rewinding import Rewinding
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import Progress
-from trawl_ros.nodes.window_parameters import WINDOW_SPECS, window_options
+from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
+from trawl_ros.nodes.workers.outcome import Outcome
+from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.scenario.scenario import true_coefficients
 
 STATUS = 'identification/status'

@@ -6,32 +6,32 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from trawl_ros.effects.acting import acting
-from trawl_ros.effects.showing import Showing
-from trawl_ros.errors import InstrumentError, MessageError
-from trawl_ros.files import packaged
+from trawl_ros.core.errors import InstrumentError, MessageError
+from trawl_ros.core.files import packaged
+from trawl_ros.core.limits import TRUTH
+from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.sensor_effects import Showing
 from trawl_ros.gear.load import load_gear
-from trawl_ros.instruments.fault_plan import FaultPlan, PlannedFault
-from trawl_ros.instruments.faults import FaultPanel, Faulty
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
+from trawl_ros.instruments.errors.faults import FaultPanel, Faulty
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
-from trawl_ros.instruments.samples import Sample
-from trawl_ros.instruments.surroundings import Surroundings
-from trawl_ros.limits import TRUTH
 from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import INSTRUMENTS
 from trawl_ros.model.gear_model import build_water
-from trawl_ros.nodes.joining import Joiner
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.parameters import Names, Number, Text
-from trawl_ros.nodes.qos import CONSUMER, STREAM
-from trawl_ros.nodes.sync import Consumers, Progress
+from trawl_ros.nodes.runtime.credit import Consumers, Progress
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.parameters import Names, Number, Text
+from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
+from trawl_ros.nodes.runtime.synchroniser import Joiner
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.surroundings import Surroundings
+from trawl_ros.records.topics import INSTRUMENTS
 from trawl_ros.scenario.scenario import load_scenario
-from trawl_ros.scenario.surroundings import build_surroundings
+from trawl_ros.scenario.sea import build_surroundings
 
 SEABED = 'truth/seabed'
 """Not finite where a scenario has no seabed."""

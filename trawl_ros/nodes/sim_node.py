@@ -7,32 +7,31 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
-from trawl_ros.effects.acting import acting
-from trawl_ros.errors import MessageError, TrawlError
-from trawl_ros.files import packaged
+from trawl_ros.core.errors import MessageError, TrawlError
+from trawl_ros.core.files import packaged
+from trawl_ros.core.time import SECOND
+from trawl_ros.effects.effect_set import acting
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import CLOCK, TRANSFORMS, TRUTH
-from trawl_ros.messages.transforms import transforms_message
-from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
+from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.nodes.message_classes import installed
-from trawl_ros.nodes.node import TrawlNode
-from trawl_ros.nodes.pacer import Pacer
-from trawl_ros.nodes.parameters import Flag, Names, Number, Text
-from trawl_ros.nodes.qos import STREAM
-from trawl_ros.nodes.runtime import run
-from trawl_ros.nodes.sync import SILENT_S, STALLED_S, Consumers
+from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
+from trawl_ros.nodes.runtime.message_classes import installed
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.pacer import Pacer
+from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
+from trawl_ros.nodes.runtime.qos import STREAM
+from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import CommandedTow, Tow
+from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
+from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 from trawl_ros.simulation.simulation import Command
-from trawl_ros.simulation.truth import Truth
 
 GEAR_MARKERS = 'truth/gear'
 BURST_S = 0.02

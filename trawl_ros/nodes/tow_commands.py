@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from trawl_ros.errors import MessageError
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.commands import (
     VESSEL_COMMAND,
     WINCH_COMMAND,

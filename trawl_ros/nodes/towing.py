@@ -3,12 +3,12 @@
 from dataclasses import replace
 from typing import Protocol
 
-from trawl_ros.effects.acting import NONE, Acting
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.effects.effect_set import NONE, Acting
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
-from trawl_ros.simulation.truth import Truth
 from trawl_ros.solver.stepper import StepFailed
 
 

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from trawl_ros.instruments.faults import Faulty
-from trawl_ros.instruments.samples import Sample
+from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.messages.from_messages import schools_truth, seabed_truth, vessel_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
-from trawl_ros.nodes.parameters import Number, Parameters
-from trawl_ros.nodes.partial_truth import partial_truth
-from trawl_ros.nodes.runtime import run
+from trawl_ros.nodes.runtime.parameters import Number, Parameters
+from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.samples import Sample
 
 ODOMETRY, THROUGH_WATER = 'truth/vessel/odom', 'truth/vessel/velocity_water'
 SCHOOLS, SEABED = 'truth/schools', 'truth/seabed'

@@ -1,1 +1,1 @@
-"""Figures of a tow from a bag."""
+"""Pictures of the tow in a bag."""

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from trawl_ros.errors import TrawlError
-from trawl_ros.files import empty_folder, write_figure
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import empty_folder, write_figure
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.messages.topics import NAMESPACE
 from trawl_ros.model.gear_model import build_water
 from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
@@ -21,10 +21,10 @@ from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.records import SonarPicture, Tow
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.plots.sonar import sonar_figure
-from trawl_ros.plots.style import DPI, clock
 from trawl_ros.plots.sweeps import read_sweeps
 from trawl_ros.plots.track import track_figure
-from trawl_ros.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.records.topics import NAMESPACE
+from trawl_ros.report.style import DPI, clock
 
 EARLY_MIDDLE_LATE = (0.05, 0.5, 0.95)
 """Parts of a tow at which the gear is drawn unless told otherwise."""

@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.artist import Artist
 
-from trawl_ros.files import written
-from trawl_ros.plots import gear, sonar, style
+from trawl_ros.core.files import written
+from trawl_ros.plots import gear, sonar
 from trawl_ros.plots.records import GearShape, SonarPicture, Tow
+from trawl_ros.report import style
 
 MOST_FRAMES = 100
 """However long the tow was: a frame of 0.8 m pixels is held in memory until the film is done."""

@@ -12,9 +12,9 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from trawl_ros.messages.markers import FULL_SCALE, RAMP
-from trawl_ros.messages.topics import DOOR_FRAMES, VESSEL
-from trawl_ros.plots import style
 from trawl_ros.plots.records import SCHOOLS, GearShape, Strand
+from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
+from trawl_ros.report import style
 
 BOLD = ('_warp', '_bridle', 'headrope', 'footrope', 'mouth', *DOOR_FRAMES.values())
 """Ends of the names of what is drawn bold."""

@@ -12,9 +12,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
 
-from trawl_ros.plots import style
 from trawl_ros.plots.records import Series, Tow
-from trawl_ros.simulation.truth import SIDES
+from trawl_ros.records.truth import SIDES
+from trawl_ros.report import style
 
 LONGEST_PERIODS, LEAST_SILENCE_S = 4.0, 10.0
 """A sensor is silent when nothing has come for so many of its periods, and for so long (s)."""

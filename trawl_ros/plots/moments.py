@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.messages.stamps import SECOND
-from trawl_ros.messages.topics import absolute
+from trawl_ros.core.time import SECOND
 from trawl_ros.plots.records import Tow
+from trawl_ros.records.topics import absolute
 
 GEAR, MOUTH, POSE = 'truth/gear', 'truth/net/mouth', 'truth/sonar/pose'
 SECTION, IMAGE, SCAN = 'truth/sonar/section', 'sonar/image', 'sonar/scan'

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from trawl_ros.files import write_text
-from trawl_ros.plots import style
+from trawl_ros.core.files import write_text
+from trawl_ros.core.version import __version__
 from trawl_ros.plots.records import Tow
-from trawl_ros.reporting import page
-from trawl_ros.version import __version__
+from trawl_ros.report import style
+from trawl_ros.report.rendering import page
 
 PAGE = 'index.html'
 

@@ -9,8 +9,13 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.errors import BagError, MessageError
-from trawl_ros.instruments.samples import (
+from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.time import SECOND
+from trawl_ros.messages.from_messages import to_sample, winch_truth
+from trawl_ros.messages.rotations import about_z, to_angles
+from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.plots.records import Series, Tow
+from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -20,12 +25,8 @@ from trawl_ros.instruments.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.messages.from_messages import to_sample, winch_truth
-from trawl_ros.messages.rotations import about_z, to_angles
-from trawl_ros.messages.stamps import SECOND, stamp_of
-from trawl_ros.messages.topics import absolute
-from trawl_ros.plots.records import Series, Tow
-from trawl_ros.simulation.truth import SIDES
+from trawl_ros.records.topics import absolute
+from trawl_ros.records.truth import SIDES
 
 MOST_POINTS = 20_000
 """Of one topic: where there are more, every other one is left out until there are not."""

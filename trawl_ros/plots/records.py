@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.instruments.samples import SonarImageSample, SonarScanSample
-from trawl_ros.messages.stamps import SECOND
+from trawl_ros.core.time import SECOND
+from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
 SCHOOLS = 'schools'
 """Name of what is drawn of fish."""

@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.rotations import to_quaternion
-from trawl_ros.messages.topics import VESSEL, WINCH_NAMES
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, corners
 from trawl_ros.plots.records import SCHOOLS, GearShape, Strand, Tow
-from trawl_ros.plots.style import NETTING, PORT, STARBOARD
-from trawl_ros.simulation.truth import SIDES
+from trawl_ros.records.topics import VESSEL, WINCH_NAMES
+from trawl_ros.records.truth import SIDES
+from trawl_ros.report.style import NETTING, PORT, STARBOARD
 
 FROM_MARKERS = 'truth'
 FROM_TRUTH = 'truth of doors and mouth; warps and bridles drawn straight'

@@ -5,9 +5,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trawl_ros.instruments.samples import SonarImageSample, SonarScanSample
-from trawl_ros.plots import style
 from trawl_ros.plots.records import SonarPicture
+from trawl_ros.records.samples import SonarImageSample, SonarScanSample
+from trawl_ros.report import style
 
 PIXELS = 480
 """Width and height of the picture that a sweep becomes, however many beams and cells it has."""

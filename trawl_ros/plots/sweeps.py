@@ -7,21 +7,12 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from trawl_ros.errors import MessageError
-from trawl_ros.instruments.samples import SonarImageSample, SonarScanSample
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.point_clouds import read_point_cloud
-from trawl_ros.plots.moments import (
-    IMAGE,
-    MOUTH,
-    POSE,
-    SCAN,
-    SECTION,
-    Moment,
-    corners,
-    read_moments,
-)
+from trawl_ros.plots.moments import IMAGE, MOUTH, POSE, SCAN, SECTION, Moment, corners, read_moments
 from trawl_ros.plots.records import SonarPicture, Tow
+from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
 Sweep = tuple[SonarImageSample, SonarScanSample]
 

@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trawl_ros.instruments.geodesy import Datum, to_east_north
-from trawl_ros.plots import style
+from trawl_ros.core.geodesy import Datum, to_east_north
 from trawl_ros.plots.records import Series, Tow
+from trawl_ros.report import style
 
 ARROWS = 9
 """So many places along the track have arrows of heading and current."""

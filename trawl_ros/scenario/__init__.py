@@ -1,1 +1,1 @@
-"""Scenario files: commands of ship and winches, gear, water and instruments of a trial."""
+"""A trial as a file: what ship and winches do, with which gear, water and instruments."""

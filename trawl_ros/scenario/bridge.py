@@ -5,22 +5,22 @@ from dataclasses import replace
 
 from trawl_ros.control.autopilot import Autopilot, AutopilotSettings
 from trawl_ros.control.autotrawl import Autotrawl
-from trawl_ros.instruments.fault_plan import FaultPlan
-from trawl_ros.instruments.faults import FaultPanel
-from trawl_ros.instruments.geodesy import Datum
-from trawl_ros.instruments.samples import (
+from trawl_ros.core.geodesy import Datum
+from trawl_ros.instruments.errors.fault_plan import FaultPlan
+from trawl_ros.instruments.errors.faults import FaultPanel
+from trawl_ros.instruments.vessel import VesselInstruments
+from trawl_ros.instruments.winch import WinchInstruments
+from trawl_ros.records.samples import (
     FixSample,
     HeadingSample,
     SchoolsSample,
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.instruments.vessel import VesselInstruments
-from trawl_ros.instruments.winch import WinchInstruments
+from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.scenario import Scenario
 from trawl_ros.simulation.simulation import Command
-from trawl_ros.simulation.truth import Truth
 
 
 class Bridge:

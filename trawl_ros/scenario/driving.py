@@ -16,8 +16,8 @@ from trawl_ros.control.autopilot import (
     ToSchool,
 )
 from trawl_ros.control.autotrawl_records import AutotrawlSettings
-from trawl_ros.instruments.geodesy import Datum, to_east_north
-from trawl_ros.schema import Record
+from trawl_ros.core.geodesy import Datum, to_east_north
+from trawl_ros.core.schema import Record
 
 Degrees = Annotated[float, Field(ge=-360, le=360)]
 Metres = Annotated[float, Field(ge=-500_000, le=500_000)]

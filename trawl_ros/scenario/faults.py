@@ -4,10 +4,10 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
-from trawl_ros.errors import InstrumentError
-from trawl_ros.instruments.fault_plan import PlannedFault
-from trawl_ros.instruments.faults import parse_fault
-from trawl_ros.schema import Record
+from trawl_ros.core.errors import InstrumentError
+from trawl_ros.core.schema import Record
+from trawl_ros.instruments.errors.fault_plan import PlannedFault
+from trawl_ros.instruments.errors.faults import parse_fault
 
 MINUTE = 60.0
 

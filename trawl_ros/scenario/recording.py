@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.pieces import TopicMessage
-from trawl_ros.messages.stamps import SECOND
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.messages.topics import PICTURES
 from trawl_ros.messages.truth_to_messages import truth_messages
+from trawl_ros.records.topics import PICTURES
 from trawl_ros.scenario.run import Trial
 
 

@@ -4,11 +4,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from trawl_ros.core.schema import Record
 from trawl_ros.gear.records import CurrentAt, EffectRecord, TemperatureAt
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.faults import FaultRecord
 from trawl_ros.scenario.sea import SeaRecord
-from trawl_ros.schema import Record
 
 Length = Annotated[float, Field(gt=0, lt=3000)]
 Speed = Annotated[float, Field(ge=0.5, le=4)]

@@ -5,15 +5,15 @@ Node and command line share this, so the same scenario gives the same data in bo
 
 import math
 
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.bridge import Bridge
 from trawl_ros.scenario.scenario import Scenario
 from trawl_ros.scenario.sea import build_sea
 from trawl_ros.scenario.steadiness import require_steady_states
 from trawl_ros.simulation.seabed import SeabedTouched
 from trawl_ros.simulation.simulation import NANOSECONDS, Simulation
-from trawl_ros.simulation.truth import Truth
 from trawl_ros.solver.stepper import StepFailed
 
 MOST_UNITS, UNITS_PER_S = 5, 20

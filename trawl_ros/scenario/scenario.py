@@ -9,26 +9,26 @@ from pathlib import Path
 
 import numpy as np
 
-from trawl_ros.effects.acting import Acting, acting
-from trawl_ros.effects.showing import Showing
-from trawl_ros.errors import InstrumentError, ScenarioError, TrawlError
+from trawl_ros.core.errors import InstrumentError, ScenarioError, TrawlError
+from trawl_ros.core.schema import load_yaml, validated
+from trawl_ros.effects.effect_set import Acting, acting
+from trawl_ros.effects.sensor_effects import Showing
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.instruments.fault_plan import PlannedFault
-from trawl_ros.instruments.instrument import Draws
+from trawl_ros.instruments.errors.fault_plan import PlannedFault
+from trawl_ros.instruments.errors.instrument import Draws
 from trawl_ros.instruments.parameters import (
     InstrumentParameters,
     default_instruments_with,
     load_instruments,
 )
 from trawl_ros.instruments.suite import InstrumentSuite
-from trawl_ros.instruments.surroundings import Surroundings
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_water
+from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.scenario.driving import NOBODY, AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
-from trawl_ros.scenario.surroundings import build_surroundings
-from trawl_ros.schema import load_yaml, validated
+from trawl_ros.scenario.sea import build_surroundings
 from trawl_ros.simulation.simulation import Command
 
 

@@ -8,8 +8,11 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from trawl_ros.core.schema import Record
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_water
 from trawl_ros.model.water import Water
-from trawl_ros.schema import Record
+from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.simulation.heave import Heave, irregular_heave, regular_heave
 from trawl_ros.simulation.sea import School, Sea
 from trawl_ros.simulation.seabed import Seabed
@@ -140,4 +143,13 @@ def _school(record: SchoolRecord, water: Water) -> School:
         size=np.array([record.size_east_m, record.size_north_m, record.size_up_m]),
         density=record.density_per_m3,
         velocity=water.current(np.array(-record.depth_m)) + swimming,
+    )
+
+
+def build_surroundings(gear: GearRecord) -> Surroundings:
+    """Build the instruments' record of the water in a gear file."""
+    return Surroundings(
+        build_water(gear).pressure,
+        tuple((level.depth_m, level.temperature_deg_c) for level in gear.water.temperature),
+        gear.water.salinity_g_kg,
     )

@@ -8,8 +8,8 @@ import numpy as np
 
 from trawl_ros.control.autopilot import FollowTrack, HoldCourse, HoldHeading
 from trawl_ros.control.drift import Way
-from trawl_ros.errors import NoSteadyState
-from trawl_ros.instruments.geodesy import Datum
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.core.geodesy import Datum
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.scenario.driving import SteerRecord
 from trawl_ros.scenario.scenario import Scenario

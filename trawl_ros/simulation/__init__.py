@@ -1,0 +1,1 @@
+"""The tow in time: ship, winches, sea and gear; truth comes out."""

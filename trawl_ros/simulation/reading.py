@@ -9,9 +9,7 @@ from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.numerics import transpose
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
-from trawl_ros.simulation.section import section_of, sonar_axes
-from trawl_ros.simulation.ship import Ship, Winch
-from trawl_ros.simulation.truth import (
+from trawl_ros.records.truth import (
     DoorTruth,
     GearPicture,
     NetTruth,
@@ -20,6 +18,8 @@ from trawl_ros.simulation.truth import (
     VesselTruth,
     WinchTruth,
 )
+from trawl_ros.simulation.section import section_of, sonar_axes
+from trawl_ros.simulation.ship import Ship, Winch
 
 
 def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from trawl_ros.records.truth import SchoolTruth, SeabedTruth, single
 from trawl_ros.simulation.heave import Heave
 from trawl_ros.simulation.seabed import Seabed
-from trawl_ros.simulation.truth import SchoolTruth, SeabedTruth, single
 
 
 @dataclass(frozen=True)

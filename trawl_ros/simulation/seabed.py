@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State
-from trawl_ros.simulation.truth import SIDES
+from trawl_ros.records.truth import SIDES
 
 
 class SeabedTouched(ScenarioError):

@@ -4,7 +4,7 @@ import numpy as np
 
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State
-from trawl_ros.simulation.truth import single
+from trawl_ros.records.truth import single
 
 
 def sonar_axes(model: GearModel, state: State) -> np.ndarray:

@@ -4,16 +4,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.effects.acting import NONE, Acting
-from trawl_ros.effects.effect import Situation, sense
-from trawl_ros.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.effects.base.effect import Situation, sense
+from trawl_ros.effects.effect_set import NONE, Acting
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import Tow, halfway
+from trawl_ros.records.truth import GearPicture, Truth
 from trawl_ros.simulation.reading import read_picture, read_truth
 from trawl_ros.simulation.sea import Sea
 from trawl_ros.simulation.seabed import require_clear
 from trawl_ros.simulation.ship import Ship, Winch
-from trawl_ros.simulation.truth import GearPicture, Truth
 from trawl_ros.solver.equilibrium import find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint, block_offsets
 from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest

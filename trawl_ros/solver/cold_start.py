@@ -14,13 +14,7 @@ from trawl_ros.solver.first_guess import (
     shifted_to,
     softened,
 )
-from trawl_ros.solver.relax import (
-    TOLERANCE,
-    WARM_LIMIT,
-    WARM_TIME_STEP,
-    relax,
-    without_attitude,
-)
+from trawl_ros.solver.relax import TOLERANCE, WARM_LIMIT, WARM_TIME_STEP, relax, without_attitude
 
 SOFT_LIMIT, LIMIT = 200, 300
 """Iterations after which a rough shape is given up, with softer ropes and with the real ones."""

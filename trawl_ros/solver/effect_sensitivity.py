@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from trawl_ros.effects.acting import Acting, Active
-from trawl_ros.effects.effect import Situation
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.effects.effect_set import Acting, Active
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP

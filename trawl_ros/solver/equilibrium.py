@@ -4,17 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.effects.acting import acting
-from trawl_ros.effects.effect import Situation, sense
-from trawl_ros.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.effects.base.effect import Situation, sense
+from trawl_ros.effects.effect_set import acting
 from trawl_ros.model.board import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import (
-    Observables,
-    highest_point,
-    observe,
-    outward_normal_lift,
-)
+from trawl_ros.model.observables import Observables, highest_point, observe, outward_normal_lift
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to

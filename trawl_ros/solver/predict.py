@@ -9,8 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from trawl_ros.effects.acting import NONE, Acting, Active
-from trawl_ros.effects.effect import Effect, Situation
+from trawl_ros.effects.base.effect import Effect, Situation
+from trawl_ros.effects.effect_set import NONE, Acting, Active
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.effect_sensitivity import by_effects, chained, sensor_slopes, shown_values
@@ -53,7 +53,7 @@ class Towed(Protocol):
 
     @property
     def sense(self) -> float:
-        """Course sense on the ship's track, as `trawl_ros.effects.effect.sense` has it."""
+        """Course sense on the ship's track, as `trawl_ros.effects.base.effect.sense` has it."""
         ...
 
 

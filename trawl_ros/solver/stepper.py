@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.errors import TrawlError
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow

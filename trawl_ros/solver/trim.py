@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from trawl_ros.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, about_axis

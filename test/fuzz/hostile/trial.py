@@ -14,7 +14,7 @@ from types import FrameType
 from typing import Literal
 
 from hostile.target import Files, Reader
-from trawl_ros.errors import TrawlError
+from trawl_ros.core.errors import TrawlError
 
 Kind = Literal['crash', 'hang', 'memory', 'overwritten']
 KINDS: tuple[Kind, ...] = ('crash', 'hang', 'memory', 'overwritten')

@@ -1,1 +1,1 @@
-"""Trawl sonar: echoes in its beams, the image on its screen, and readings off it. No ROS."""
+"""The trawl sonar: what its beams meet, its image, and what is read off it."""

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.instruments.schools import inside
 from trawl_ros.instruments.sonar.image import Grid
-from trawl_ros.simulation.truth import SchoolTruth
+from trawl_ros.instruments.sonar.schools import inside
+from trawl_ros.records.truth import SchoolTruth
 
 HALF_POWER = 1.3915573782515103
 """Argument at which (sin u / u)² is one half."""

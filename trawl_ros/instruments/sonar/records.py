@@ -5,7 +5,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
-from trawl_ros.instruments.error_records import (
+from trawl_ros.core.schema import Record
+from trawl_ros.instruments.errors.records import (
     AngleErrors,
     LevelErrors,
     NotNegative,
@@ -15,7 +16,6 @@ from trawl_ros.instruments.error_records import (
 from trawl_ros.instruments.sonar.echoes import Beam, Strengths
 from trawl_ros.instruments.sonar.image import Grid
 from trawl_ros.instruments.sonar.screen import Interference, Receiver, power
-from trawl_ros.schema import Record
 
 Level = Annotated[float, Field(ge=-300, le=300)]
 Positive = Annotated[float, Field(gt=0)]

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.instruments.sampling import SECOND
+from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.sonar.absorption import absorption
 from trawl_ros.instruments.sonar.detection import clear_echoes
 from trawl_ros.instruments.sonar.echoes import Ping, Sounding, echoes
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.records import SweepRecord
 from trawl_ros.instruments.sonar.screen import heard, interfering, speckled
-from trawl_ros.instruments.surroundings import Surroundings
+from trawl_ros.records.surroundings import Surroundings
 
 
 @dataclass(frozen=True)

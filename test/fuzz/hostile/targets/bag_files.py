@@ -20,10 +20,10 @@ from trawl_ros.bags.export import export_bag
 from trawl_ros.bags.reader import summarise
 from trawl_ros.bags.repair import repair_bag
 from trawl_ros.bags.samples import SampleStream
-from trawl_ros.errors import TrawlError
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.messages.cdr import definition
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS
-from trawl_ros.messages.topics import absolute, find_topic
+from trawl_ros.records.topics import absolute, find_topic
 
 MAGIC = b'\x89MCAP0\r\n'
 NUMBERS = st.sampled_from((0, 1, 5, 10**9, 2**31, 2**62, 2**63 - 1, 2**63, 2**64 - 1))

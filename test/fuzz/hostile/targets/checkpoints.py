@@ -14,12 +14,12 @@ from hypothesis.strategies import DrawFn
 
 from hostile.mutations import mutated
 from hostile.target import Target, one_file
+from trawl_ros.estimation.checkpoint.file import JSON, NUMBERS, load_state, save_state
+from trawl_ros.estimation.from_gear import identification_for
+from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.identification.from_gear import identification_for
-from trawl_ros.identification.pipeline import Identification
-from trawl_ros.identification.saving import JSON, NUMBERS, load_state, save_state
-from trawl_ros.instruments.samples import WinchSample
+from trawl_ros.records.samples import WinchSample
 
 FILE = 'state'
 SAMPLES = tuple(
@@ -35,7 +35,7 @@ VALUES: tuple[Any, ...] = (
         {'number': 1, 'array': '<f8', 'shape': [-1], 'at': -8},
         {'number': 1, 'deque': 5, 'most': -1},
     ),
-    {'number': 1, 'object': 'trawl_ros.identification.saving.StateError', 'has': {}},
+    {'number': 1, 'object': 'trawl_ros.estimation.checkpoint.file.StateError', 'has': {}},
 )
 
 

@@ -9,10 +9,10 @@ from hypothesis.strategies import DrawFn
 
 from hostile.mutations import mutated
 from hostile.target import Files, Target
-from trawl_ros.bags.import_log import import_log
-from trawl_ros.bags.log_clock import WORDS
-from trawl_ros.bags.nmea import import_nmea
-from trawl_ros.errors import TrawlError
+from trawl_ros.bags.logs.clock import WORDS
+from trawl_ros.bags.logs.import_log import import_log
+from trawl_ros.bags.logs.nmea import import_nmea
+from trawl_ros.core.errors import TrawlError
 
 CELLS = (
     *('', ' ', '0', '-1', '1e999', 'nan', '-inf', '9' * 400, '1_000', '0x1f', '1,5', '٣', '\x00'),

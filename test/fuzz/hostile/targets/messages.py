@@ -13,13 +13,13 @@ from rosbags.interfaces import Nodetype
 from hostile.mutations import mutated
 from hostile.target import Target, one_file
 from hostile.targets.bag_files import texts
-from trawl_ros.bags.decoding import BagTypes
-from trawl_ros.bags.stored import Definition
-from trawl_ros.errors import MessageError
+from trawl_ros.bags.storage.decoding import BagTypes
+from trawl_ros.bags.storage.stored import Definition
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages import commands, diagnostics, estimates, from_messages
 from trawl_ros.messages.cdr import STORE, deserialize, serialize
 from trawl_ros.messages.fields import not_finite
-from trawl_ros.messages.topics import TOPICS, WINCH_NAMES
+from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 
 FILE = 'message'
 WORDS = ('', 'port', *WINCH_NAMES, 'mono8', 'x', 'intensity', 'none', '\x00', '\x1b[2J', 'é' * 300)

@@ -12,10 +12,10 @@ from hostile.target import Target, one_file
 from hostile.targets.checkpoints import gear
 from hostile.targets.messages import values
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.identification.bag_windows import BagTask, read_tow
+from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS
-from trawl_ros.messages.topics import TOPICS, absolute
+from trawl_ros.records.topics import TOPICS, absolute
 
 FILE = 'tow.mcap'
 STAMPS = (0, 1, 10**9, 2 * 10**9, 5 * 10**9, 2**31 * 10**9, 2**63 - 1)

@@ -11,13 +11,13 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 
 from hostile.mutations import long, mutated
 from hostile.target import Files, Target, one_file
-from trawl_ros.bags.log_mapping import load_mapping
-from trawl_ros.bags.nmea_mapping import load_nmea_mapping
+from trawl_ros.bags.logs.mapping import load_mapping
+from trawl_ros.bags.logs.nmea_mapping import load_nmea_mapping
+from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.scenario.scenario import load_scenario
-from trawl_ros.share import share_path
 
 FILE = 'given.yaml'
 

@@ -1,0 +1,127 @@
+"""Tasks give the same wherever they run, and faults come out as a sentence that names the task."""
+
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+from distributed import LocalCluster
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.parallel import LOCALHOST, run_tasks
+
+TASKS = {f'root {number}': float(number) for number in range(6)}
+ROOTS = {name: math.sqrt(number) for name, number in TASKS.items()}
+
+
+@pytest.fixture(scope='module')
+def cluster() -> Iterator[str]:
+    """The address of a cluster that somebody else has started, as `dask scheduler` would."""
+    with LocalCluster(
+        n_workers=1,
+        threads_per_worker=1,
+        host=LOCALHOST,
+        dashboard_address=f'{LOCALHOST}:0',
+        silence_logs=50,
+    ) as running:
+        yield running.scheduler_address
+
+
+def test_processes_and_a_cluster_give_the_same(cluster: str) -> None:
+    assert dict(run_tasks(math.sqrt, TASKS, workers=2)) == ROOTS
+    assert dict(run_tasks(math.sqrt, TASKS, scheduler=cluster)) == ROOTS
+
+
+def test_equal_tasks_are_each_run(cluster: str) -> None:
+    assert dict(run_tasks(abs, {'first': -1, 'second': -1}, scheduler=cluster)) == {
+        'first': 1,
+        'second': 1,
+    }
+
+
+def test_no_tasks_need_no_cluster() -> None:
+    assert list(run_tasks(math.sqrt, {}, scheduler='tcp://nowhere:1')) == []
+
+
+def test_a_fault_names_its_task(cluster: str) -> None:
+    with pytest.raises(TrawlError, match=r'(?s)^trial 7: an error of the program.*math domain'):
+        list(run_tasks(math.sqrt, {'trial 7': -1.0}, scheduler=cluster))
+
+
+def test_a_worker_that_dies_names_its_task() -> None:
+    with pytest.raises(TrawlError, match=r'^trial 7: the process that ran it died$'):
+        list(run_tasks(os._exit, {'trial 7': 3}, workers=1))
+
+
+def test_an_address_without_a_scheduler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('trawl_ros.core.parallel.PATIENCE_S', 0.2)
+    with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+        list(run_tasks(abs, {'first': 1}, scheduler='tcp://127.0.0.1:9'))
+
+
+@pytest.mark.parametrize('address', ['foo', 'file:///etc/passwd', 'tls://127.0.0.1:9'])
+def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
+    with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+        list(run_tasks(abs, {'first': 1}, scheduler=address))
+
+
+def test_one_that_listens_and_says_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('trawl_ros.core.parallel.PATIENCE_S', 0.2)
+    with socket.create_server((LOCALHOST, 0)) as silent:
+        address = f'tcp://{LOCALHOST}:{silent.getsockname()[1]}'
+        with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+            list(run_tasks(abs, {'first': 1}, scheduler=address))
+
+
+SLEEPERS = """
+import time
+from trawl_ros.core.parallel import run_tasks
+
+if __name__ == '__main__':
+    try:
+        for name, _ in run_tasks(time.sleep, {'short': 0.0, 'long': 600.0}, workers=2):
+            print(name, flush=True)
+    except KeyboardInterrupt:
+        print('interrupted', flush=True)
+"""
+
+
+def test_ctrl_c_ends_all_processes_quietly(tmp_path) -> None:
+    script = tmp_path / 'sleepers.py'
+    script.write_text(SLEEPERS)
+    # A terminal sends the signal to every process of the group; so does this test.
+    running = subprocess.Popen(
+        [sys.executable, str(script)],
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join(filter(None, sys.path))},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    try:
+        assert running.stdout is not None
+        assert running.stdout.readline() == 'short\n'
+        os.killpg(running.pid, signal.SIGINT)
+        said, faults = running.communicate(timeout=60)
+    finally:
+        running.kill()
+    assert said == 'interrupted\n'
+    assert faults == ''
+    assert running.returncode == 0
+    deadline = time.monotonic() + 20.0
+    while _alive(running.pid) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not _alive(running.pid)
+
+
+def _alive(group: int) -> bool:
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True

@@ -1,0 +1,316 @@
+"""A saved identification goes on as if nothing had happened, and a bad file is refused."""
+
+import json
+import zipfile
+from dataclasses import replace
+from datetime import date
+from pkgutil import resolve_name
+
+import numpy as np
+import pytest
+
+from trawl_ros.estimation.checkpoint import file
+from trawl_ros.estimation.checkpoint.file import StateError, load_state, save_state
+from trawl_ros.estimation.checkpoint.names import FIELDS, present
+from trawl_ros.estimation.checkpoint.packing import Packer, Unpacker
+from trawl_ros.estimation.from_gear import identification_for
+from trawl_ros.estimation.pipeline import Identification, WindowUsed
+from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.gear.load import load_gear
+
+OPTIONS = WindowOptions(settle_s=60.0, settle_passages=0.0, window_s=40.0)
+
+
+def used(events):
+    return [event for event in events if isinstance(event, WindowUsed)]
+
+
+@pytest.fixture
+def fresh(sea, model, prior):
+    def make(**options):
+        chosen = replace(OPTIONS, speed_tolerance=0.15, **options)
+        return Identification(model, prior, sea.OBSERVABLES, sea.pressure_to_depth, chosen)
+
+    return make
+
+
+@pytest.fixture
+def samples(sea, model):
+    legs = [sea.Leg(length, speed, 130.0) for speed in (1.8, 2.1) for length in (300.0, 500.0)]
+    return sea.tow(model, legs)
+
+
+@pytest.fixture
+def state(fresh, samples, gear, tmp_path):
+    """A state saved in the middle of a tow, and who saved it."""
+    identification = fresh()
+    for sample in samples[: len(samples) // 2]:
+        identification.feed(sample)
+    assert identification.estimate.windows >= 2
+    save_state(tmp_path / 'state', identification, gear)
+    return tmp_path / 'state'
+
+
+@pytest.mark.parametrize('every', [101, 1009])
+def test_it_goes_on_with_the_same_estimates(fresh, samples, gear, tmp_path, every):
+    """Saved and resumed again and again, in the middle of settling, windows and sweeps."""
+    whole, torn = fresh(), fresh()
+    windows = 0
+    for number, sample in enumerate(samples):
+        if number % every == every - 1 and number > len(samples) // 3:
+            save_state(tmp_path / 'state', torn, gear)
+            torn = load_state(tmp_path / 'state', fresh(), gear)
+        expected, found = whole.feed(sample), torn.feed(sample)
+        assert [type(event) for event in found] == [type(event) for event in expected]
+        for one, other in zip(used(found), used(expected), strict=True):
+            windows += 1
+            assert one.window == other.window
+            same(one.estimate, other.estimate)
+    whole.finish()
+    torn.finish()
+    assert windows >= 4
+    same(torn.estimate, whole.estimate)
+    assert torn.rejected == whole.rejected
+    assert torn.finder.arrived == whole.finder.arrived
+
+
+def same(found, expected):
+    np.testing.assert_allclose(found.values, expected.values, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found.covariance, expected.covariance, rtol=0, atol=1e-9)
+    assert (found.revision, found.windows) == (expected.revision, expected.windows)
+    if expected.innovation is not None:
+        np.testing.assert_allclose(found.innovation.values, expected.innovation.values, rtol=1e-9)
+
+
+def test_the_solver_goes_on_from_the_same_shapes(steady_tow, coarse_gear, tmp_path):
+    gear = load_gear(coarse_gear)
+
+    def build():
+        return identification_for(gear, window_options=OPTIONS)
+
+    samples = list(steady_tow.samples(leg_s=130))
+    whole, torn = build(), build()
+    for number, sample in enumerate(samples):
+        if number == len(samples) // 2:
+            assert torn.estimate is not None
+            save_state(tmp_path / 'state', torn, gear)
+            torn = load_state(tmp_path / 'state', build(), gear)
+        expected, found = used(whole.feed(sample)), used(torn.feed(sample))
+        for one, other in zip(found, expected, strict=True):
+            np.testing.assert_array_equal(one.estimate.values, other.estimate.values)
+    assert {window.state for window in whole.estimator.windows} == {0, 1}
+    whole.finish()
+    torn.finish()
+    np.testing.assert_array_equal(torn.estimate.covariance, whole.estimate.covariance)
+
+
+def test_one_that_was_resumed_can_be_reset(fresh, samples, state, gear):
+    resumed = load_state(state, fresh(), gear)
+    resumed.reset()
+    assert resumed.estimate is None
+    assert not resumed.rejected
+    anew = fresh()
+    for sample in samples:
+        for one, other in zip(used(resumed.feed(sample)), used(anew.feed(sample)), strict=True):
+            same(one.estimate, other.estimate)
+    assert resumed.finder.rejected == anew.finder.rejected
+
+
+def test_objects_that_share_something_share_it_afterwards(fresh, state, gear):
+    finder = load_state(state, fresh(), gear).finder
+    before = dict(finder.rejected)
+    buffer = finder._buffers['door_spread']
+    buffer._rejections.counts['outlier'] += 1
+    assert finder.rejected['outlier'] == before.get('outlier', 0) + 1
+
+
+def test_of_another_gear_or_other_settings_is_refused_by_name(fresh, state, gear):
+    other = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 24})})
+    with pytest.raises(StateError, match=r'gear\.netting\.around \d+, expected 24'):
+        load_state(state, fresh(), other)
+    with pytest.raises(StateError, match=r'windows\.settle_s 60\.0, expected 90\.0'):
+        load_state(state, fresh(settle_s=90.0), gear)
+
+
+@pytest.mark.parametrize(('name', 'value'), [('FORMAT', 2), ('__version__', '9.9')])
+def test_of_another_version_is_refused(fresh, state, gear, monkeypatch, name, value):
+    monkeypatch.setattr(file, name, value)
+    with pytest.raises(StateError, match=f'expected format .*{value}'):
+        load_state(state, fresh(), gear)
+
+
+def test_what_is_no_state_is_refused(fresh, gear, tmp_path):
+    path = tmp_path / 'state'
+    with pytest.raises(StateError, match='cannot be read'):
+        load_state(path, fresh(), gear)
+    for content in (b'', b'{}', b'PK\x03\x04 and no more'):
+        path.write_bytes(content)
+        with pytest.raises(StateError, match='no undamaged state'):
+            load_state(path, fresh(), gear)
+
+
+def test_a_damaged_file_is_refused_wherever_the_damage_is(fresh, state, gear):
+    whole = state.read_bytes()
+    expected = load_state(state, fresh(), gear).estimate
+    refused = 0
+    places = np.random.default_rng(0).integers(len(whole), size=60)
+    headers = [*range(0, 60, 4), *range(len(whole) - 160, len(whole), 4)]
+    for place in (*places, *headers):
+        damaged = bytearray(whole)
+        damaged[place] ^= 0x55
+        state.write_bytes(damaged)
+        try:
+            found = load_state(state, fresh(), gear)
+        except StateError:
+            refused += 1
+        else:
+            # Dates and flags of the archive's entries are read by nobody.
+            same(found.estimate, expected)
+    assert refused > 50
+    for share in (0.0, 0.3, 0.99):
+        state.write_bytes(whole[: int(share * len(whole))])
+        with pytest.raises(StateError):
+            load_state(state, fresh(), gear)
+
+
+def rewritten(state, change):
+    """The same file with something changed, checksums and all."""
+    with zipfile.ZipFile(state) as archive:
+        record = json.loads(archive.read(file.JSON))
+        numbers = archive.read(file.NUMBERS)
+    change(record)
+    with zipfile.ZipFile(state, 'w') as archive:
+        archive.writestr(file.JSON, json.dumps(record))
+        archive.writestr(file.NUMBERS, numbers)
+
+
+def test_a_file_builds_no_other_classes_and_takes_no_more_memory_than_it_is_long(
+    fresh, state, gear
+):
+    def other_class(record):
+        record['identification']['object'] = 'subprocess.Popen'
+
+    def imported_class(record):
+        record['identification']['object'] = 'trawl_ros.estimation.checkpoint.file.Packer'
+
+    def other_attributes(record):
+        record['identification']['has']['surprise'] = 1
+
+    def huge(record):
+        record['identification'] = {'number': 0, 'array': '<f8', 'shape': [10**12], 'at': 0}
+
+    def unknown(record):
+        record['identification'] = {'number': 0, 'same': 7}
+
+    whole = state.read_bytes()
+    for change in (other_class, imported_class, other_attributes, huge, unknown):
+        state.write_bytes(whole)
+        rewritten(state, change)
+        with pytest.raises(StateError, match='of this version'):
+            load_state(state, fresh(), gear)
+
+
+def test_a_state_larger_than_allowed_is_neither_read_nor_written(fresh, state, gear, monkeypatch):
+    resumed = load_state(state, fresh(), gear)
+    before = state.read_bytes()
+    monkeypatch.setattr(file, 'MAX_BYTES', 1000)
+    with pytest.raises(StateError, match='expected at most'):
+        load_state(state, fresh(), gear)
+    with pytest.raises(StateError, match='are not saved'):
+        save_state(state, resumed, gear)
+    assert state.read_bytes() == before
+
+
+def test_a_failed_write_leaves_the_state_before_it(fresh, state, gear, monkeypatch):
+    resumed = load_state(state, fresh(), gear)
+    before = state.read_bytes()
+
+    def full(descriptor):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(file.os, 'fsync', full)
+    with pytest.raises(StateError, match='No space left'):
+        save_state(state, resumed, gear)
+    assert state.read_bytes() == before
+    with pytest.raises(StateError, match='cannot be written'):
+        save_state(state.parent / 'nowhere' / 'state', resumed, gear)
+
+
+def test_what_is_no_data_is_named():
+    with pytest.raises(TypeError, match=r'when\.1 is a datetime'):
+        Packer(None).pack({'when': [1.0, date(2026, 1, 1)]})
+
+
+@pytest.mark.parametrize(
+    'value',
+    [
+        float('nan'), float('-inf'), 0.1 + 0.2, np.float64(1e-300), {1: (2.0, None)}, 'name', True,
+        np.arange(6.0).reshape(2, 3).T, np.zeros((0, 12)), np.array(3), np.array([True, False]),
+    ],
+)  # fmt: skip
+def test_values_come_back_bit_by_bit(value):
+    packer = Packer(None)
+    tree = json.loads(json.dumps(packer.pack(value)))
+    found = Unpacker(bytes(packer.numbers), packer).unpack(tree)
+    np.testing.assert_equal(found, value)
+
+
+NAMES_OF_0_1_0 = (
+    'identification.buffers.ChannelBuffer',
+    'identification.channels.Channel',
+    'identification.error_terms.TowErrors',
+    'identification.estimate.Combination',
+    'identification.estimate.Estimate',
+    'identification.estimate.Innovation',
+    'identification.estimate.TowBias',
+    'identification.estimator.Estimator',
+    'identification.estimator.Progress',
+    'identification.estimator_options.EstimatorOptions',
+    'identification.fit.Fit',
+    'identification.guard.Guard',
+    'identification.linearised.Linearised',
+    'identification.operation.Block',
+    'identification.operation.Operation',
+    'identification.order.Order',
+    'identification.over_ground.OverGround',
+    'identification.pipeline.Identification',
+    'identification.pipeline.WindowUsed',
+    'identification.prior.BoardPrior',
+    'identification.rejections.Rejections',
+    'identification.screening.Judgement',
+    'identification.screening.Screening',
+    'identification.timeline.Timeline',
+    'identification.window_records.SteadyWindow',
+    'identification.window_records.WindowOptions',
+    'identification.windows.SteadyWindowFinder',
+    'model.observables.Observables',
+    'model.state.State',
+    'model.state.Tow',
+    'solver.equilibrium.Equilibrium',
+    'solver.operating_point.OperatingPoint',
+)
+
+
+def test_a_file_of_0_1_0_is_read_by_the_names_that_classes_had(fresh, samples, state, gear):
+    former = {}
+    for name in NAMES_OF_0_1_0:
+        now, _ = present(f'trawl_ros.{name}', {})
+        module, _, own = now.rpartition('.')
+        assert isinstance(resolve_name(f'{module}:{own}'), type), name
+        former[now] = f'trawl_ros.{name}'
+    expected = load_state(state, fresh(), gear)
+    with zipfile.ZipFile(state) as archive:
+        record, numbers = archive.read(file.JSON).decode(), archive.read(file.NUMBERS)
+    for now, name in former.items():
+        record = record.replace(f'"{now}"', f'"{name}"')
+    for then, field in FIELDS.items():
+        record = record.replace(f'"{field}":', f'"{then}":')
+    assert 'trawl_ros.identification.' in record
+    assert 'trawl_ros.estimation.' not in record
+    with zipfile.ZipFile(state, 'w') as archive:
+        archive.writestr(file.JSON, record)
+        archive.writestr(file.NUMBERS, numbers)
+    found = load_state(state, fresh(), gear)
+    for sample in samples[len(samples) // 2 :]:
+        for one, other in zip(used(found.feed(sample)), used(expected.feed(sample)), strict=True):
+            same(one.estimate, other.estimate)

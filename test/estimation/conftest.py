@@ -1,0 +1,318 @@
+"""A closed-form gear with a known answer, and tows of it as streams of samples."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.error_terms import Scheme
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.observables import OBSERVABLES as GEAR_OBSERVABLES
+from trawl_ros.records.channels import CHANNELS, INPUTS
+from trawl_ros.records.samples import (
+    AttitudeSample,
+    HeadingSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
+from trawl_ros.solver.predict import Predictor
+
+NANO = 1_000_000_000
+EPOCH = 1_750_000_000 * NANO
+OBSERVABLES = (
+    'door_spread', 'port_door_depth', 'starboard_door_depth', 'port_tension',
+    'starboard_tension', 'net_depth', 'port_pitch', 'starboard_pitch', 'port_roll',
+    'starboard_roll', 'vertical_opening', 'horizontal_opening',
+)  # fmt: skip
+TRUTH = np.array([1.19, 0.041, 2.47, 0.67, -0.3, 0.01, -0.46, 0.02, 0.24, 0.016, 0.92, 0.25])
+STD = 0.3 * np.abs(TRUTH) + 0.05
+SLOW = np.array([name.endswith('depth') for name in OBSERVABLES], dtype=float)
+"""The closed form comes to rest with doors and net sinking alike."""
+
+SIZES = np.array([130, 200, 200, 2e5, 2e5, 220, 0.2, 0.2, 0.2, 0.2, 40, 100.0])
+
+
+@dataclass(frozen=True)
+class Answer:
+    values: np.ndarray
+    jacobian: np.ndarray
+    slow: np.ndarray
+    state: Any = None
+
+
+@dataclass
+class ClosedForm:
+    """Observables y = size (1 + p + 0.02 p² + inputs), p linear in scaled coefficients.
+
+    The sensitivities p = (S0 + S1 l + S2 u) z vary with warp length l and speed u, as they do
+    in a real gear, so that a trial of several lengths and speeds has a definite answer.
+    ``stops_at``: no steady state where the first coefficient is beyond this.
+    """
+
+    sensitivity: np.ndarray = field(
+        default_factory=lambda: 0.1 * np.random.default_rng(3).normal(size=(12, 12, 3))
+    )
+    stops_at: float = math.inf
+    calls: int = 0
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Any = None,
+    ) -> Answer:
+        self.calls += 1
+        if coefficients[0] > self.stops_at:
+            raise NoSteadyState('the closed form has no steady state there')
+        z = (coefficients - TRUTH) / STD
+        length, fast = (port_length + starboard_length) / 1000.0 - 1.0, speed / 2.0 - 1.0
+        by_z = self.sensitivity @ np.array([1.0, length, fast])
+        p = by_z @ z
+        slope = SIZES * (1.0 + 0.04 * p)
+        values = SIZES * (1.0 + p + 0.02 * p**2 + 0.4 * length + 0.5 * fast)
+        by_length = (slope * (self.sensitivity[:, :, 1] @ z) + 0.4 * SIZES) / 1000.0
+        by_speed = (slope * (self.sensitivity[:, :, 2] @ z) + 0.5 * SIZES) / 2.0
+        jacobian = np.column_stack((slope[:, None] * by_z / STD, by_length, by_length, by_speed))
+        return Answer(values, jacobian, SLOW)
+
+
+def pressure_to_depth(pressure: float) -> float:
+    return (pressure - 101_325.0) / (1025.0 * 9.81)
+
+
+def depth_to_pressure(depth: float) -> float:
+    return 101_325.0 + 1025.0 * 9.81 * depth
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Warp length (m) and speed (m/s) wanted, and for how long (s) after getting there."""
+
+    length: float
+    speed: float
+    seconds: float = 300.0
+    turn: float = 0.0
+
+
+def tow(
+    model: ClosedForm,
+    legs: Sequence[Leg],
+    seed: int = 0,
+    lag_s: float = 25.0,
+    noise: float = 1.0,
+    coefficients: np.ndarray = TRUTH,
+) -> list[Sample]:
+    """Tow legs one after another at 1 Hz; the gear follows its steady state with a lag."""
+    rng = np.random.default_rng(seed)
+    length, speed, heading = legs[0].length, legs[0].speed, 3.0
+    state: np.ndarray | None = None
+    samples: list[Sample] = []
+    second = 0
+
+    def scatter(name: str, size: float = 1.0) -> float:
+        return noise * size * CHANNELS[name].noise * float(rng.normal())
+
+    for leg in legs:
+        left = leg.seconds
+        while left > 0:
+            length += float(np.clip(leg.length - length, -1.0, 1.0))
+            speed += float(np.clip(leg.speed - speed, -0.02, 0.02))
+            heading += leg.turn
+            left -= length == leg.length and abs(speed - leg.speed) < 1e-9
+            wanted = model.predict(coefficients, length, length, speed).values
+            state = wanted if state is None else state + (wanted - state) / lag_s
+            y = dict(zip(OBSERVABLES, state, strict=True))
+            stamp = EPOCH + second * NANO
+            counters = [length + scatter('port_length', 0.5) for _ in range(2)]
+            cells = [y[f'{side}_tension'] + scatter('port_tension') for side in SIDES]
+            samples.append(WinchSample(stamp, tuple(counters), (0.0, 0.0), tuple(cells)))
+            velocity = np.array([speed + scatter('speed', 0.5), 0.0, 0.0])
+            samples.append(VelocitySample(stamp, 'water', velocity, leg.turn))
+            wrapped = math.remainder(heading + scatter('heading', 0.5), 2 * math.pi)
+            samples.append(HeadingSample(stamp, wrapped, 0.01))
+            depth = y['net_depth'] + scatter('net_depth')
+            samples.append(PressureSample(stamp, 'sonar', depth_to_pressure(depth), 3000.0))
+            if second % 3 == 0:
+                for side in SIDES:
+                    depth = y[f'{side}_door_depth'] + scatter('port_door_depth')
+                    pressure = depth_to_pressure(depth)
+                    samples.append(PressureSample(stamp + 1000, side, pressure, 3000.0))
+                    pitch = y[f'{side}_pitch'] + scatter('port_pitch')
+                    roll = y[f'{side}_roll'] + scatter('port_roll')
+                    samples.append(AttitudeSample(stamp + 2000, side, pitch, roll, 0.017))
+                spread = y['door_spread'] + scatter('door_spread')
+                samples.append(RangeSample(stamp + 3000, 'spread', spread, 1.0, 1.0, 500.0))
+            second += 1
+    return samples
+
+
+SIDES = ('port', 'starboard')
+
+
+def trial_windows(
+    model: ClosedForm, rng: np.random.Generator, noise: float = 1.0, repeats: int = 1
+) -> list[SteadyWindow]:
+    """One tow of five warp lengths at three speeds, wrong as the channel table says.
+
+    Calibration is wrong throughout; ``noise`` is a factor on what differs between windows, for
+    warp lengths and speed 1 at most.
+    """
+    shares = Scheme()
+    drawn = {name: rng.normal(size=2) for name in sorted(CHANNELS)}
+    found = []
+
+    def noise_of(name: str) -> float:
+        return min(noise, 1.0) if name in INPUTS else noise
+
+    for speed in (1.8, 2.0, 2.2):
+        for length in (200.0, 375.0, 550.0, 725.0, 900.0):
+            for _ in range(repeats):
+                values = model.predict(TRUTH, length, length, speed).values
+                exact = {'port_length': length, 'starboard_length': length, 'speed': speed}
+                seen = zip(OBSERVABLES, values, strict=True)
+                exact |= {name: value for name, value in seen if name in CHANNELS}
+                means = {}
+                for name, value in exact.items():
+                    channel = CHANNELS[name]
+                    sizes = np.array([channel.bias, channel.bias_fraction * value])
+                    calibration = shares.tow_share * float(sizes @ drawn[name])
+                    own = shares.state_share * channel.bias_std(value) * float(rng.normal())
+                    means[name] = value + noise_of(name) * own + bool(noise) * calibration
+                index = len(found)
+                found.append(
+                    SteadyWindow(
+                        index=index,
+                        state=index,
+                        start_ns=EPOCH + index * 300 * NANO,
+                        end_ns=EPOCH + index * 300 * NANO + 90 * NANO,
+                        means=means,
+                        noise=dict.fromkeys(exact, 0.0),
+                        bias={n: CHANNELS[n].bias_std(value) for n, value in exact.items()},
+                        counts=dict.fromkeys(exact, 90),
+                    )
+                )
+    return found
+
+
+@pytest.fixture
+def model() -> ClosedForm:
+    return ClosedForm()
+
+
+@pytest.fixture
+def prior() -> BoardPrior:
+    return BoardPrior(TRUTH + 0.7 * STD, STD, TRUTH - 4.0 * STD, TRUTH + 4.0 * STD)
+
+
+@pytest.fixture
+def sea() -> SimpleNamespace:
+    """What the tests need of this file."""
+    return SimpleNamespace(
+        NANO=NANO,
+        EPOCH=EPOCH,
+        OBSERVABLES=OBSERVABLES,
+        TRUTH=TRUTH,
+        STD=STD,
+        ClosedForm=ClosedForm,
+        Leg=Leg,
+        tow=tow,
+        trial_windows=trial_windows,
+        pressure_to_depth=pressure_to_depth,
+        depth_to_pressure=depth_to_pressure,
+    )
+
+
+TOW_STATES = ((450.0, 2.1, 0.3), (300.0, 2.1, 0.3), (300.0, 2.3, 1.9))
+"""Warp length (m), speed (m/s) and heading (rad)."""
+
+LEG_S = 220
+
+CURRENT = np.array([-0.118, 0.382])
+"""East and north (m/s): across the first heading."""
+
+
+class Linear:
+    """A gear around some states that were solved, each with its sensitivities."""
+
+    def __init__(self, gear: GearRecord) -> None:
+        predictor, start = Predictor(build_model(gear)), np.array(gear.identification.start)
+        self.points, self.found = [], []
+        for length, speed, _ in TOW_STATES:
+            state = self.found[-1].state if self.found else None
+            self.found.append(predictor.predict(start, length, length, speed, state))
+            self.points.append(np.array([*start, length, length, speed]))
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Any = None,
+    ) -> Answer:
+        point = np.array([*coefficients, port_length, starboard_length, speed])
+        off = [np.hypot((port_length - p[12]) / 100.0, (speed - p[14]) / 0.1) for p in self.points]
+        nearest = int(np.argmin(off))
+        found = self.found[nearest]
+        values = found.values + found.jacobian @ (point - self.points[nearest])
+        return Answer(values, found.jacobian, found.slow, nearest)
+
+
+@pytest.fixture(scope='session')
+def clean_tow(coarse_gear: Path) -> SimpleNamespace:
+    """A tow of the coarse gear, its model around the states of the tow, and what is known."""
+    gear = load_gear(coarse_gear)
+    linear, prior = Linear(gear), board_prior(gear)
+    return SimpleNamespace(
+        prior=prior,
+        linear=linear,
+        depth=build_model(gear).water.depth,
+        samples=list(clean_samples(linear, prior, build_model(gear).water.pressure)),
+    )
+
+
+def clean_samples(
+    linear: Linear, prior: BoardPrior, pressure: Callable[[float], float]
+) -> Iterator[Sample]:
+    """A tow through all states in a current, with the noise of the default instruments."""
+    draw = np.random.default_rng(4).standard_normal
+    truth = prior.start + 0.3 * prior.std * np.where(np.arange(12) % 3, 1.0, -1.0)
+    for second in range(LEG_S * len(TOW_STATES)):
+        length, speed, heading = TOW_STATES[second // LEG_S]
+        seen = linear.predict(truth, length, length, speed).values
+        y = dict(zip(GEAR_OBSERVABLES, seen, strict=True))
+        stamp = EPOCH + second * NANO
+        yield HeadingSample(stamp, heading + 0.002 * draw(), 0.002)
+        ground = speed * np.array([math.cos(heading), math.sin(heading)]) + CURRENT
+        yield VelocitySample(stamp, 'ground', np.array([*(ground + 0.03 * draw(2)), 0.0]), math.nan)
+        water = np.array([speed + 0.03 * draw(), 0.0, 0.0])
+        yield VelocitySample(stamp, 'water', water, 0.0003 * draw())
+        tensions = [y[f'{side}_tension'] + 1600.0 * draw() for side in SIDES]
+        yield WinchSample(stamp, tuple(length + 0.05 * draw(2)), (0.0, 0.0), tuple(tensions))
+        depths = {'sonar': y['net_depth']} | {side: y[f'{side}_door_depth'] for side in SIDES}
+        for place, depth in depths.items():
+            yield PressureSample(stamp, place, pressure(depth + 0.2 * draw()), 2000.0)
+        if second % 2 == 0:
+            for side in SIDES:
+                pitch, roll = (y[f'{side}_{angle}'] + 0.009 * draw() for angle in ('pitch', 'roll'))
+                yield AttitudeSample(stamp, side, pitch, roll, 0.009)
+            yield RangeSample(stamp, 'spread', y['door_spread'] + 0.7 * draw(), 0.7, 5.0, 600.0)
+        if second % 10 == 0:
+            opening = y['vertical_opening'] + 0.1 * draw()
+            yield RangeSample(stamp, 'opening_height', opening, 0.05, 1.0, 300.0)

@@ -1,0 +1,156 @@
+"""The next manoeuvre is the one that tells most per minute, and tells what it promises."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.fit import AS_STATED, Fit
+from trawl_ros.estimation.fit.linearised import linearise
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.planning.information import (
+    covariance_from,
+    information_in,
+    information_of,
+)
+from trawl_ros.estimation.planning.next_manoeuvre import Adviser, expected_windows
+from trawl_ros.estimation.planning.search import shortfall
+from trawl_ros.estimation.planning.states import Explorer, Limits, Manoeuvre
+from trawl_ros.estimation.planning.windows import imagined_windows
+from trawl_ros.gear.load import load_gear
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.predict import Predictor
+
+FEW = Limits(lengths=(200.0,), speeds=(2.1, 2.5), shorter=(5.0,))
+DONE = Manoeuvre(300.0, 300.0, 2.5)
+
+
+@pytest.fixture(scope='module')
+def record(coarse_gear):
+    return load_gear(coarse_gear)
+
+
+@pytest.fixture(scope='module')
+def predictor(record):
+    return Predictor(build_model(record))
+
+
+@pytest.fixture(scope='module')
+def fit(record, predictor) -> Fit:
+    """Two windows of one state in each of two tows, with errors that make the loss work."""
+    prior = board_prior(record)
+    found = Explorer(predictor, prior.start).look_up(DONE, [])
+    draw = np.random.default_rng(4).normal
+    parts = []
+    for tow in range(2):
+        for part in imagined_windows(found, prior.start, state=tow, number=2, tow=tow):
+            std = [part.window.std(name) for name in part.channels]
+            measured = part.measured + draw(size=len(std)) * std
+            window = replace(part.window, index=len(parts))
+            parts.append(replace(part, window=window, measured=measured))
+    return Fit(tuple(parts), np.array(prior.start), AS_STATED, prior, EstimatorOptions())
+
+
+@pytest.fixture(scope='module')
+def adviser(record, predictor, fit) -> Adviser:
+    adviser = Adviser(record, predictor, FEW)
+    while adviser.look_up(fit.coefficients):
+        pass
+    return adviser
+
+
+def test_the_promise_is_what_the_fit_gives_when_the_windows_come(adviser, fit, predictor):
+    advice = adviser.advise(fit)
+    assert advice is not None
+    found = adviser.known[advice.manoeuvre]
+    come = []
+    for part in expected_windows(fit, found, 2):
+        solved = linearise(
+            predictor, OBSERVABLES, part.window, fit.coefficients, (found.part.state,)
+        )
+        come.append(solved)
+    after = replace(fit, windows=(*fit.windows, *come))
+    fall = np.linalg.slogdet(fit.knowledge.covariance)[1]
+    fall -= np.linalg.slogdet(after.knowledge.covariance)[1]
+    assert advice.nats == pytest.approx(0.5 * fall, rel=1e-9)
+    assert advice.nats > 0.0
+
+
+def test_no_other_manoeuvre_tells_more_per_minute(adviser, fit):
+    advice = adviser.advise(fit)
+    best = (shortfall(advice.before) - shortfall(advice.after)) / advice.minutes
+    assert best > 0.0
+    for one in adviser.known:
+        other = adviser.promise(fit, one)
+        gain = shortfall(other.before) - shortfall(other.after)
+        assert gain / other.minutes <= best * (1.0 + 1e-3)
+
+
+def test_what_ranks_manoeuvres_is_what_the_fit_knows(fit):
+    ours = covariance_from(information_in(fit), fit.prior)
+    size = np.sqrt(np.outer(np.diag(ours), np.diag(ours)))
+    assert np.max(np.abs(ours - fit.knowledge.covariance) / size) < 1e-8
+
+
+def test_adding_to_a_fit_is_adding_information(adviser, fit):
+    found = adviser.known[Manoeuvre(200.0, 200.0, 2.5)]
+    parts = expected_windows(fit, found, 2)
+    taught = information_of(parts, fit.prior, fit.options, fit.scales)
+    ours = covariance_from(information_in(fit) + taught, fit.prior)
+    fits = replace(fit, windows=(*fit.windows, *parts)).knowledge.covariance
+    # Windows that agree with the fit change its weights a little, since its calibration moves.
+    assert np.sqrt(np.diag(ours)) == pytest.approx(np.sqrt(np.diag(fits)), rel=0.05)
+
+
+def test_what_is_not_heard_promises_nothing(adviser, fit):
+    deaf = []
+    for part in fit.windows:
+        window = part.window
+        kept = [row for row, name in enumerate(part.channels) if 'pitch' not in name]
+        deaf.append(
+            replace(
+                part,
+                window=replace(
+                    window,
+                    means={n: v for n, v in window.means.items() if 'pitch' not in n},
+                    noise={n: v for n, v in window.noise.items() if 'pitch' not in n},
+                ),
+                channels=tuple(part.channels[row] for row in kept),
+                measured=part.measured[kept],
+                values=part.values[kept],
+                by_coefficients=part.by_coefficients[kept],
+                by_inputs=part.by_inputs[kept],
+                by_net=part.by_net[kept],
+                slow=part.slow[kept],
+            )
+        )
+    without = replace(fit, windows=tuple(deaf))
+    candidate = next(iter(adviser.known.values()))
+    for part in expected_windows(without, candidate, 2):
+        assert not [name for name in part.channels if 'pitch' in name]
+
+
+def test_it_advises_with_what_is_known_by_then(record, predictor, fit):
+    adviser = Adviser(record, predictor, FEW)
+    assert adviser.advise(fit) is None
+    assert adviser.look_up(fit.coefficients)
+    advice = adviser.advise(fit)
+    assert advice.manoeuvre == Manoeuvre(200.0, 200.0, 2.5)
+    assert advice.looked_up == adviser.looked_up == pytest.approx(1 / 4)
+    assert str(advice).startswith('200 m at 2.5 m/s, ')
+    assert 'well known' in str(advice)
+    nothing = replace(fit, windows=())
+    assert adviser.advise(nothing) is None
+
+
+def test_manoeuvres_are_looked_up_anew_when_the_estimate_has_moved_far(record, predictor, fit):
+    adviser = Adviser(record, predictor, replace(FEW, lengths=(200.0,), speeds=(2.5,), shorter=()))
+    assert adviser.look_up(fit.coefficients)
+    assert not adviser.look_up(fit.coefficients + 0.5 * fit.prior.std)
+    there = fit.coefficients.copy()
+    there[0] -= 1.1 * fit.prior.std[0]
+    assert adviser.look_up(there)
+    (candidate,) = adviser.known.values()
+    assert np.array_equal(candidate.part.at, there)

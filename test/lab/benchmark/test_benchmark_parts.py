@@ -1,0 +1,73 @@
+"""The pieces that the benchmark measures with do what they claim."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, Differences
+from trawl_ros.lab.benchmark.fit_trial import plant_of, trial
+from trawl_ros.lab.benchmark.gears import default_gear
+from trawl_ros.lab.benchmark.growth import exponent
+from trawl_ros.lab.benchmark.haul import WATCHED, error, haul_of
+from trawl_ros.lab.benchmark.timing import timed
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.sensitivity import PARAMETERS
+
+
+@pytest.fixture(scope='module')
+def coarse():
+    gear = default_gear(small=True)
+    model = build_model(gear)
+    return SimpleNamespace(gear=gear, model=model, prior=board_prior(gear))
+
+
+def test_the_exponent_is_the_slope_of_a_power_law():
+    nodes = [100, 300, 1000, 3000]
+    assert exponent(nodes, [1e-6 * n**1.48 for n in nodes]) == pytest.approx(1.48)
+
+
+def test_an_error_is_the_largest_at_any_time_of_any_observable():
+    converged = np.tile(np.linspace(100.0, 110.0, 6)[:, None], len(WATCHED))
+    seen = converged.copy()
+    seen[3, WATCHED.index('net_depth')] += 0.5
+    found = error(seen, converged)
+    assert found.worst == 'net_depth'
+    assert found.of_range == pytest.approx(0.05)
+    assert found.of_value == pytest.approx(0.5 / 105.0)
+
+
+def test_the_clock_counts_work_and_no_waiting():
+    result, seconds = timed(lambda: sum(range(300_000)))
+    assert result == 299_999 * 150_000
+    assert seconds > 0.0
+
+
+def test_shorter_steps_of_the_haul_come_closer_to_the_converged_run(coarse):
+    haul = haul_of(coarse.model, 8.0)
+    converged = haul.run(0.1).seen
+    assert len(converged) == 4
+    errors = [np.abs(haul.run(step).seen - converged).max(axis=0) for step in (0.25, 1.0)]
+    assert (errors[0] <= errors[1]).all()
+
+
+def test_differences_are_derivatives_and_cost_a_solution_each(coarse):
+    exact, differences = Counting(coarse.model), Differences(coarse.model, coarse.prior.std)
+    at = (coarse.model.coefficients, 500.0, 500.0, 2.1)
+    known = exact.predict(*at)
+    found = differences.predict(*at, known.state)
+    assert (exact.solves, differences.solves) == (1, 1 + len(PARAMETERS))
+    size = np.abs(known.jacobian).max(axis=0)
+    assert (np.abs(found.jacobian - known.jacobian) / size).max() < 1e-3
+
+
+def test_the_search_lowers_the_objective_within_bounds_and_budget(coarse):
+    windows = trial(plant_of(coarse.gear), (500.0,), (2.1,))
+    search = CoordinateSearch(coarse.model, windows, coarse.prior)
+    at_start = search.search(target=np.inf, budget=1)
+    assert (at_start.solves, at_start.reached) == (1, True)
+    found = CoordinateSearch(coarse.model, windows, coarse.prior).search(target=0.0, budget=12)
+    assert found.objective < at_start.objective
+    assert found.solves == 12
+    assert not found.reached

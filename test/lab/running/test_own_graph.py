@@ -1,0 +1,66 @@
+"""Two graphs at once are in domains of their own, whoever made them."""
+
+import socket
+import subprocess
+import sys
+from contextlib import ExitStack
+
+import pytest
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.lab.running import own_graph as module
+from trawl_ros.lab.running.own_graph import DOMAINS, own_graph
+
+OTHER = """\
+import sys
+from pathlib import Path
+from trawl_ros.lab.running import own_graph as module
+module.DOMAINS = (41,)
+with module.own_graph(Path('log')) as graph:
+    print(graph['ROS_DOMAIN_ID'], flush=True)
+    sys.stdin.read()
+"""
+
+
+def domain(graph):
+    return int(graph['ROS_DOMAIN_ID'])
+
+
+@pytest.fixture
+def domains(monkeypatch):
+    """Leave only so many to choose from."""
+    return lambda *left: monkeypatch.setattr(module, 'DOMAINS', left)
+
+
+def test_as_many_at_once_as_there_are_domains_share_none(tmp_path, domains):
+    domains(*DOMAINS[:8])
+    with ExitStack() as stack:
+        graphs = [stack.enter_context(own_graph(tmp_path)) for _ in range(8)]
+        assert {domain(graph) for graph in graphs} == set(DOMAINS[:8])
+        with pytest.raises(TrawlError, match='all in use, expected a free one'):
+            stack.enter_context(own_graph(tmp_path))
+    with own_graph(tmp_path):
+        pass
+
+
+def test_a_process_holds_its_domain_against_another_until_it_is_killed(tmp_path, domains):
+    domains(41)
+    with subprocess.Popen(
+        [sys.executable, '-c', OTHER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout.readline() == '41\n'
+        with pytest.raises(TrawlError), own_graph(tmp_path):
+            pass
+        other.kill()
+        other.wait()
+    with own_graph(tmp_path) as graph:
+        assert domain(graph) == 41
+
+
+def test_a_domain_in_which_another_program_has_a_node_is_left_to_it(tmp_path, domains):
+    domains(42, 43)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as node:
+        node.bind(('127.0.0.1', 7410 + 250 * 42))
+        for _ in range(5):
+            with own_graph(tmp_path) as graph:
+                assert domain(graph) == 43

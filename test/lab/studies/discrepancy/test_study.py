@@ -1,0 +1,265 @@
+"""The blind tests hide what they say, keep the key away, and count what was said."""
+
+import json
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from trawl_ros.cli.main import trawl
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.lab.studies.discrepancy.scoring.figure import kind_of
+from trawl_ros.lab.studies.discrepancy.scoring.rows import (
+    all_rows,
+    bag_rows,
+    clean_rows,
+    inside_rows,
+    outside_rows,
+    pair_rows,
+    poor_rows,
+    shuffled_rows,
+)
+from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
+from trawl_ros.lab.studies.discrepancy.stages import run_blind
+from trawl_ros.lab.studies.discrepancy.trials.making import make
+from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, Plan
+from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
+from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
+from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
+from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows, write_windows
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.observables import OBSERVABLES
+
+SEED = 5
+ALONE = {name: (name,) for name in INSIDE} | {'heave': ('heave', 'speed_log')}
+"""Classes."""
+
+
+@pytest.fixture(scope='module')
+def plant():
+    return draw_plant('kaifuha', FINER, SEED, 0)
+
+
+def scored(verdict, names=(), hidden=('catch_build_up',), series='inside', strength=3.0, **more):
+    """A trial of which that was said."""
+    spec = Spec(series, 0, tuple(hidden), strength, (1.0,) * len(hidden), 0)
+    truth = np.ones(len(COEFFICIENTS))
+    key = {
+        'spec': asdict(spec) | {'effects': list(hidden)},
+        'sizes': [2.0] * len(hidden),
+        'coefficients': truth.tolist(),
+        'why_not': '',
+        'floor': {'net_depth': 1.0},
+    }
+    diagnosis = {
+        'verdict': verdict,
+        'effects': [
+            {'name': name, 'class': [name], 'parameters': {'one': {'low': 1.5, 'high': 2.5}}}
+            for name in names
+        ],
+        'ambiguous_with': more.get('ambiguous', []),
+        'channels': {
+            'net_depth': {'before': 3.0, 'after': 1.2, 'placebo': 2.9, 'expected': 1.0},
+        },
+        'excess_removed': more.get('removed', 0.9),
+        'excess_removed_by_placebo': 0.1,
+        'coefficients': {
+            name: {'before': {'value': 2.0, 'std': 0.1}, 'after': {'value': 1.1, 'std': 0.1}}
+            for name in COEFFICIENTS
+        },
+    }
+    return Scored(key, diagnosis)
+
+
+def value(rows, what):
+    (row,) = [row for row in rows if row.what == what]
+    return row
+
+
+def test_everything_of_the_catalogue_that_shows_in_steady_tows_is_hidden():
+    shows = {name for name, effect in catalogue().items() if not effect.dynamic}
+    assert set(INSIDE) == shows
+    assert len(OUTSIDE) >= 10
+    assert not set(OUTSIDE) & set(catalogue())
+
+
+@pytest.mark.parametrize('name', [*INSIDE, *OUTSIDE])
+def test_what_is_hidden_shows_in_examined_tows_alone(plant, name):
+    hidden = {**INSIDE, **OUTSIDE}[name](np.random.default_rng(3))
+    clean = np.array([[look.values for look in tow] for tow in plant.towed(())])
+    there = np.array(
+        [[look.values for look in tow] for tow in plant.towed([(hidden, 1.0 * hidden.probe)])]
+    )
+    nothing = np.array([[look.values for look in tow] for tow in plant.towed([(hidden, 0.0)])])
+    scale = np.abs(clean).max(axis=(0, 1))
+    changed = np.abs(there - clean) / scale
+    assert not changed[: FULL.baseline].any()
+    if name != 'board_stall' or _stalls(plant):
+        assert changed[FULL.baseline :].max() > 1e-4
+    np.testing.assert_allclose(nothing / scale, clean / scale, atol=1e-5)
+
+
+def _stalls(plant):
+    attack = OBSERVABLES.index('port_attack')
+    return max(look.values[attack] for tow in plant.towed(()) for look in tow) > np.radians(16.0)
+
+
+def test_a_trial_is_the_same_wherever_it_is_made_and_its_strength_is_in_its_key():
+    spec = Spec('inside', 3, ('spread_sensor',), 3.0, (-1.0,), 0)
+    key, made = make(spec, 'kaifuha', FINER, SEED)
+    again, same = make(spec, 'kaifuha', FINER, SEED)
+    assert key == again
+    assert made == same
+    assert key.sizes[0] == pytest.approx(-3.0 * key.detectable[0])
+    assert len(made.windows) == len(made.quiet) == sum(len(tow.states) for tow in FULL.tows)
+    twice, _ = make(replace(spec, strength=6.0), 'kaifuha', FINER, SEED)
+    assert twice.detectable == key.detectable
+
+
+def test_what_is_not_possible_is_not_testable():
+    spec = Spec('inside', 4, ('warp_strumming',), 6.0, (-1.0,), 0)
+    key, made = make(spec, 'kaifuha', FINER, SEED)
+    assert made is None
+    assert not key.testable
+    assert 'warp_strumming' in key.why_not
+
+
+def test_windows_survive_their_file(tmp_path):
+    _, made = make(Spec('clean', 0, (), 0.0, (), 0), 'kaifuha', FINER, SEED)
+    windows = made.windows
+    write_windows(tmp_path / 'a.json', windows)
+    assert read_windows(tmp_path / 'a.json') == windows
+    text = (tmp_path / 'a.json').read_text()
+    assert not any(word in text for word in ('seed', 'plant', 'size', 'effect'))
+
+
+def test_rates_count_what_was_said():
+    trials = [
+        scored('NAMED', ['catch_build_up']),
+        scored('NAMED', ['net_drag']),
+        scored('AMBIGUOUS', ['net_drag'], ambiguous=['catch_build_up']),
+        scored('UNKNOWN'),
+        scored('NO_DISCREPANCY', strength=1.5),
+    ]
+    rows = inside_rows(trials, ALONE)
+    assert value(rows, 'right single name, or class, at 3 times').value == 25.0
+    assert value(rows, 'wrong single name').value == 20.0
+    assert value(rows, 'truth within the set that is reported').value == pytest.approx(200 / 3)
+    assert value(rows, 'detected at 1.5 times').value == 0.0
+    assert value(rows, 'mean size of the set at 3 times').value == pytest.approx(4 / 3)
+    assert not value(rows, 'wrong single name').ok
+
+
+def test_alarms_and_foreign_effects_are_counted():
+    clean = [
+        scored('NO_DISCREPANCY', hidden=(), series='clean', strength=0.0),
+        scored('NAMED', ['net_drag'], hidden=(), series='clean', strength=0.0),
+    ]
+    assert [row.value for row in clean_rows(clean)] == [50.0, 50.0]
+    outside = [
+        scored('UNKNOWN', hidden=('jet',), series='outside', strength=6.0),
+        scored('NAMED', ['current_shear'], hidden=('jet',), series='outside', strength=6.0),
+    ]
+    assert value(outside_rows(outside), 'UNKNOWN at 6 times').value == 50.0
+    assert value(outside_rows(outside), 'wrong name').value == 50.0
+
+
+def test_of_two_effects_both_count_and_one_is_told_apart():
+    hidden = ('net_drag', 'heave')
+    pairs = [
+        scored('NAMED', ['heave', 'net_drag'], hidden=hidden, series='pair'),
+        scored('NAMED', ['heave'], hidden=hidden, series='pair'),
+        scored('NAMED', ['speed_log'], hidden=hidden, series='pair'),
+        scored('AMBIGUOUS', ['heave'], hidden=hidden, series='pair', ambiguous=['net_drag']),
+    ]
+    assert [row.value for row in pair_rows(pairs, ALONE)] == [25.0, 25.0]
+    assert [kind_of(trial, ALONE) for trial in pairs] == [
+        'right name', 'one of two', 'wrong name', 'several names, the right one among them',
+    ]  # fmt: skip
+    beside = scored('NAMED', ['catch_build_up', 'heave'])
+    assert kind_of(beside, ALONE) == 'right name and another beside it'
+
+
+def test_a_repair_is_measured_against_the_truth():
+    trial = scored('NAMED', ['catch_build_up'])
+    quiet = {'parameters': {'one': 1.2}, 'coefficients': dict.fromkeys(COEFFICIENTS, 1.1)}
+    rows = repair_rows([replace(trial, quiet=quiet)], ALONE)
+    assert [row.value for row in rows] == pytest.approx([94.5, 7.375, 0.1, 0.0, 0.0, 100.0])
+
+
+def test_what_is_alike_in_every_such_trial_is_as_good_as_the_name():
+    named = [
+        scored('NAMED', ['speed_log'], hidden=('heave',)),
+        scored('NAMED', ['heave'], hidden=('speed_log',)),
+    ]
+    rows = inside_rows(named, ALONE)
+    assert value(rows, 'right single name, or class, at 3 times').value == 50.0
+    assert value(rows, 'wrong single name').value == 50.0
+
+
+def test_a_tow_that_parts_leaves_one_name():
+    followed = [
+        scored('NAMED', ['counter_scale'], hidden=('counter_scale',), series='followed'),
+        scored('AMBIGUOUS', ['counter_scale'], hidden=('counter_scale',), series='followed',
+               ambiguous=['counter_offset']),
+    ]  # fmt: skip
+    row = value(poor_rows(followed, ALONE), 'the proposed tow parts what could not be told apart')
+    assert row.value == 50.0
+    assert not row.ok
+
+
+def test_bags_are_set_beside_their_windows():
+    first, other = scored('NAMED', ['catch_build_up']), scored('UNKNOWN')
+    again = scored('NAMED', ['catch_build_up'])
+    again.key['spec'].update(number=1, form='bags', like=0)
+    rows = bag_rows([first, again])
+    assert rows[0].value == 100.0
+    other.key['spec'].update(number=1, form='bags', like=0)
+    rows = bag_rows([first, other])
+    assert rows[0].value == 0.0
+    assert 'catch_build_up NAMED UNKNOWN' in rows[0].note
+    rows = bag_rows([replace(first, diagnosis=None), other])
+    assert rows[0].note == 'no trials'
+
+
+def test_shuffled_keys_score_as_chance_would():
+    trials = [
+        scored('NAMED', [name], hidden=(name,)) for name in list(INSIDE)[:10] for _ in range(10)
+    ]
+    (row,) = shuffled_rows(trials, ALONE)
+    assert row.value < 30.0
+    assert all(isinstance(rows, tuple) for _, rows in all_rows(trials, ALONE))
+
+
+def test_another_plan_in_the_same_folder_is_refused(tmp_path):
+    steps = pytest.fail
+    (tmp_path / 'plan.json').write_text(json.dumps(asdict(Plan(seed=1))))
+    with pytest.raises(TrawlError, match=r'another seed.*--force'):
+        run_blind(Plan(seed=2), tmp_path, steps)
+
+
+@pytest.mark.slow
+def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
+    out = tmp_path / 'report'
+    few = ['study', 'discrepancy', '--out', str(out), '--seed', '1', '--clean', '1', '--inside',
+           '0', '--outside', '0', '--pairs', '0', '--poor', '0', '--dynamic', '0']  # fmt: skip
+    first = CliRunner().invoke(trawl, few)
+    assert first.exit_code == 0, first.output
+    records = json.loads((out / 'discrepancy.json').read_text())['rows']
+    assert {'what', 'value', 'low', 'high', 'target', 'ok', 'note'} <= set(records[0])
+    for name in ('discrepancy.md', 'discrepancy.html'):
+        text = (out / name).read_text()
+        assert all(record['what'] in text for record in records)
+    seen = {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()}
+    assert len(seen) == 1
+    assert len((out / 'scorings.jsonl').read_text().splitlines()) == 1
+    again = CliRunner().invoke(trawl, few)
+    assert again.exit_code == 0, again.output
+    assert {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()} == seen
+    first, second = (out / 'scorings.jsonl').read_text().splitlines()
+    assert json.loads(first)['plan'] == json.loads(second)['plan']
+    assert 'kinds of effects outside the catalogue' in json.loads(first)['missed']

@@ -1,0 +1,128 @@
+"""Chaos in the graph: what happens is planned from a seed, and what is seen is reported."""
+
+import json
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+
+from trawl_ros.cli.main import trawl
+from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.lab.running.chain import Glance
+from trawl_ros.lab.studies.chaos.crew import Recording
+from trawl_ros.lab.studies.chaos.kills import Kills
+from trawl_ros.lab.studies.chaos.plan import REPERTOIRE, Plan, faults_of
+from trawl_ros.lab.studies.chaos.report import write_chaos
+from trawl_ros.lab.studies.chaos.rows import chaos_rows
+from trawl_ros.lab.studies.chaos.study import Chaos, run_chaos
+from trawl_ros.lab.studies.chaos.tow import Tow
+from trawl_ros.messages.estimates import COEFFICIENTS
+
+CONSOLE = error_console()
+NODES = ('sim_node', 'bag_recorder', 'winch_node', 'door_sensor_node', 'trawl_sonar_node',
+         'vessel_node', 'identification_node')  # fmt: skip
+
+
+def estimate(value=1.0, windows='3'):
+    named = {name: str(value) for name in COEFFICIENTS}
+    ends = {f'{name} {end}': str(value + at) for name in COEFFICIENTS
+            for end, at in (('low', -0.2), ('high', 0.2))}  # fmt: skip
+    return {'windows': windows, 'reason': '', **named, **ends}
+
+
+def tow(value=1.0, **kwargs):
+    memory = dict.fromkeys(NODES, 200.0)
+    seen = Glance(3599.0, 80.0, memory, memory, {})
+    bags = [Recording(Path('bag0'), 'killed', 9.0, 0.4, 100), Recording(Path('bag1'), messages=5)]
+    made = Tow(glances=[seen], recordings=bags, towed_s=3599.5, estimate=estimate(value))
+    return replace(made, **kwargs)
+
+
+def missed(wild, calm=None, kills=None):
+    chaos = Chaos(Plan(), calm or tow(), wild, kills or Kills((), 0.0))
+    return [row.what for _, rows in chaos_rows(chaos) for row in rows if not row.ok]
+
+
+def test_an_hour_holds_every_fault_once_in_the_order_of_a_seed():
+    faults = faults_of(Plan())
+    assert sorted((f.kind, f.target) for f in faults) == sorted(REPERTOIRE)
+    assert [f.at_s for f in faults] == sorted(f.at_s for f in faults)
+    assert 180.0 <= faults[0].at_s < faults[-1].at_s <= 3420.0
+    assert faults == faults_of(Plan())
+    assert [f.target for f in faults] != [f.target for f in faults_of(Plan(seed=17))]
+
+
+def test_a_tow_that_took_no_harm_reaches_every_target():
+    assert missed(tow(1.19)) == []
+
+
+@pytest.mark.parametrize(
+    ('harm', 'row'),
+    [
+        ({'value': 1.21}, 'estimate off the undisturbed one'),
+        ({'towed_s': 3000.0}, 'tow that is missing to the whole'),
+        ({'died': [(7.0, 'winch_node ended with code 1; its last output (x):\n  ouch')]},
+         'nodes ended by themselves'),
+        ({'mute': ['bag_recorder goes on']}, 'full disks that were not told in a sentence'),
+        ({'recordings': [Recording(Path('bag0'), problem='nothing can be saved')]},
+         'bags that cannot be read, repaired'),
+        ({'recordings': [Recording(Path('bag0'), 'killed', 9.0, 1.1, 100)]},
+         'lost before kills and full disks'),
+        ({'estimate': {'windows': '0', 'reason': ''}},
+         'estimates without a reason why there is none'),
+    ],
+)  # fmt: skip
+def test_each_harm_is_a_target_missed(harm, row):
+    assert row in missed(tow(**harm))
+
+
+def test_no_estimate_is_well_where_the_reason_is_said():
+    assert missed(tow(estimate={'windows': '0', 'reason': 'no steady window'})) == []
+
+
+def test_a_tow_on_which_no_recorder_was_cut_short_has_lost_nothing():
+    assert missed(tow(recordings=[Recording(Path('bag0'), messages=5)])) == []
+
+
+def test_the_worst_of_the_kills_counts():
+    killed = [Recording(Path('bag'), 'killed', 9.0, lost, 100, 1) for lost in (0.2, 1.3, 0.1)]
+    assert missed(tow(), kills=Kills(tuple(killed), 3.0)) == ['lost before the kill']
+
+
+@contextmanager
+def counted(title, number):
+    yield lambda: None
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.timeout(500)
+def test_three_minutes_at_sea_and_two_kills(tmp_path):
+    plan = Plan(hours=0.05, kills=2, seed=3)
+    shown = lambda title, total_s: TimeProgress(title, total_s, CONSOLE)  # noqa: E731
+    chaos = run_chaos(plan, tmp_path, shown, counted, lambda: False)
+    assert [fault.kind for fault in chaos.wild.done] == [f.kind for f in faults_of(plan)]
+    rows = write_chaos(tmp_path, chaos)
+    assert [row.what for row in rows if not row.ok] == []
+    assert len(chaos.kills.recordings) == 2
+    records = json.loads((tmp_path / 'chaos.json').read_text())['rows']
+    assert [record['what'] for record in records] == [row.what for row in rows]
+    assert (tmp_path / 'chaos.md').is_file()
+    assert not list(tmp_path.glob('*/bag*')), 'bags are gone again'
+
+
+@pytest.mark.parametrize(
+    ('options', 'sentence'),
+    [(['--gear', 'unheard-of'], 'there are: kaifuha.yaml'), (['--hours', '100'], '--hours')],
+)
+def test_what_cannot_be_is_refused(tmp_path, options, sentence):
+    out = tmp_path / 'out'
+    result = CliRunner().invoke(trawl, ['study', 'chaos', '--out', str(out), *options])
+    assert result.exit_code != 0
+    assert sentence in result.output
+    assert not out.exists()

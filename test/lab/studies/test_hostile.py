@@ -1,0 +1,44 @@
+"""Every subscription of every node bears messages that make no sense."""
+
+import numpy as np
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.core.errors import MessageError  # noqa: E402
+from trawl_ros.lab.studies.hostile.mutations import hostile  # noqa: E402
+from trawl_ros.lab.studies.hostile.report import rows_of  # noqa: E402
+from trawl_ros.lab.studies.hostile.study import STEPS, run_hostile  # noqa: E402
+from trawl_ros.messages.cdr import deserialize, serialize  # noqa: E402
+from trawl_ros.messages.commands import winch_command  # noqa: E402
+from trawl_ros.messages.fields import not_finite  # noqa: E402
+
+pytestmark = pytest.mark.ros
+JOINTS = 'sensor_msgs/msg/JointState'
+
+
+def test_hostile_messages_are_of_many_kinds():
+    sound = serialize(winch_command(5_000_000_000, 300.0, 301.0)[1])
+    rng = np.random.default_rng(4)
+    unread, stamps, nonsense = 0, set(), 0
+    for _ in range(500):
+        try:
+            message = deserialize(hostile(sound, JOINTS, rng), JOINTS)
+        except MessageError:
+            unread += 1
+            continue
+        stamps.add(message.header.stamp.sec)
+        nonsense += bool(not_finite(message))
+    assert unread > 50
+    assert nonsense > 10
+    assert {-5, 2**31 - 1} <= stamps
+
+
+@pytest.mark.slow
+def test_no_node_ends_and_nothing_moves_silently():
+    steps = []
+    found = run_hostile(2000, 7, lambda: steps.append(1), minutes=3.0)
+    assert len(steps) == STEPS
+    missed = [row for row in rows_of(found)[1:] if row.asked and not row.ok]
+    assert not missed
+    assert found.moved.windows[0] > 0

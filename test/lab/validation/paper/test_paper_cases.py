@@ -1,0 +1,65 @@
+"""The small version of each case on section IV: complete, drawn, and every failure explained."""
+
+from functools import cache
+
+import pytest
+
+from trawl_ros.lab.report.check import Outcome
+from trawl_ros.lab.validation.cases import SECTIONS, load_case
+
+FIGURES = {
+    'warp_sweep': ('fig6',),
+    'installation': ('fig7_to_12',),
+    'degrees_of_freedom': ('fig13_to_16', 'all_states'),
+    'identified': ('fig4', 'fig5'),
+    'sentences': (),
+}
+
+
+@cache
+def small(name: str) -> Outcome:
+    """The small version of a case, run once."""
+    return load_case(name).run(True)
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize('name', SECTIONS['paper'])
+def test_a_small_case_is_whole(name: str) -> None:
+    found = small(name)
+    assert tuple(drawing.name for drawing in found.drawings) == FIGURES[name]
+    for table in found.tables:
+        assert all(len(row) == len(table.head) for row in table.rows)
+    keys = [check.key for check in found.checks]
+    assert len(set(keys)) == len(keys)
+    for check in found.checks:
+        assert check.measured == check.measured, check.key
+        assert check.ok or check.note, check.key
+    if name != 'sentences':
+        assert all(check.ok for check in found.checks), found.checks
+
+
+DIRECTIONS = (
+    'lift_slope',
+    'drag_slope',
+    'tension_follows',
+    'epsilon_attack',
+    'epsilon_inclination',
+    'epsilon_rolling',
+    'eta_attack',
+    'eta_inclination',
+    'eta_rolling',
+    'depth_by_epsilon',
+    'lift_growth',
+    'growth_door_depth',
+    'growth_net_depth',
+    'lean_growth',
+    'upward_growth',
+)
+"""Sentences that hold for the coarser net of the small version too."""
+
+
+@pytest.mark.timeout(120)
+def test_directions_are_the_papers() -> None:
+    checks = {check.key: check for check in small('sentences').checks}
+    for key in DIRECTIONS:
+        assert checks[key].ok, checks[key]

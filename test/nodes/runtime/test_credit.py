@@ -1,0 +1,173 @@
+"""A source waits for its consumers, but never for one that can no longer come to where it is."""
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.core.limits import Limit  # noqa: E402
+from trawl_ros.core.time import SECOND  # noqa: E402
+from trawl_ros.messages.stamps import header  # noqa: E402
+from trawl_ros.nodes.runtime import credit  # noqa: E402
+from trawl_ros.nodes.runtime.credit import HEADER, SYNC, Consumers, Progress  # noqa: E402
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 100
+WALL_CLOCK = 1_700_000_000 * SECOND
+"""Stamps of a source that does not publish a clock."""
+
+
+class Source(TrawlNode):
+    """Has come to 60 s after its beginning, and needs `needed`."""
+
+    def __init__(self, **kwargs):
+        super().__init__('source', **kwargs)
+        self.consumers = Consumers(self, ['needed'])
+
+
+class Reporter(TrawlNode):
+    """Reports for any consumer, so that one node plays all."""
+
+    def __init__(self, **kwargs):
+        super().__init__('reporter', **kwargs)
+        self.advertise(SYNC, HEADER)
+
+    def report(self, name, stamp):
+        self.send(SYNC, header(stamp, name))
+
+
+@pytest.fixture(scope='module')
+def graph(open_graph):
+    with open_graph(DOMAIN) as graph:
+        yield graph
+
+
+@pytest.fixture(scope='module')
+def nodes(graph):
+    source, reporter = graph.add(Source), graph.add(Reporter)
+    graph.until(lambda: reporter._senders[SYNC].get_subscription_count() == 1)
+    return source, reporter
+
+
+@pytest.fixture(params=[0, WALL_CLOCK], ids=['simulated time', 'time of the wall'])
+def begin(request):
+    return request.param
+
+
+@pytest.fixture
+def source(nodes, begin):
+    source, _ = nodes
+    source.consumers._heard.clear()
+    source.consumers.begin(begin)
+    source.consumers.sent(begin + 60 * SECOND)
+    return source
+
+
+@pytest.fixture
+def report(graph, nodes, source):
+    """Report for a consumer and wait until the source has heard it."""
+    _, reporter = nodes
+
+    def say(name, stamp):
+        before = source.traffic.total('received')
+        reporter.report(name, stamp)
+        graph.until(lambda: source.traffic.total('received') > before)
+
+    return say
+
+
+def test_the_needed_count_from_the_beginning(source, report, begin):
+    report('needed', 0)
+    assert source.consumers.slowest() == begin
+    report('needed', begin + 58 * SECOND)
+    assert source.consumers.slowest() == begin + 58 * SECOND
+
+
+def test_who_joins_late_is_waited_for_once_something_has_reached_it(source, report, begin):
+    report('needed', begin + 59 * SECOND)
+    report('late', 0)
+    assert source.consumers.slowest() == begin + 59 * SECOND
+    report('late', begin + 57 * SECOND)
+    assert source.consumers.slowest() == begin + 57 * SECOND
+
+
+def test_who_was_started_anew_is_not_waited_for_where_it_left_off(source, report, begin):
+    report('needed', begin + 50 * SECOND)
+    report('needed', 0)
+    assert source.consumers.slowest() is None
+    assert not source.consumers.missing()
+    report('needed', begin + 60 * SECOND)
+    assert source.consumers.slowest() == begin + 60 * SECOND
+
+
+def test_who_is_silent_for_long_is_missing_and_not_waited_for(graph, source, report, begin,
+                                                              monkeypatch):  # fmt: skip
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.slowest() == begin + 50 * SECOND
+    monkeypatch.setattr(credit, 'SILENT_S', 0.2)
+    graph.until(lambda: source.consumers.missing() == ['needed'])
+    assert source.consumers.slowest() is None
+    monkeypatch.undo()
+    report('needed', begin + 51 * SECOND)
+    assert source.consumers.slowest() == begin + 51 * SECOND
+
+
+def test_progress_from_before_the_beginning_is_worth_nothing(source, report, begin):
+    report('needed', begin + 61 * SECOND)
+    assert source.consumers.slowest() == begin
+
+
+def test_who_does_not_get_on_is_waited_for_for_a_while_and_again_once_it_does(
+    source, report, begin, monkeypatch
+):
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.followed(begin + 50 * SECOND)
+    assert not source.consumers.followed(begin + 55 * SECOND)
+    assert not source.consumers.stalled()
+    monkeypatch.setattr(credit, 'STALLED_S', 0.0)
+    assert source.consumers.stalled() == ['needed']
+    assert source.consumers.followed(begin + 55 * SECOND)
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.stalled() == ['needed']
+    report('needed', begin + 51 * SECOND)
+    assert not source.consumers.stalled()
+    assert not source.consumers.followed(begin + 55 * SECOND)
+
+
+def test_old_progress_takes_nothing_back(source, report, begin):
+    report('needed', begin + 59 * SECOND)
+    report('needed', begin + 2 * SECOND)
+    assert source.consumers.slowest() == begin + 59 * SECOND
+
+
+def test_names_that_never_end_are_not_kept(source, report, begin, monkeypatch):
+    monkeypatch.setattr(credit, 'CONSUMERS', Limit(2, '', ''))
+    for number in range(5):
+        report(f'consumer {number}', begin + SECOND)
+    assert len(source.consumers._heard) == 2
+
+
+class Follower(TrawlNode):
+    """Deals with what another consumer sends."""
+
+    def __init__(self, **kwargs):
+        super().__init__('follower', **kwargs)
+        self.progress = Progress(self, idle=lambda: self.idle)
+        self.time = 5 * SECOND
+        self.idle = False
+
+    def now(self):
+        return self.time
+
+
+def test_who_follows_a_consumer_that_fell_silent_comes_as_far_as_the_clock(graph):
+    follower = graph.add(Follower)
+    graph.rest(1.5 * credit.IDLE_S)
+    assert follower.progress.stamp == credit.NOTHING, 'it has not begun'
+    follower.progress.done(3 * SECOND)
+    graph.rest(1.5 * credit.IDLE_S)
+    assert follower.progress.stamp == 3 * SECOND, 'it is still busy'
+    follower.idle = True
+    graph.until(lambda: follower.progress.stamp == 5 * SECOND)
+    graph.remove(follower)

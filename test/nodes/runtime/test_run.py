@@ -1,0 +1,103 @@
+"""However a node ends, it does so with an exit code, and with a sentence where one is due."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 91
+NODE = """\
+import sys
+from trawl_ros.core.errors import BagError
+from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.run import run
+
+class Tried(TrawlNode):
+    DRAINS = True
+
+    def __init__(self, **kwargs):
+        super().__init__('tried', **kwargs)
+        print('up', flush=True)
+        self.every(0.2, self.act)
+
+    def act(self):
+        {act}
+
+    def finish_work(self):
+        print('finished', flush=True)
+
+sys.exit(run(Tried, sys.argv))
+"""
+
+
+@pytest.fixture
+def start(tmp_path):
+    started = []
+
+    def start_node(act, *arguments):
+        process = subprocess.Popen(
+            [sys.executable, '-c', NODE.format(act=act), *arguments],
+            env={**os.environ, 'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(tmp_path)},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        started.append(process)
+        return process
+
+    yield start_node
+    for process in started:
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+
+
+def test_an_error_while_it_runs_is_one_sentence(start):
+    process = start("raise BagError('trial: the disk is full')")
+    output, errors = process.communicate(timeout=20.0)
+    assert process.returncode == 1
+    (line,) = errors.splitlines()
+    assert line.startswith('[ERROR]')
+    assert line.endswith('[trawl.tried]: trial: the disk is full')
+    assert output == 'up\nfinished\n'
+
+
+@pytest.mark.parametrize('code', [0, 3])
+def test_a_node_may_end_by_itself(start, code):
+    process = start(f'self.end({code})')
+    output, _ = process.communicate(timeout=20.0)
+    assert process.returncode == code
+    assert output == 'up\nfinished\n'
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM], ids=lambda n: n.name)
+def test_signals_end_it_cleanly_even_when_they_come_twice(start, number):
+    process = start('pass')
+    assert process.stdout.readline() == 'up\n'
+    process.send_signal(number)
+    time.sleep(0.05)
+    process.send_signal(number)
+    output, errors = process.communicate(timeout=20.0)
+    assert (process.returncode, output, errors) == (0, 'finished\n', '')
+
+
+def test_arguments_that_mean_nothing_are_refused(start):
+    process = start('pass', '--speed', '3')
+    _, errors = process.communicate(timeout=20.0)
+    assert process.returncode == 1
+    assert errors.startswith('-c: --speed 3: not understood; expected parameters such as')
+
+
+def test_the_namespace_may_be_another(start):
+    process = start('print(self.full_name("truth/winch")); self.end(0)',
+                    '--ros-args', '-r', '__ns:=/training')  # fmt: skip
+    output, _ = process.communicate(timeout=20.0)
+    assert '/training/truth/winch' in output

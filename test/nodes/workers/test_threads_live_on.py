@@ -1,0 +1,71 @@
+"""The estimator's threads outlive an error of the program, and say it."""
+
+import asyncio
+from queue import SimpleQueue
+from types import SimpleNamespace
+
+import numpy as np
+
+from trawl_ros.estimation.from_gear import identification_for
+from trawl_ros.gear.load import load_gear
+from trawl_ros.nodes.workers.advice_worker import AdvisingThread
+from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
+from trawl_ros.records.samples import WinchSample
+
+PATIENCE_S = 10.0
+
+
+def broken(*_):
+    raise ZeroDivisionError('nothing to divide by')
+
+
+async def granted(wish):
+    await wish
+    return wish.outcome
+
+
+def said_whole(trouble):
+    return (
+        trouble.startswith('an error of the program; Traceback')
+        and 'ZeroDivisionError: nothing to divide by' in trouble
+    )
+
+
+def test_a_state_that_cannot_be_saved_is_said_and_the_next_sample_is_used(coarse_gear):
+    outcomes, dealt = [], []
+    identification = identification_for(load_gear(coarse_gear))
+    worker = IdentificationWorker(identification, outcomes.append, dealt.append, broken, str)
+    worker.start()
+    worker.feed(WinchSample(1, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
+    asyncio.run(granted(worker.finish()))
+    assert said_whole(outcomes[-1].troubles['saving'])
+    worker.feed(WinchSample(2, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
+    worker.stop()
+    assert dealt == [1, 2]
+
+
+def test_a_report_that_cannot_be_written_ends_the_wish_and_not_the_thread(coarse_gear):
+    identification = identification_for(load_gear(coarse_gear))
+    worker = IdentificationWorker(
+        identification, lambda _: None, lambda _: None, lambda _: None, broken
+    )
+    worker.start()
+    worker.feed(WinchSample(1, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
+    ended = asyncio.run(granted(worker.finish()))
+    assert ended.failed
+    assert said_whole(ended.finished)
+    assert worker.is_alive()
+    worker.stop()
+
+
+def test_advice_that_fails_is_said_and_sought_again():
+    told = SimpleQueue()
+    adviser = SimpleNamespace(advise=broken, look_up=broken)
+    thread = AdvisingThread(adviser, lambda: True, lambda *what: told.put(what))
+    thread.start()
+    for _ in range(2):
+        thread.fitted(SimpleNamespace(windows=(), coefficients=np.zeros(12)))
+        advice, trouble = told.get(timeout=PATIENCE_S)
+        assert advice is None
+        assert said_whole(trouble)
+    thread.stop()

@@ -1,0 +1,42 @@
+"""The table of topics is consistent in itself and with the message definitions."""
+
+from trawl_ros.messages.cdr import STORE
+from trawl_ros.records.topics import (
+    COMMANDS,
+    ESTIMATES,
+    INSTRUMENTS,
+    TOPICS,
+    TRUTH,
+    absolute,
+    find_topic,
+)
+
+
+def test_no_name_stands_twice():
+    assert len(TOPICS) == len(TRUTH) + len(INSTRUMENTS) + len(ESTIMATES) + len(COMMANDS) + 2
+
+
+def test_types_are_known():
+    assert all(topic.type in STORE.types for topic in TOPICS.values())
+
+
+def test_a_frame_is_stated_where_the_type_has_one():
+    for topic in (*TRUTH, *INSTRUMENTS, *COMMANDS):
+        has_header = any(name == 'header' for name, _ in STORE.fielddefs[topic.type][1])
+        assert bool(topic.frame) == has_header, topic.name
+
+
+def test_names_get_the_namespace():
+    assert absolute('truth/winch') == '/trawl/truth/winch'
+    assert absolute('truth/winch', '/ship/a/') == '/ship/a/truth/winch'
+    assert absolute('truth/winch', '') == '/truth/winch'
+    assert absolute('/clock') == '/clock'
+
+
+def test_topics_are_found_under_either_name():
+    assert find_topic('/trawl/truth/winch') is TOPICS['truth/winch']
+    assert find_topic('truth/winch') is TOPICS['truth/winch']
+    assert find_topic('/diagnostics') is TOPICS['/diagnostics']
+    assert find_topic('/ship/truth/winch', 'ship') is TOPICS['truth/winch']
+    assert find_topic('/other/truth/winch') is None
+    assert find_topic('/trawl/somebody/else') is None

@@ -1,0 +1,1 @@
+"""Logs of others made into bags: tables, and NMEA 0183."""

@@ -1,0 +1,313 @@
+"""Import of foreign CSV logs as bags, by a mapping from columns to topics.
+
+Everything is read before anything is written: a log with a mistake in its last line leaves no
+half a bag.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from trawl_ros.bags.logs.clock import ClockReader
+from trawl_ros.bags.logs.layout import BadRow, Row, read_rows
+from trawl_ros.bags.logs.mapping import Column, LogMapping, TopicMapping, Water, load_mapping
+from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
+from trawl_ros.bags.logs.units import UNITS
+from trawl_ros.bags.possible import impossible, impossible_compass
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.errors import LogError
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.records.samples import (
+    AttitudeSample,
+    FixSample,
+    HeadingSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
+from trawl_ros.records.topics import RANGES, absolute
+from trawl_ros.records.truth import SIDES
+
+_WINCH_READINGS = ('length', 'speed', 'tension')
+_WHAT = {topic: what for what, topic in RANGES.items()}
+
+NO_READING = 'no reading, or none that is new'
+
+
+@dataclass(frozen=True)
+class Imported:
+    """Result of an import.
+
+    ``rows`` were read, ``counts`` are messages by full topic name, ``left_out`` says how many
+    rows gave none, by reason.
+    """
+
+    rows: int
+    counts: Mapping[str, int]
+    left_out: Mapping[str, int]
+
+
+def import_log(
+    csv_path: str | Path,
+    mapping_path: str | Path,
+    bag_path: str | Path,
+    *,
+    leave_out: bool = False,
+) -> Imported:
+    """Turn a CSV log into a bag.
+
+    Parameters
+    ----------
+    csv_path
+        The log.
+    mapping_path
+        Says how it lies in its file and which column is what; see `LogMapping`.
+    bag_path
+        Folder to be made.
+    leave_out
+        Whether rows that cannot be understood are left out and counted; by default the first
+        of them is an error.
+
+    Returns
+    -------
+    Imported
+        A row gives one message per topic for which it has a reading, stamped with its time. An
+        empty cell or one with NaN gives none; a winch message with some of its readings has NaN
+        for the others.
+
+    Raises
+    ------
+    LogError
+        If log or mapping are missing or wrong; names file, line and column.
+    BagError
+        If the bag exists or cannot be written.
+    """
+    path = Path(csv_path)
+    reading = _Reading(path, load_mapping(mapping_path), leave_out)
+    return write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
+
+
+def write_samples(
+    path: Path,
+    samples: Iterable[Sample],
+    bag_path: str | Path,
+    told: Callable[[], tuple[int, Mapping[str, int]]],
+) -> Imported:
+    """Write the samples of a log as a bag, in the order of time.
+
+    Parameters
+    ----------
+    path
+        The log, which the bag's metadata name.
+    samples
+        What it says.
+    bag_path
+        Folder to be made.
+    told
+        Gives rows read and left out by reason, once all samples are there.
+
+    Raises
+    ------
+    LogError
+        If there is no sample.
+    BagError
+        If the bag exists or cannot be written.
+    """
+    ordered = sorted(samples, key=lambda sample: sample.stamp)
+    rows, left_out = told()
+    if not ordered:
+        why = f' ({listed(left_out)})' if left_out else ''
+        raise LogError(f'{path}: {rows} rows without any reading{why}; expected at least one')
+    counts: Counter[str] = Counter()
+    with BagWriter(bag_path, custom_data={'log': path.name}) as bag:
+        for sample in ordered:
+            topic, message = sample_message(sample)
+            bag.write(absolute(topic), message.__msgtype__, serialize(message), sample.stamp)
+            counts[absolute(topic)] += 1
+    return Imported(rows, counts, left_out)
+
+
+def compass_yaw(compass: float) -> float:
+    """Convert an angle clockwise from north into one counter-clockwise from east, -π to π."""
+    return math.remainder(math.pi / 2 - compass, 2 * math.pi)
+
+
+def course_velocity(speed: float, course: float) -> np.ndarray:
+    """Convert a speed and a compass course (rad) into a velocity (3,) in ``map``."""
+    yaw = compass_yaw(course)
+    return speed * np.array([math.cos(yaw), math.sin(yaw), 0.0])
+
+
+class _Reading:
+    """Single pass through a log, with counts."""
+
+    def __init__(self, path: Path, mapping: LogMapping, leave_out: bool) -> None:
+        self.rows = 0
+        self.left: Counter[str] = Counter()
+        self._path = path
+        self._mapping = mapping
+        self._leave_out = leave_out
+        self._decimal: Literal['.', ','] = mapping.layout.decimal
+        self._missing = set(mapping.missing)
+        self._missing_numbers = {
+            number for text in mapping.missing if (number := _number(text)) is not None
+        }
+        self._clocks = [(clock, ClockReader(clock, self._decimal)) for clock in mapping.clocks()]
+        self._last: dict[str, dict[str, float]] = {}
+
+    def samples(self) -> Iterable[Sample]:
+        keys = [column for clock in self._mapping.clocks() for column in clock.columns]
+        keys += self._mapping.only
+        for row in read_rows(self._path, self._mapping.layout, self._mapping.needed(), keys):
+            self.rows += 1
+            try:
+                if isinstance(row, BadRow):
+                    raise row
+                yield from self._row(row)
+            except BadRow as bad:
+                if not self._leave_out:
+                    raise
+                self.left[bad.reason] += 1
+
+    def _row(self, row: Row) -> list[Sample]:
+        for column, texts in self._mapping.only.items():
+            if row.text(column) not in texts:
+                self.left[f'column {column!r} is not {" or ".join(texts)}'] += 1
+                return []
+        stamps = [self._stamp(row, number) for number in range(len(self._clocks))]
+        found = []
+        own = 0
+        for topic, entry in self._mapping.topics.items():
+            own += entry.clock is not None
+            stamp = stamps[own] if entry.clock else stamps[0]
+            readings = self._readings(row, entry)
+            if entry.changes_only and readings == self._last.get(topic):
+                continue
+            if stamp is not None and (
+                sample := _sample(topic, stamp, readings, entry, self._mapping.water)
+            ):
+                self._refuse_impossible(row, topic, entry, sample, readings)
+                self._last[topic] = readings
+                found.append(sample)
+        if not found:
+            self.left[NO_READING] += 1
+        return found
+
+    def _refuse_impossible(
+        self, row: Row, topic: str, entry: TopicMapping, sample: Sample, readings: dict[str, float]
+    ) -> None:
+        angles = [value for field, value in readings.items() if field.startswith('compass_')]
+        why = impossible(sample) or next(
+            filter(None, (impossible_compass(math.degrees(angle)) for angle in angles)), None
+        )
+        if why:
+            columns = ' and '.join(repr(source.column) for source in entry.fields.values())
+            raise BadRow(
+                f'{row.path}: line {row.line}, column {columns}: found a {why} for {topic}',
+                f'column {columns}: {why}',
+            )
+
+    def _stamp(self, row: Row, number: int) -> int | None:
+        clock, reader = self._clocks[number]
+        text = ' '.join(row.text(column) for column in clock.columns)
+        # A topic that has a clock of its own may have no reading here, and then has no time.
+        if number and text.strip().lower() in self._missing:
+            return None
+        try:
+            return reader.read(text)
+        except ValueError as expected:
+            named = ' and '.join(repr(column) for column in clock.columns)
+            raise BadRow(
+                f'{row.path}: line {row.line}, column {named}: found {text!r}, expected {expected}',
+                f'column {named}: expected {expected}',
+            ) from None
+
+    def _readings(self, row: Row, entry: TopicMapping) -> dict[str, float]:
+        """Give the fields of one topic in SI units; NaN where the row has none."""
+        return {field: self._reading(row, source) for field, source in entry.fields.items()}
+
+    def _reading(self, row: Row, source: Column) -> float:
+        text = row.text(source.column)
+        if text.lower() in self._missing:
+            return math.nan
+        parse = parse_degrees if source.unit == 'deg_min' else parse_number
+        try:
+            number = parse(text, self._decimal)
+        except ValueError as expected:
+            raise row.bad(source.column, f'{expected} ({source.unit})') from None
+        if number in self._missing_numbers:
+            return math.nan
+        if source.hemisphere:
+            try:
+                number *= hemisphere_sign(row.text(source.hemisphere))
+            except ValueError as expected:
+                raise row.bad(source.hemisphere, str(expected)) from None
+        return source.si(number)
+
+
+def _number(text: str) -> float | None:
+    try:
+        return parse_number(text.replace(',', '.'))
+    except ValueError:
+        return None
+
+
+def listed(left_out: Mapping[str, int]) -> str:
+    """List in a line the rows left out, and why."""
+    return '; '.join(f'{count}: {reason}' for reason, count in left_out.items())
+
+
+def _sample(
+    topic: str,
+    stamp: int,
+    readings: dict[str, float],
+    entry: TopicMapping,
+    water: Water | None,
+) -> Sample | None:
+    """Assemble the sample of a topic; None if there is no reading for it."""
+    missing = [math.isnan(value) for value in readings.values()]
+    std = 0.0 if entry.std is None else entry.std.si()
+    if all(missing) if topic == 'winch/joint_states' else any(missing):
+        return None
+    match topic.split('/'):
+        case ['winch', _]:
+            return WinchSample(stamp, *(_pair(readings, what) for what in _WINCH_READINGS))
+        case [*_, place, 'pressure']:
+            if water and entry.std and UNITS[entry.std.unit][0] == 'length':
+                std = water.depth_to_difference(std)
+            if water and 'depth' in readings:
+                return PressureSample(stamp, place, water.pressure(readings['depth']), std)
+            return PressureSample(stamp, place, readings['pressure'], std)
+        case ['door', side, 'attitude']:
+            return AttitudeSample(stamp, side, readings['pitch'], readings['roll'], std)
+        case ['vessel', what]:
+            return _vessel_sample(what, stamp, readings, std)
+    limits = [limit.si() for limit in (entry.min_range, entry.max_range) if limit]
+    return RangeSample(stamp, _WHAT[topic], readings['distance'], std, *limits)
+
+
+def _vessel_sample(what: str, stamp: int, readings: dict[str, float], std: float) -> Sample:
+    match what:
+        case 'velocity_water':
+            velocity = np.array([readings['forward'], readings.get('to_port', 0.0), 0.0])
+            return VelocitySample(stamp, 'water', velocity, math.nan)
+        case 'velocity_ground':
+            velocity = course_velocity(readings['speed'], readings['compass_course'])
+            return VelocitySample(stamp, 'ground', velocity, math.nan)
+        case 'heading':
+            return HeadingSample(stamp, compass_yaw(readings['compass_heading']), std)
+    latitude, longitude = (math.degrees(readings[field]) for field in ('latitude', 'longitude'))
+    return FixSample(stamp, latitude, longitude, std)
+
+
+def _pair(readings: dict[str, float], what: str) -> tuple[float, float]:
+    port, starboard = (readings.get(f'{side}_{what}', math.nan) for side in SIDES)
+    return port, starboard

@@ -1,0 +1,247 @@
+"""Layout of loggers' tables: separators, decimal commas, lines above the names, long tables."""
+
+import codecs
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from io import TextIOWrapper
+from itertools import islice
+from pathlib import Path
+from typing import Annotated, Literal, TextIO
+
+from pydantic import Field, model_validator
+
+from trawl_ros.core.errors import LogError
+from trawl_ros.core.foreign import one_line, open_file, reading
+from trawl_ros.core.schema import Record
+
+MAX_LINE = 1_000_000
+"""Characters in a line; more is no table."""
+
+OF_THE_ROW = ('clock', 'only')
+"""Keys whose columns also a long table has as such."""
+
+BLANKS = 'blanks'
+_NAMED = {'tab': '\t'}
+
+
+class Long(Record):
+    """Long table with one reading per row: columns of its quantity and its value."""
+
+    name: str
+    value: str
+
+
+class Layout(Record):
+    """Layout of a log in its file.
+
+    ``separator`` is one character, ``tab``, or ``blanks`` for any number of them. ``skip_lines``
+    are above the line of column names, ``skip_after_names`` (such as a line of units) below it.
+    ``names`` are the columns' where the file has no such line. Lines that begin with ``comment``
+    count for nothing.
+    """
+
+    encoding: str = 'utf-8'
+    separator: str = ','
+    decimal: Literal['.', ','] = '.'
+    quote: Annotated[str, Field(min_length=1, max_length=1)] = '"'
+    skip_lines: Annotated[int, Field(ge=0)] = 0
+    skip_after_names: Annotated[int, Field(ge=0)] = 0
+    names: tuple[str, ...] | None = None
+    comment: Annotated[str, Field(min_length=1)] | None = None
+    long: Long | None = None
+
+    @model_validator(mode='after')
+    def _makes_sense(self) -> 'Layout':
+        try:
+            codecs.lookup(self.encoding)
+        except LookupError:
+            raise ValueError(
+                f'encoding: found {self.encoding!r}, expected one such as utf-8, cp1252, utf-16'
+            ) from None
+        if self.separator not in (*_NAMED, BLANKS) and len(self.separator) != 1:
+            raise ValueError(
+                f'separator: found {self.separator!r}, expected one character, tab or {BLANKS}'
+            )
+        if self.separator == self.decimal:
+            raise ValueError(f'separator: found {self.decimal!r}, which is the decimal sign too')
+        return self
+
+
+class BadRow(LogError):
+    """Row that cannot be used; ``reason`` says why, without its line."""
+
+    def __init__(self, message: str, reason: str) -> None:
+        super().__init__(message)
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Row:
+    """Row of a log: its file, line, and cells by column name."""
+
+    path: Path
+    line: int
+    cells: Mapping[str, str]
+
+    def text(self, column: str) -> str:
+        """Give a cell; in a long table those that have no row are empty."""
+        return self.cells.get(column, '')
+
+    def bad(self, column: str, expected: str) -> BadRow:
+        """Make the error for a cell that is not what it should be."""
+        return BadRow(
+            f'{self.path}: line {self.line}, column {column!r}: found {self.text(column)!r}, '
+            f'expected {expected}',
+            f'column {column!r}: expected {expected}',
+        )
+
+
+def read_rows(
+    path: Path, layout: Layout, needed: Mapping[str, str], keys: Sequence[str]
+) -> Iterator[Row | BadRow]:
+    """Read a log row by row; lines without anything in them count for nothing.
+
+    Parameters
+    ----------
+    path
+        The log.
+    layout
+        How it lies in its file.
+    needed
+        Columns that must be there, each with what wants it.
+    keys
+        Columns that are the same for all rows of one instant, in a long table.
+
+    Yields
+    ------
+    Row or BadRow
+        The latter for a row with too few or too many cells.
+
+    Raises
+    ------
+    LogError
+        If there is no file, it is not such a table, or a column is not there exactly once.
+    """
+    # A mark at the beginning, as Windows programs put there, is no part of the first name.
+    encoding = 'utf-8-sig' if layout.encoding.lower() in ('utf-8', 'utf8') else layout.encoding
+    with reading(path, LogError), open_file(path, LogError) as content:
+        try:
+            stream = TextIOWrapper(content, encoding, newline='')
+            rows = _wide(path, layout, needed, _Lines(path, stream, layout))
+            yield from (
+                rows if layout.long is None else _joined(path, layout.long, rows, needed, keys)
+            )
+        except (UnicodeError, csv.Error) as reason:
+            raise LogError(
+                f'{path}: not CSV in {layout.encoding.upper()} ({reason}); expected what layout '
+                'says'
+            ) from reason
+
+
+class _Lines:
+    """Lines of a log, bounded in length, without comments, with their numbers."""
+
+    def __init__(self, path: Path, stream: TextIO, layout: Layout) -> None:
+        self.number = 0
+        self._path = path
+        self._stream = stream
+        self._comment = layout.comment
+        for _ in range(layout.skip_lines):
+            if not self._next():
+                break
+
+    def __iter__(self) -> '_Lines':
+        return self
+
+    def __next__(self) -> str:
+        while line := self._next():
+            if self._comment is None or not line.lstrip().startswith(self._comment):
+                return line
+        raise StopIteration
+
+    def _next(self) -> str:
+        line = self._stream.readline(MAX_LINE)
+        self.number += bool(line)
+        if len(line) == MAX_LINE:
+            raise LogError(
+                f'{self._path}: line {self.number} has {MAX_LINE} characters or more; expected a '
+                'table'
+            )
+        return line
+
+
+def _wide(
+    path: Path, layout: Layout, needed: Mapping[str, str], lines: _Lines
+) -> Iterator[Row | BadRow]:
+    table = _cells(lines, layout)
+    names = [name.strip() for name in layout.names or next(table, [])]
+    if not names:
+        raise LogError(f'{path}: the file is empty; expected a line of column names')
+    wanted = dict(needed)
+    if layout.long is not None:
+        wanted = {column: where for column, where in needed.items() if where in OF_THE_ROW}
+        wanted |= dict.fromkeys((layout.long.name, layout.long.value), 'layout.long')
+    for column, where in wanted.items():
+        if names.count(column) != 1:
+            found = 'more than one' if column in names else 'no'
+            raise LogError(
+                f'{path}: {found} column {column!r} (wanted by {where}); '
+                f'columns are {one_line(", ".join(names), 500)}'
+            )
+    for _ in islice(table, layout.skip_after_names):
+        pass
+    for cells in table:
+        if not any(cell.strip() for cell in cells):
+            continue
+        if len(cells) != len(names):
+            yield BadRow(
+                f'{path}: line {lines.number} has {len(cells)} cells; '
+                f'expected {len(names)} as in the first line',
+                'another number of cells than columns',
+            )
+            continue
+        texts = (cell.strip() for cell in cells)
+        yield Row(path, lines.number, dict(zip(names, texts, strict=True)))
+
+
+def _cells(lines: _Lines, layout: Layout) -> Iterator[list[str]]:
+    if layout.separator == BLANKS:
+        return (line.split() for line in lines)
+    separator = _NAMED.get(layout.separator, layout.separator)
+    return csv.reader(lines, strict=True, delimiter=separator, quotechar=layout.quote)
+
+
+def _joined(
+    path: Path,
+    long: Long,
+    rows: Iterator[Row | BadRow],
+    needed: Mapping[str, str],
+    keys: Sequence[str],
+) -> Iterator[Row | BadRow]:
+    """Join the readings of one instant, which follow each other, into one row."""
+    seen: set[str] = set()
+    instant: dict[str, str] = {}
+    cells: dict[str, str] = {}
+    line = 0
+    for row in rows:
+        if isinstance(row, BadRow):
+            yield row
+            continue
+        name = row.text(long.name)
+        now = {key: row.text(key) for key in keys if key in row.cells}
+        if cells and (now != instant or name in cells):
+            yield Row(path, line, {**instant, **cells})
+            cells = {}
+        if not cells:
+            instant, line = now, row.line
+        seen.add(name)
+        cells[name] = row.text(long.value)
+    if cells:
+        yield Row(path, line, {**instant, **cells})
+    for column, where in needed.items():
+        if column not in seen and where not in OF_THE_ROW:
+            raise LogError(
+                f'{path}: no row with {column!r} in column {long.name!r} (wanted by {where}); '
+                f'there are {one_line(", ".join(sorted(seen)), 500)}'
+            )

@@ -1,0 +1,247 @@
+"""Mapping files of CSV logs: column and unit of each reading."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from trawl_ros.bags.logs.clock import Clock
+from trawl_ros.bags.logs.layout import Layout
+from trawl_ros.bags.logs.units import UNITS, units_of
+from trawl_ros.core.errors import LogError
+from trawl_ros.core.schema import Record, load_yaml, validated
+from trawl_ros.records.topics import RANGES
+
+_RANGE = {'distance': 'length'}
+_PRESSURE = {'pressure': 'pressure', 'depth': 'length'}
+_ATTITUDE = {'pitch': 'angle', 'roll': 'angle'}
+
+FIELDS: dict[str, dict[str, str]] = {
+    'winch/joint_states': {
+        'port_length': 'length',
+        'starboard_length': 'length',
+        'port_speed': 'speed',
+        'starboard_speed': 'speed',
+        'port_tension': 'force',
+        'starboard_tension': 'force',
+    },
+    'door/port/pressure': _PRESSURE,
+    'door/starboard/pressure': _PRESSURE,
+    'sonar/pressure': _PRESSURE,
+    'door/port/attitude': _ATTITUDE,
+    'door/starboard/attitude': _ATTITUDE,
+    **dict.fromkeys(RANGES.values(), _RANGE),
+    'vessel/velocity_water': {'forward': 'speed', 'to_port': 'speed'},
+    'vessel/velocity_ground': {'speed': 'speed', 'compass_course': 'angle'},
+    'vessel/heading': {'compass_heading': 'angle'},
+    'vessel/fix': {'latitude': 'angle', 'longitude': 'angle'},
+}
+"""Fields of each topic that a log can give, with their quantities. A compass angle runs clockwise
+from north; a depth becomes a pressure."""
+
+STD_QUANTITIES = {
+    'door/port/pressure': 'pressure',
+    'door/starboard/pressure': 'pressure',
+    'sonar/pressure': 'pressure',
+    'door/port/attitude': 'angle',
+    'door/starboard/attitude': 'angle',
+    **dict.fromkeys(RANGES.values(), 'length'),
+    'vessel/heading': 'angle',
+    'vessel/fix': 'length',
+}
+"""Topics whose messages state their noise, with its quantity."""
+
+RANGE_TOPICS = tuple(topic for topic, fields in FIELDS.items() if fields is _RANGE)
+
+_TOGETHER = (
+    'door/port/attitude',
+    'door/starboard/attitude',
+    'vessel/velocity_ground',
+    'vessel/fix',
+)
+"""Topics that make no sense without all of their fields."""
+
+
+class Quantity(Record):
+    """Quantity: a number with its unit."""
+
+    value: float
+    unit: str
+
+    def si(self) -> float:
+        """Give the value in SI units."""
+        return self.value * UNITS[self.unit][1]
+
+
+class Column(Record):
+    """Column of a reading: (cell x scale + offset) in the unit.
+
+    ``hemisphere`` names a column with N, S, E or W for a latitude or longitude.
+    """
+
+    column: str
+    unit: str
+    scale: float = 1.0
+    offset: float = 0.0
+    hemisphere: str | None = None
+
+    def si(self, cell: float) -> float:
+        """Convert the cell into SI units."""
+        return (cell * self.scale + self.offset) * UNITS[self.unit][1]
+
+
+class Water(Record):
+    """Conversion of depths into absolute pressures: surface + density x gravity x depth."""
+
+    density_kg_m3: Annotated[float, Field(gt=900, lt=1100)]
+    gravity_m_s2: Annotated[float, Field(gt=9.7, lt=9.9)] = 9.80665
+    surface_pressure_pa: Annotated[float, Field(gt=8e4, lt=1.2e5)] = 101_325.0
+
+    def pressure(self, depth: float) -> float:
+        """Convert a depth (m) into an absolute pressure (Pa)."""
+        return self.surface_pressure_pa + self.depth_to_difference(depth)
+
+    def depth_to_difference(self, depth: float) -> float:
+        """Convert a difference in depth (m) into one in pressure (Pa)."""
+        return self.density_kg_m3 * self.gravity_m_s2 * depth
+
+
+class TopicMapping(Record):
+    """Mapping of one topic: its readings by field, and the errors its messages state.
+
+    ``clock`` is the topic's own where its times stand in columns of their own. With
+    ``changes_only`` a reading that is the same as in the row before gives no message: many
+    loggers repeat the last one until the next comes.
+    """
+
+    fields: Annotated[dict[str, Column], Field(min_length=1)]
+    clock: Clock | None = None
+    changes_only: bool = False
+    std: Quantity | None = None
+    min_range: Quantity | None = None
+    max_range: Quantity | None = None
+
+
+class LogMapping(Record):
+    """Mapping of a whole log.
+
+    ``only`` gives by column the texts of rows that are used; ``missing`` the texts, in lower case,
+    that stand for no reading, where ``-999`` also stands for ``-999.00``.
+    """
+
+    clock: Clock
+    topics: Annotated[dict[str, TopicMapping], Field(min_length=1)]
+    layout: Layout = Layout()
+    only: dict[str, tuple[str, ...]] = Field(default_factory=dict)
+    water: Water | None = None
+    missing: tuple[str, ...] = ('', 'nan', 'na', 'n/a', 'null')
+
+    def clocks(self) -> list[Clock]:
+        """Give all clocks, that of the whole log first."""
+        return [self.clock, *(entry.clock for entry in self.topics.values() if entry.clock)]
+
+    def needed(self) -> dict[str, str]:
+        """Name the columns that must be there, each with the key that needs it."""
+        wanted: dict[str, str] = {}
+        for topic, entry in self.topics.items():
+            for field in entry.fields.values():
+                wanted[field.column] = f'topics.{topic}'
+                if field.hemisphere:
+                    wanted[field.hemisphere] = f'topics.{topic}'
+        wanted |= dict.fromkeys(self.only, 'only')
+        return wanted | {column: 'clock' for clock in self.clocks() for column in clock.columns}
+
+    @model_validator(mode='after')
+    def _fits_the_topics(self) -> 'LogMapping':
+        for topic, mapping in self.topics.items():
+            where = f'topics.{topic}'
+            if topic not in FIELDS:
+                raise ValueError(f'{where}: unknown topic, expected one of {", ".join(FIELDS)}')
+            self._check_fields(where, mapping.fields, FIELDS[topic])
+            self._check_std(where, topic, mapping.std)
+            self._check_limits(where, mapping, topic in RANGE_TOPICS)
+        return self
+
+    def _check_fields(self, where: str, fields: dict[str, Column], known: dict[str, str]) -> None:
+        for field, column in fields.items():
+            if field not in known:
+                raise ValueError(
+                    f'{where}.fields.{field}: unknown field, expected one of {", ".join(known)}'
+                )
+            _check_unit(f'{where}.fields.{field}.unit', column.unit, known[field])
+            if column.hemisphere and field not in ('latitude', 'longitude'):
+                raise ValueError(
+                    f'{where}.fields.{field}.hemisphere: given, expected none: it is no position'
+                )
+        if known is FIELDS['vessel/velocity_water'] and 'forward' not in fields:
+            raise ValueError(f'{where}.fields: to_port alone, expected forward beside it')
+        if 'depth' in fields and 'pressure' in fields:
+            raise ValueError(f'{where}.fields: both depth and pressure, expected one of them')
+        if 'depth' in fields and self.water is None:
+            raise ValueError(f'water: missing, expected density_kg_m3 for the depth of {where}')
+        paired = where.removeprefix('topics.') in _TOGETHER
+        if paired and len(fields) < len(known):
+            raise ValueError(f'{where}.fields: {", ".join(fields)}, expected {" and ".join(known)}')
+
+    def _check_limits(self, where: str, mapping: TopicMapping, wanted: bool) -> None:
+        limits = {'min_range': mapping.min_range, 'max_range': mapping.max_range}
+        for name, limit in limits.items():
+            if limit is None and wanted:
+                raise ValueError(f'{where}.{name}: missing, expected a length')
+            if limit is not None and not wanted:
+                raise ValueError(f'{where}.{name}: given, expected none: it measures no distance')
+            if limit is not None:
+                _check_unit(f'{where}.{name}.unit', limit.unit, 'length')
+        low, high = limits.values()
+        if low and high and not 0 <= low.si() < high.si():
+            raise ValueError(
+                f'{where}.max_range: found {high.value:g} {high.unit}, '
+                f'expected more than min_range ({low.value:g} {low.unit})'
+            )
+
+    def _check_std(self, where: str, topic: str, std: Quantity | None) -> None:
+        quantity = STD_QUANTITIES.get(topic)
+        if std is None:
+            return
+        if quantity is None:
+            raise ValueError(f'{where}.std: given, expected none: its messages cannot state it')
+        if std.value <= 0:
+            raise ValueError(f'{where}.std.value: found {std.value:g}, expected more than 0')
+        # A depth gauge is specified in metres as often as in pascals.
+        if quantity == 'pressure' and self.water and UNITS.get(std.unit, ('',))[0] == 'length':
+            return
+        _check_unit(f'{where}.std.unit', std.unit, quantity)
+
+
+def load_mapping(path: str | Path) -> LogMapping:
+    """Read a mapping.
+
+    Raises
+    ------
+    LogError
+        If the file is missing, unreadable, or names topics, fields or units that do not exist.
+    """
+    return validated(LogMapping, load_yaml(path, LogError), path, LogError)
+
+
+def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
+    """Refuse a quantity of another kind than wanted, or below zero.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, what was found and what was expected.
+    """
+    _check_unit(f'{key}.unit', quantity.unit, wanted)
+    if quantity.value < 0:
+        raise ValueError(f'{key}.value: found {quantity.value:g}, expected 0 or more')
+
+
+def _check_unit(key: str, unit: str, quantity: str) -> None:
+    found = UNITS.get(unit)
+    if found is None or found[0] != quantity:
+        is_one = f' of {found[0]}' if found else ''
+        raise ValueError(
+            f'{key}: found {unit!r}{is_one}, expected a unit of {quantity}: '
+            f'{", ".join(units_of(quantity))}'
+        )

@@ -1,0 +1,206 @@
+"""Import of NMEA 0183 logs as bags: sentences of the ship's sensors on serial lines."""
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from pynmeagps import NMEAReader
+from pynmeagps.exceptions import NMEAParseError
+from pynmeagps.nmeahelpers import calc_checksum
+
+from trawl_ros.bags.logs.clock import ClockReader
+from trawl_ros.bags.logs.import_log import Imported, listed, write_samples
+from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, load_nmea_mapping
+from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, reading
+from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread
+from trawl_ros.bags.possible import impossible
+from trawl_ros.core.errors import LogError
+from trawl_ros.core.foreign import open_file
+from trawl_ros.core.foreign import reading as reading_file
+from trawl_ros.records.samples import Sample
+
+MAX_LINE = 4096
+"""Bytes in a line; a sentence has 82 at most, a recorder's mark in front of it some more."""
+
+_TIMING = {'RMC', 'ZDA', 'GGA', 'GLL', 'GNS'}
+_TAG_TIME = re.compile(r'c:(\d+)', re.ASCII)
+_AROUND = ' \t\r\n,;|[]()<>"'
+
+
+def import_nmea(
+    log_path: str | Path,
+    mapping_path: str | Path,
+    bag_path: str | Path,
+    *,
+    leave_out: bool = False,
+) -> Imported:
+    """Turn a log of NMEA 0183 sentences into a bag.
+
+    Parameters
+    ----------
+    log_path
+        The log, one sentence per line, each maybe with a recorder's time in front.
+    mapping_path
+        See `NmeaMapping`.
+    bag_path
+        Folder to be made.
+    leave_out
+        Whether lines whose recorder's time cannot be understood are left out and counted; by
+        default the first of them is an error. Damaged sentences always are left out: serial
+        lines lose bytes.
+
+    Raises
+    ------
+    LogError
+        If log or mapping are missing or wrong, or nothing in the log says the time.
+    BagError
+        If the bag exists or cannot be written.
+    """
+    path = Path(log_path)
+    listening = _Listening(path, load_nmea_mapping(mapping_path), leave_out)
+    samples = listening.samples()
+    return write_samples(path, samples, bag_path, lambda: (listening.lines, listening.left))
+
+
+@dataclass(frozen=True)
+class _Heard:
+    """Reading: its talker, its own stamp (ns) or None, and the number of the moment before it."""
+
+    talker: str
+    kind: str
+    stamp: int | None
+    moment: int
+    sample: SampleAt
+
+
+class _Listening:
+    """Single pass through a log, with counts."""
+
+    def __init__(self, path: Path, mapping: NmeaMapping, leave_out: bool) -> None:
+        self.lines = 0
+        self.left: Counter[str] = Counter()
+        self._path = path
+        self._mapping = mapping
+        self._leave_out = leave_out
+        self._recorder = ClockReader(mapping.recorder) if mapping.recorder else None
+        self._times = SentenceTimes(date.fromisoformat(mapping.date) if mapping.date else None)
+        self._takers: dict[str, list[str]] = defaultdict(list)
+        for topic, entry in mapping.topics.items():
+            for kind in entry.sentences:
+                self._takers[kind].append(topic)
+
+    def samples(self) -> list[Sample]:
+        heard: dict[str, list[_Heard]] = defaultdict(list)
+        for front, text in self._lines():
+            sentence = self._parse(text)
+            if sentence is None:
+                continue
+            kind = str(sentence.msgID)
+            if self._recorder is None:
+                stamp = self._times.hear(sentence)
+            elif (stamp := self._recorded(front)) is None:
+                continue
+            if kind not in self._takers:
+                if kind not in _TIMING:
+                    self.left[f'sentence {kind}, which no topic takes'] += 1
+                continue
+            if stamp is None and not self._times.moments:
+                self.left['before the first time with a date'] += 1
+                continue
+            self._take(heard, sentence, stamp)
+        if self._recorder is None and self.lines and not self._times.moments:
+            why = f' ({listed(self.left)})' if self.left else ''
+            raise LogError(
+                f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date{why}; '
+                'expected one, or key date in the mapping, or time: recorder'
+            )
+        return [sample for topic, found in heard.items() for sample in self._chosen(topic, found)]
+
+    def _lines(self) -> Iterator[tuple[str, bytes]]:
+        """Yield the text in front of each sentence, and the sentence."""
+        with reading_file(self._path, LogError), open_file(self._path, LogError) as stream:
+            while line := stream.readline(MAX_LINE):
+                self.lines += 1
+                if len(line) == MAX_LINE:
+                    raise LogError(
+                        f'{self._path}: line {self.lines} has {MAX_LINE} bytes or more; '
+                        'expected sentences of NMEA 0183'
+                    )
+                # Where a sentence was cut short by the next one, the next one is whole.
+                start = line.rfind(b'$')
+                if start >= 0:
+                    front = line[: line.find(b'$')].decode('ascii', 'replace')
+                    yield front, line[start:].strip()
+                elif line.strip():
+                    self.left['a line without a sentence ($…)'] += 1
+
+    def _parse(self, text: bytes) -> Any | None:
+        if b'*' not in text:
+            if self._mapping.need_checksum:
+                self.left['a sentence without checksum'] += 1
+                return None
+            text += b'*' + calc_checksum(text[1:].decode('ascii', 'replace')).encode()
+        try:
+            sentence = NMEAReader.parse(text)
+        except NMEAParseError:
+            self.left['a sentence whose checksum is wrong'] += 1
+            return None
+        # The library also raises what Python does, by sentences whose checksum is right.
+        except Exception:
+            sentence = None
+        if sentence is None:
+            self.left['a sentence that cannot be understood'] += 1
+        return sentence
+
+    def _recorded(self, front: str) -> int | None:
+        assert self._recorder is not None
+        tagged = _TAG_TIME.search(front) if front.startswith('\\') else None
+        text = tagged[1] if tagged else front.strip(_AROUND)
+        try:
+            return self._recorder.read(text)
+        except ValueError as expected:
+            if not self._leave_out:
+                raise LogError(
+                    f'{self._path}: line {self.lines}: found {text!r} in front of the sentence, '
+                    f'expected {expected}'
+                ) from None
+            self.left[f'in front of the sentence: expected {expected}'] += 1
+            return None
+
+    def _take(self, heard: dict[str, list[_Heard]], sentence: Any, stamp: int | None) -> None:
+        kind, talker = str(sentence.msgID), str(sentence.talker)
+        for topic in self._takers[kind]:
+            entry = self._mapping.topics[topic]
+            try:
+                sample = reading(topic, sentence, entry, self._mapping)
+                if why := impossible(sample(0)):
+                    raise NoReading(why)
+            except (NoReading, AttributeError) as reason:
+                # An attribute that is not there is a field that the sentence is too short for.
+                why = f': {reason}' if isinstance(reason, NoReading) and reason.args else ''
+                self.left[f'{kind} without a valid reading for {topic}{why}'] += 1
+                continue
+            moment = len(self._times.moments) - 1
+            heard[topic].append(_Heard(talker, kind, stamp, moment, sample))
+
+    def _chosen(self, topic: str, found: list[_Heard]) -> list[Sample]:
+        """Select one kind of sentence from one talker, and give each its time."""
+        entry = self._mapping.topics[topic]
+        there = {one.kind for one in found}
+        kind = next(name for name in entry.sentences if name in there)
+        talkers = Counter(one.talker for one in found if one.kind == kind)
+        wanted = set(entry.talkers or [talkers.most_common(1)[0][0]])
+        kept = [one for one in found if one.kind == kind and one.talker in wanted]
+        for one in found:
+            if one.kind != kind:
+                self.left[f'{one.kind} for {topic}, which {kind} tells'] += 1
+            elif one.talker not in wanted:
+                listened = ' and '.join(sorted(wanted))
+                self.left[f'{kind} of {one.talker} for {topic}, which {listened} tells'] += 1
+        bare = [one for one in kept if one.stamp is None]
+        given = iter(spread(self._times.moments, [(one.moment, one.talker) for one in bare]))
+        return [one.sample(next(given) if one.stamp is None else one.stamp) for one in kept]

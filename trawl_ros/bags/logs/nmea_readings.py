@@ -1,0 +1,143 @@
+"""Conversion of NMEA 0183 sentences into samples without their times."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.bags.logs.import_log import compass_yaw, course_velocity
+from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, NmeaTopic
+from trawl_ros.bags.logs.units import UNITS
+from trawl_ros.bags.possible import impossible_compass
+from trawl_ros.records.samples import FixSample, HeadingSample, RangeSample, Sample, VelocitySample
+
+KNOT, KM_H = UNITS['kn'][1], UNITS['km/h'][1]
+FOOT, FATHOM = UNITS['ft'][1], UNITS['fathom'][1]
+
+SampleAt = Callable[[int], Sample]
+"""Gives the sample for a stamp (ns)."""
+
+
+class NoReading(ValueError):
+    """Sentence without a valid reading, by its status or by empty fields."""
+
+
+def reading(topic: str, sentence: Any, entry: NmeaTopic, mapping: NmeaMapping) -> SampleAt:
+    """Convert a parsed sentence into the sample of a topic.
+
+    Parameters
+    ----------
+    topic
+        Relative name.
+    sentence
+        As `pynmeagps` gives it.
+    entry, mapping
+        What is to be stated with it.
+
+    Raises
+    ------
+    NoReading
+        If it has none.
+    """
+    std = entry.std.si() if entry.std else 0.0
+    match topic:
+        case 'vessel/fix':
+            return _fix(sentence, std)
+        case 'vessel/velocity_ground':
+            return _over_ground(sentence)
+        case 'vessel/velocity_water':
+            return _through_water(sentence)
+        case 'vessel/heading':
+            return _heading(sentence, std)
+    limits = [limit.si() for limit in (entry.min_range, entry.max_range) if limit]
+    below_keel = _below_keel(sentence, mapping)
+    return lambda stamp: RangeSample(stamp, 'depth', below_keel, std, *limits)
+
+
+def _fix(sentence: Any, std: float) -> SampleAt:
+    match sentence.msgID:
+        case 'GGA':
+            _valid(sentence.quality not in ('', 0))
+        case 'GNS':
+            _valid(bool(set(sentence.posMode) - {'N'}))
+        case _:
+            _valid(sentence.status == 'A')
+    if sentence.NS not in ('N', 'S') or sentence.EW not in ('E', 'W'):
+        raise NoReading('hemisphere other than N or S and E or W')
+    latitude, longitude = _number(sentence.lat), _number(sentence.lon)
+    return lambda stamp: FixSample(stamp, latitude, longitude, std)
+
+
+def _over_ground(sentence: Any) -> SampleAt:
+    if sentence.msgID == 'RMC':
+        _valid(sentence.status == 'A')
+        speed, course = _number(sentence.spd) * KNOT, sentence.cog
+    else:
+        _valid(getattr(sentence, 'posMode', '') != 'N')
+        speed, course = _speed(sentence.sogn, sentence.sogk), sentence.cogt
+    # A receiver that stands still gives no course.
+    direction = 0.0 if speed == 0.0 and course == '' else math.radians(_compass(course))
+    velocity = course_velocity(speed, direction)
+    return lambda stamp: VelocitySample(stamp, 'ground', velocity, math.nan)
+
+
+def _through_water(sentence: Any) -> SampleAt:
+    to_starboard = 0.0
+    if sentence.msgID == 'VBW':
+        _valid(sentence.waterspdstatus == 'A')
+        forward = _number(sentence.longwaterspd) * KNOT
+        if sentence.transwaterspd != '':
+            to_starboard = _number(sentence.transwaterspd) * KNOT
+    else:
+        forward = _speed(sentence.spdN, sentence.spdK)
+    velocity = np.array([forward, -to_starboard, 0.0])
+    return lambda stamp: VelocitySample(stamp, 'water', velocity, math.nan)
+
+
+def _heading(sentence: Any, std: float) -> SampleAt:
+    if sentence.msgID == 'THS':
+        _valid(sentence.mi != 'V')
+        true = _compass(sentence.headt)
+    else:
+        true = _compass(sentence.headingT)
+    return lambda stamp: HeadingSample(stamp, compass_yaw(math.radians(true)), std)
+
+
+def _below_keel(sentence: Any, mapping: NmeaMapping) -> float:
+    keel = mapping.keel_depth.si()
+    if sentence.msgID == 'DPT':
+        # Below zero, the offset is how far the keel is below the transducer; above, the waterline.
+        offset = getattr(sentence, 'offset', '')
+        said = -offset if isinstance(offset, float) and offset < 0 else keel
+        return _number(sentence.depth) - said
+    for value, unit in (
+        (sentence.depthm, 1.0),
+        (sentence.depthf, FOOT),
+        (sentence.depthfath, FATHOM),
+    ):
+        if value != '':
+            return _number(value) * unit - keel
+    raise NoReading
+
+
+def _speed(knots: Any, km_h: Any) -> float:
+    return _number(knots) * KNOT if knots != '' else _number(km_h) * KM_H
+
+
+def _number(value: Any) -> float:
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise NoReading
+    return float(value)
+
+
+def _compass(value: Any) -> float:
+    degrees = _number(value)
+    if why := impossible_compass(degrees):
+        raise NoReading(why)
+    return degrees
+
+
+def _valid(valid: bool) -> None:
+    if not valid:
+        raise NoReading

@@ -1,0 +1,1 @@
+"""Files of bags: MCAP and SQLite, also damaged, with their metadata."""

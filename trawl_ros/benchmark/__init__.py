@@ -1,1 +1,0 @@
-"""Benchmark against other tools: the modules of `trawl benchmark`."""

@@ -1,0 +1,1 @@
+"""Foundations: errors, limits, checked files, packaged resources, time, parallel tasks."""

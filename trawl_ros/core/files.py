@@ -1,0 +1,115 @@
+"""Files and folders: as a user names them, or as they come with the package; written whole."""
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.resources import share_path
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def packaged(path: Path, folder: str) -> Path:
+    """Find a YAML file: as given, or by its bare name in ``config/<folder>``.
+
+    Raises
+    ------
+    TrawlError
+        If a bare name is not one of those that come with the package.
+    """
+    if path.suffix in ('.yaml', '.yml') or path.is_file() or len(path.parts) != 1:
+        return path
+    return share_path('config', folder, f'{path}.yaml')
+
+
+def empty_folder(path: Path, *, force: bool) -> Path:
+    """Check that results may go into a folder, which need not exist yet.
+
+    Raises
+    ------
+    TrawlError
+        If there is something in it already, unless ``force`` allows replacing it.
+    """
+    if path.is_dir() and any(path.iterdir()) and not force:
+        raise TrawlError(
+            f'{path}: holds files already, which are not written over; expected a new or empty '
+            'folder, or --force'
+        )
+    return path
+
+
+@contextmanager
+def written(path: Path) -> Iterator[Path]:
+    """Write a file whole or not at all, whenever one is interrupted or the disk is full.
+
+    Parameters
+    ----------
+    path
+        The file. Where it is a link, the link is replaced, and what it leads to stays as it is.
+
+    Yields
+    ------
+    Path
+        A file beside it, with the same suffix, to be written; it then takes the other's place.
+
+    Raises
+    ------
+    TrawlError
+        If it cannot be written.
+    """
+    draft = path.with_name(f'.{os.getpid()}.{path.name}')
+    try:
+        draft.unlink(missing_ok=True)
+        yield draft
+        draft.replace(path)
+    except OSError as reason:
+        raise TrawlError(f'{path}: cannot be written ({reason.strerror})') from reason
+    finally:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write text that ends with one line's end, as `written` does."""
+    with written(path) as draft:
+        # Names of files may hold bytes that are no text.
+        draft.write_bytes(f'{text.rstrip()}\n'.encode('utf-8', 'backslashreplace'))
+
+
+def write_json(
+    path: Path, record: Any, *, indent: int | None = None, ensure_ascii: bool = True
+) -> None:
+    """Write JSON as `written` does.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, which JSON does not know.
+    """
+    write_text(path, json.dumps(record, indent=indent, ensure_ascii=ensure_ascii, allow_nan=False))
+
+
+def write_figure(path: Path, figure: 'Figure', dpi: float) -> None:
+    """Write a figure as `written` does."""
+    with written(path) as draft:
+        figure.savefig(draft, dpi=dpi)
+
+
+def appending(path: Path) -> TextIO:
+    """Open a text file of results to add to it; a link is refused, not followed.
+
+    Raises
+    ------
+    TrawlError
+        If it cannot be opened.
+    """
+    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW
+    try:
+        return os.fdopen(os.open(path, flags, 0o666), 'a', encoding='utf-8')
+    except OSError as reason:
+        raise TrawlError(f'{path}: cannot be written ({reason.strerror})') from reason

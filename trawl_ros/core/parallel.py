@@ -1,0 +1,177 @@
+"""Parallel tasks on Dask: on the cores of this machine, or on a cluster.
+
+What a task gives depends on the task alone (randomness comes from a seed in it), and results
+are handed over by the task's place, so it does not matter where and when each one was run.
+"""
+
+import asyncio
+import logging
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from multiprocessing import resource_tracker
+from typing import Any, TypeVar
+
+from dask import config
+from distributed import Client, KilledWorker, LocalCluster, as_completed
+from distributed.comm.core import connect
+from distributed.security import Security
+
+from trawl_ros.core.errors import TrawlError, sentence_of
+
+TaskT = TypeVar('TaskT')
+ResultT = TypeVar('ResultT')
+
+LOCALHOST = '127.0.0.1'
+PATIENCE_S = 5.0
+"""Timeout of a scheduler's answer."""
+
+QUIET = {
+    # A worker that dies takes its task along; the same task would kill the next one too.
+    'distributed.scheduler.allowed-failures': 0,
+    'distributed.comm.timeouts.connect': f'{PATIENCE_S:g}s',
+    # Tasks compute for minutes without giving the interpreter back; that is no fault.
+    'distributed.admin.tick.limit': '1h',
+}
+
+
+def run_tasks(
+    function: Callable[[TaskT], ResultT],
+    tasks: Mapping[str, TaskT],
+    *,
+    scheduler: str | None = None,
+    workers: int | None = None,
+) -> Iterator[tuple[str, ResultT]]:
+    """Run a function on each task, and give results as they come.
+
+    Ending the iteration early, also by Ctrl-C, ends what still runs.
+
+    Parameters
+    ----------
+    function
+        Of a module, so that another process finds it by its name.
+    tasks
+        By name; tasks and results can be pickled.
+    scheduler
+        Address of a Dask cluster, such as ``tcp://10.0.0.5:8786``, whose workers have this package
+        installed; for ``tls://`` keys are those of Dask's configuration (``distributed.comm.tls``).
+        It runs code and sends pickles, so it must be trusted. None runs processes of this
+        machine, which listen on it alone.
+    workers
+        Number of these processes; as many as there are cores, or tasks if these are fewer, if None.
+
+    Yields
+    ------
+    tuple
+        Name of a task and its result, in the order in which they are done.
+
+    Raises
+    ------
+    TrawlError
+        If the cluster does not answer, or a task fails; names the task.
+    """
+    if not tasks:
+        return
+    with config.set(QUIET), _client(scheduler, workers or min(cores(), len(tasks))) as client:
+        names = {
+            # Dask would take two calls with equal arguments for one.
+            client.submit(_outcome, function, task, pure=False): name
+            for name, task in tasks.items()
+        }
+        try:
+            for future in as_completed(names, loop=client.loop):
+                yield names[future], _result(names[future], future)
+        finally:
+            client.cancel(list(names), force=True)
+
+
+def cores() -> int:
+    """Number of cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else os.cpu_count() or 1
+
+
+def _outcome(function: Callable[[Any], Any], task: Any) -> tuple[str | None, Any]:
+    """Run one task; return an error as a sentence, which can always be sent."""
+    try:
+        return None, function(task)
+    except Exception as reason:
+        # Told whole: the traceback would otherwise stay on the worker.
+        return sentence_of(reason), None
+
+
+def _result(name: str, future: Any) -> Any:
+    try:
+        fault, result = future.result()
+    except KilledWorker as reason:
+        raise TrawlError(f'{name}: the process that ran it died') from reason
+    except Exception as reason:
+        # Not the task but what runs it, such as a worker without this package.
+        raise TrawlError(f'{name}: could not be run ({reason})') from reason
+    if fault is not None:
+        raise TrawlError(f'{name}: {fault}')
+    return result
+
+
+@contextmanager
+def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
+    with ExitStack() as stack:
+        if scheduler is None:
+            with _interrupts_held():
+                # Keys made for this cluster alone: who else works on this machine cannot join.
+                cluster = LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    processes=True,
+                    host=LOCALHOST,
+                    security=True,
+                    # No dashboard, but what is left of its server would listen to all.
+                    dashboard_address=f'{LOCALHOST}:0',
+                    worker_dashboard_address=None,
+                    scheduler_kwargs={'dashboard': False},
+                    silence_logs=logging.CRITICAL,
+                    memory_limit=0,
+                )
+                stack.enter_context(cluster)
+            yield stack.enter_context(Client(cluster, set_as_default=False))
+        else:
+            yield stack.enter_context(_connected(scheduler))
+
+
+def _connected(address: str) -> Client:
+    log = logging.getLogger('distributed')
+    before = log.level
+    try:
+        log.setLevel(logging.CRITICAL + 1)
+        # Dask's client tries for much longer, and waits for ever for one that says nothing.
+        asyncio.run(asyncio.wait_for(_shake_hands(address), PATIENCE_S + 1.0))
+        return Client(address, timeout=PATIENCE_S, set_as_default=False)
+    except Exception as reason:
+        # What Dask raises here is of many kinds; none of them is this program's fault.
+        said = str(reason).splitlines()[:1] or [type(reason).__name__]
+        raise TrawlError(
+            f'{address}: no Dask scheduler answers there ({said[0]}), expected an address such as '
+            'tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured with'
+        ) from reason
+    finally:
+        log.setLevel(before)
+
+
+async def _shake_hands(address: str) -> None:
+    keys = Security().get_connection_args('client')
+    (await connect(address, timeout=PATIENCE_S, **keys)).abort()
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold Ctrl-C back; processes that are started meanwhile never hear of it.
+
+    It is sent to all processes of a terminal at once, but workers are ended by who started them.
+    """
+    # Whichever thread starts this process of multiprocessing's hears signals again.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,222 @@
+"""YAML files with strict checks on load, as records.
+
+Gear, scenario and instrument files all pass through here, so that each of them refuses the
+same mistakes in the same words: every complaint names the file, the key, what was found
+there and what was expected.
+"""
+
+import re
+from pathlib import Path
+from typing import Annotated, Any, NoReturn, TypeVar
+
+import yaml
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.foreign import reading
+from trawl_ros.core.limits import YAML_BYTES, YAML_DEPTH, YAML_VALUES
+from trawl_ros.core.validation_messages import complaints, shown
+
+MAX_COMPLAINTS = 10
+
+
+class Record(BaseModel):
+    """A record that comes from a file.
+
+    It cannot be changed, takes no unknown keys, no NaN or infinity, and no value of another
+    kind in disguise: neither ``true`` nor ``'3'`` is a number. Sequences are tuples.
+    """
+
+    model_config = ConfigDict(frozen=True, extra='forbid', strict=True, allow_inf_nan=False)
+
+
+class FrozenDict(dict[str, float]):
+    """Numbers by name that cannot be changed, so that a record that holds them can be hashed."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(frozenset(self.items()))
+
+    def __reduce__(self) -> tuple[type['FrozenDict'], tuple[dict[str, float]]]:
+        return FrozenDict, (dict(self),)
+
+    def _refuse(self, *_: Any, **__: Any) -> NoReturn:
+        raise TypeError(f'found a change of {shown(dict(self))}, expected none: it is frozen')
+
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    clear = pop = popitem = setdefault = update = _refuse
+
+
+Numbers = Annotated[dict[str, float], AfterValidator(FrozenDict)]
+"""Numbers by name, in a `Record`."""
+
+RecordT = TypeVar('RecordT', bound=BaseModel)
+
+
+def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, Any]:
+    """Read a YAML file whose top level is a mapping.
+
+    Parameters
+    ----------
+    path
+        File of at most 1 MB in UTF-8.
+    error
+        Class of the error to raise.
+
+    Returns
+    -------
+    dict
+        Keys are text. Scalars follow YAML 1.2, so ``1e5`` is a number, ``no`` and ``12:30``
+        are text.
+
+    Raises
+    ------
+    TrawlError
+        Of class ``error``: the file is missing, unreadable, too large, not YAML or not a
+        mapping; a key stands twice or is not text; an alias or a tag is used.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise error(f'{path}: no such file')
+    if not path.is_file():
+        raise error(f'{path}: not a file, expected a YAML file')
+    try:
+        with path.open('rb') as stream:
+            raw = stream.read(YAML_BYTES.value + 1)
+    except OSError as reason:
+        raise error(f'{path}: cannot be read ({reason.strerror})') from reason
+    if len(raw) > YAML_BYTES.value:
+        raise error(f'{path}: larger than {YAML_BYTES}, expected a smaller YAML file')
+    with reading(path, error):
+        try:
+            data = yaml.load(raw.decode('utf-8'), _Loader)
+        except UnicodeDecodeError as reason:
+            raise error(
+                f'{path}: byte {reason.start} is not UTF-8, expected a text file'
+            ) from reason
+        except yaml.YAMLError as reason:
+            raise error(f'{path}: {_yaml_complaint(reason)}') from reason
+    if data is None:
+        raise error(f'{path}: the file is empty, expected keys and values')
+    if not isinstance(data, dict):
+        raise error(f'{path}: found {shown(data)}, expected keys and values at the top level')
+    return data
+
+
+def validated(
+    cls: type[RecordT],
+    data: Any,
+    path: str | Path,
+    error: type[TrawlError],
+    *,
+    prefix: str = '',
+) -> RecordT:
+    """Turn what a file says into a record.
+
+    Parameters
+    ----------
+    cls
+        The record's class, a `Record` as a rule.
+    data
+        What `load_yaml` gave, or a part of it. Lists are handed on as tuples.
+    path
+        Named in the error.
+    error
+        Class of the error to raise.
+    prefix
+        Where in the file ``data`` stands (``'instruments'``), put before each key.
+
+    Raises
+    ------
+    TrawlError
+        Of class ``error``, one line per complaint, each with file, key, found and expected.
+    """
+    data = _with_tuples(data)
+    try:
+        return cls.model_validate(data)
+    except ValidationError as reason:
+        lines = complaints(cls, data, reason.errors(include_url=False), prefix)
+        more = len(lines) - MAX_COMPLAINTS
+        told = [f'{path}: {line}' for line in lines[:MAX_COMPLAINTS]]
+        if more > 0:
+            told.append(f'{path}: and {more} more like these')
+        raise error('\n'.join(told)) from reason
+
+
+_SURROGATE = re.compile('[\ud800-\udfff]')
+
+
+class _Loader(yaml.SafeLoader):
+    """SafeLoader with the scalars of YAML 1.2; no aliases or tags, no key twice, all bounded."""
+
+    _depth = 0
+    _values = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        event = self.peek_event()
+        if isinstance(event, yaml.AliasEvent):
+            # A few lines of aliases can stand for billions of values.
+            self._refuse(event, 'an alias (*), expected the value itself')
+        if getattr(event, 'tag', None) is not None:
+            # `!!int abc` makes constructors fail in ways of their own.
+            self._refuse(event, f'a tag ({event.tag}), expected the value itself')
+        if isinstance(event, yaml.ScalarEvent) and _SURROGATE.search(event.value):
+            self._refuse(event, 'half a character (\\ud800 to \\udfff), expected text')
+        self._depth += 1
+        self._values += 1
+        if self._depth > YAML_DEPTH.value:
+            self._refuse(event, f'nesting, expected {YAML_DEPTH} at most')
+        if self._values > YAML_VALUES.value:
+            self._refuse(event, f'one value more, expected {YAML_VALUES} at most')
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        seen: dict[str, int] = {}
+        for key_node, _ in node.value:
+            if key_node.tag != 'tag:yaml.org,2002:str':
+                self._refuse(key_node, 'a key that is not text, expected a name')
+            line = key_node.start_mark.line + 1
+            if key_node.value in seen:
+                first = seen[key_node.value]
+                again = f"key '{key_node.value}' again (first on line {first})"
+                self._refuse(key_node, f'{again}, expected each key once')
+            seen[key_node.value] = line
+        return super().construct_mapping(node, deep)
+
+    def _refuse(self, where: Any, found: str) -> NoReturn:
+        raise yaml.constructor.ConstructorError(None, None, f'found {found}', where.start_mark)
+
+
+# Own table: YAML 1.1 reads 1e5 as text, 12:30 as 750 and `no` as false.
+_Loader.yaml_implicit_resolvers = {}
+for _tag, _pattern, _first in (
+    ('bool', r'^(?:true|True|TRUE|false|False|FALSE)$', 'tTfF'),
+    ('null', r'^(?:~|null|Null|NULL|)$', ['~', 'n', 'N', '']),
+    ('int', r'^[-+]?[0-9]{1,18}$', '-+0123456789'),
+    (
+        'float',
+        r'^(?:[-+]?(?:(?:\.\d+|\d+\.?\d*)(?:[eE][-+]?\d+)?|\.(?:inf|Inf|INF))|\.(?:nan|NaN|NAN))$',
+        '-+.0123456789',
+    ),
+):
+    _Loader.add_implicit_resolver(
+        f'tag:yaml.org,2002:{_tag}', re.compile(_pattern, re.ASCII), list(_first)
+    )
+# SafeLoader would read 010 as eight.
+_Loader.add_constructor('tag:yaml.org,2002:int', lambda _, node: int(node.value))
+
+
+def _yaml_complaint(reason: yaml.YAMLError) -> str:
+    mark = getattr(reason, 'problem_mark', None)
+    problem = getattr(reason, 'problem', None) or getattr(reason, 'reason', None) or 'not YAML'
+    where = f'line {mark.line + 1}, column {mark.column + 1}: ' if mark else ''
+    return f'{where}{problem}' + ('' if 'expected' in problem else ', expected plain YAML')
+
+
+def _with_tuples(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {key: _with_tuples(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return tuple(_with_tuples(value) for value in data)
+    return data

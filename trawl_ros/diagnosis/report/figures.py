@@ -1,0 +1,209 @@
+"""Figures of a diagnosis."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.core.files import write_figure
+from trawl_ros.diagnosis.candidates import Candidate
+from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown
+from trawl_ros.diagnosis.locating import map_of
+from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.estimation.report.figures import Drawing
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.report.style import DPI, FAINT, MEASURED, SECOND, quiet
+
+WHERE, WHICH, GAP = 'Where they disagree', 'Which effect it is', 'The gap before and after'
+
+MOST_Z = 8.0
+"""Colours end here."""
+
+BARS = 10
+"""So many effects are drawn."""
+
+
+def drawings(found: Diagnosis) -> list[Drawing]:
+    """Return all figures for which there are numbers."""
+    seen, shown, made = found.seen, found.shown, []
+    if seen is not None:
+        made.append(
+            Drawing(
+                'where.png', WHERE,
+                'Residuals of each channel with each variable, in standard deviations of what '
+                'errors would make, boards and calibration taken out. Red: grows with it.',
+                where_figure(seen),
+            )
+        )  # fmt: skip
+        made.append(
+            Drawing(
+                'evidence.png', WHICH,
+                'By how much each effect alone lowers χ² of all readings, boards refitted (dark: '
+                'solved anew, light: to first order).',
+                evidence_figure(found, seen),
+            )
+        )  # fmt: skip
+        made.append(
+            Drawing(
+                'confusable.png', WHICH,
+                'How alike effects look in these tows: the cosine of what the one changes with '
+                'the nearest that the other could do. 1 cannot be told apart.',
+                confusable_figure(seen),
+            )
+        )  # fmt: skip
+    if shown is not None and shown.after is not None:
+        made.append(
+            Drawing(
+                'gap.png', GAP,
+                'Errors of each channel on what was kept back, over what errors of instruments '
+                'alone would make (1): boards refitted alone, with '
+                f'{found.added_as}, and with the best other effect.',
+                gap_figure(shown, found.added_as),
+            )
+        )  # fmt: skip
+    if found.base is not None and found.added is not None:
+        made.append(
+            Drawing(
+                'coefficients.png', GAP,
+                'The coefficients of the boards with and without '
+                f'{found.added_as}, in standard deviations of the prior: what moves had been '
+                'bent to hide it.',
+                coefficients_figure(found),
+            )
+        )  # fmt: skip
+    return made
+
+
+def draw_figures(found: Diagnosis, folder: Path) -> list[Drawing]:
+    """Draw all figures into a folder."""
+    made = drawings(found)
+    for drawing in made:
+        write_figure(folder / drawing.file, drawing.figure, DPI)
+    return made
+
+
+def where_figure(seen: Screen) -> Figure:
+    """Map of residual patterns: channels by variables."""
+    channels, variables, z = map_of(seen)
+    figure = Figure(figsize=(8.0, 0.35 * len(channels) + 1.8), layout='constrained')
+    axes = figure.subplots()
+    picture = axes.imshow(z, cmap='RdBu_r', vmin=-MOST_Z, vmax=MOST_Z, aspect='auto')
+    axes.set_xticks(range(len(variables)), variables, rotation=25, ha='right')
+    axes.set_yticks(range(len(channels)), [_words(name) for name in channels])
+    for row, column in np.argwhere(np.abs(z) >= 3.0):
+        colour = 'white' if abs(z[row, column]) > 0.6 * MOST_Z else 'black'
+        axes.text(column, row, f'{z[row, column]:+.1f}', ha='center', va='center', color=colour)
+    figure.colorbar(picture, ax=axes, label='standard deviations')
+    return figure
+
+
+def evidence_figure(found: Diagnosis, seen: Screen) -> Figure:
+    """Bars of the effects in order of the χ² they explain."""
+    first: dict[str, float] = {}
+    for candidate in seen.wanted:
+        chi2 = seen.evidence.chi2(seen.block(candidate))
+        first[candidate.name] = max(chi2, first.get(candidate.name, 0.0))
+    weighed = found.named.weighed if found.named else ()
+    anew = {' and '.join(one.refit.names): one.delta_chi2 for one in weighed}
+    ranked = sorted({*first, *anew}, key=lambda name: anew.get(name, first.get(name, 0.0)))
+    ranked = ranked[-BARS:]
+    figure = Figure(figsize=(8.0, 0.35 * len(ranked) + 1.2), layout='constrained')
+    axes = figure.subplots()
+    places = np.arange(len(ranked))
+    axes.barh(places, [first.get(name, 0.0) for name in ranked], 0.7, color=FAINT)
+    axes.barh(places, [max(anew.get(name, 0.0), 0.0) for name in ranked], 0.4, color=MEASURED)
+    axes.set_yticks(places, [_words(name) for name in ranked])
+    axes.set_xlabel('χ² explained')
+    quiet(axes)
+    return figure
+
+
+def confusable_figure(seen: Screen) -> Figure:
+    """Matrix of the cosines of all effects' signatures."""
+    wanted = [one for one in seen.wanted if not one.place]
+    size = len(wanted)
+    cosines = np.array([[largest_cosine(seen, a, b) for b in wanted] for a in wanted])
+    figure = Figure(figsize=(0.42 * size + 2.5, 0.42 * size + 1.8), layout='constrained')
+    axes = figure.subplots()
+    picture = axes.imshow(cosines, cmap='Greys', vmin=0.0, vmax=1.0)
+    names = [_words(one.name) for one in wanted]
+    axes.set_xticks(range(size), names, rotation=60, ha='right')
+    axes.set_yticks(range(size), names)
+    for row, column in np.argwhere(cosines > 0.8):
+        if row != column:
+            axes.text(
+                column, row, f'{cosines[row, column]:.2f}', ha='center', va='center',
+                color='white', fontsize=7,
+            )  # fmt: skip
+    figure.colorbar(picture, ax=axes, label='cosine')
+    return figure
+
+
+def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
+    """Largest cosine of the signatures of two effects."""
+    a, b = (list(seen.block(which)) for which in (one, other))
+    information = seen.evidence.information
+    roots = []
+    for block in (a, b):
+        values, vectors = np.linalg.eigh(information[np.ix_(block, block)])
+        kept = values > 1e-9 * max(values.max(), 1e-30)
+        roots.append(vectors[:, kept] / np.sqrt(values[kept]))
+    if not (roots[0].size and roots[1].size):
+        return 0.0
+    between = roots[0].T @ information[np.ix_(a, b)] @ roots[1]
+    return float(min(1.0, np.linalg.svd(between, compute_uv=False)[0]))
+
+
+def gap_figure(shown: Shown, added: str) -> Figure:
+    """Errors before and after the repair, and with the placebo."""
+    channels = list(shown.before.rms)
+    figure = Figure(figsize=(9.0, 4.5), layout='constrained')
+    axes = figure.subplots()
+    places = np.arange(len(channels))
+    bars = [('boards alone', shown.before, SECOND), (f'with {added}', shown.after, MEASURED)]
+    if shown.placebo is not None:
+        bars.append((f'with {_words(shown.instead or "")} instead', shown.placebo, FAINT))
+    width = 0.8 / len(bars)
+    for number, (label, errors, colour) in enumerate(bars):
+        assert errors is not None
+        heights = [errors.rms.get(name, np.nan) / shown.before.expected[name]
+                   for name in channels]  # fmt: skip
+        shift = (number - 0.5 * (len(bars) - 1)) * width
+        axes.bar(places + shift, heights, width, color=colour, label=label)
+    axes.axhline(1.0, color='black', lw=0.8, ls='--')
+    axes.set_xticks(places, [_words(name) for name in channels], rotation=30, ha='right')
+    axes.set_ylabel('error / error of instruments')
+    quiet(axes)
+    figure.legend(loc='outside upper center', ncols=3, frameon=False)
+    return figure
+
+
+def coefficients_figure(found: Diagnosis) -> Figure:
+    """Coefficients of the boards with and without the effect."""
+    base, added = found.base, found.added
+    assert base is not None
+    assert added is not None
+    prior = base.fit.prior
+    figure = Figure(figsize=(9.0, 4.0), layout='constrained')
+    axes = figure.subplots()
+    number = len(COEFFICIENTS)
+    for shift, (label, one, colour) in zip(
+        (-0.12, 0.12),
+        (('boards alone', base, SECOND), (f'with {found.added_as}', added.refit, MEASURED)),
+        strict=True,
+    ):
+        values = (one.estimate.values[:number] - prior.start) / prior.std
+        std = one.estimate.std[:number] / prior.std
+        axes.errorbar(
+            np.arange(number) + shift, values, 1.96 * std, fmt='o', color=colour, label=label
+        )
+    axes.axhline(0.0, color='black', lw=0.8)
+    axes.set_xticks(range(number), COEFFICIENTS)
+    axes.set_ylabel('from the start / std of the prior')
+    quiet(axes)
+    figure.legend(loc='outside upper center', ncols=2, frameon=False)
+    return figure
+
+
+def _words(name: str) -> str:
+    return name.replace('_', ' ')

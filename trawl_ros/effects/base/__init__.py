@@ -1,0 +1,1 @@
+"""Bases of effects and empirical terms."""

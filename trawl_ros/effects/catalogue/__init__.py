@@ -1,0 +1,1 @@
+"""The known effects, one file each, with its `EFFECT`."""

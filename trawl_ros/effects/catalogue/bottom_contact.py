@@ -1,0 +1,57 @@
+"""Bottom contact of the lower wing tips."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Effect, Parameter, Situation
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import length
+
+SOFT = 4.0
+"""Over this depth (m) the ground takes hold of a weight."""
+
+SLOW = 0.1
+"""Friction has its full size beyond this speed, m/s."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Ground force on nodes below a depth: friction, and a vertical reaction of the same size."""
+
+    nodes: np.ndarray
+    depth: float
+    friction: float
+
+    def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+        """Friction against the velocity over ground, and an upward reaction of the same size, N."""
+        below = (-positions[..., 2] - self.depth) / SOFT
+        hold = 0.5 * self.friction * (1.0 + np.tanh(0.5 * below))
+        upward = np.array([0.0, 0.0, 1.0])
+        return hold[..., None] * (upward - velocities / length(velocities, SLOW)[..., None])
+
+
+class BottomContact(Effect):
+    """Ground contact of both lower wing tips beyond a depth."""
+
+    def starts(self, depths: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Start values: the ground may lie anywhere between the net's depths."""
+        return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, (0.5, 0.75, 0.9)))
+
+    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+        """Gear model with ground under the wing tips."""
+        friction, depth = map(float, values)
+        foot = model.layout.footrope
+        ground = Ground(np.array([foot[0], foot[-1]]), depth, friction)
+        return replace(model, node_forces=(*model.node_forces, ground))
+
+
+EFFECT = BottomContact(
+    name='bottom_contact',
+    sentence='Beyond a depth the lower wing tips drag over the bottom.',
+    parameters=(
+        Parameter('friction', 'N', 0.0, 0.0, 10e3, 2e3),
+        Parameter('depth', 'm', 0.0, 0.0, 2000.0, 50.0),
+    ),
+    excited_by='depth near the bottom',
+)

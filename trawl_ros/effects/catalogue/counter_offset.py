@@ -1,0 +1,24 @@
+"""Offset of the warp counters."""
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Effect, Parameter, Situation
+
+
+class CounterOffset(Effect):
+    """Offset of both counters against the warp out, m."""
+
+    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """Warp lengths without the offset."""
+        return inputs - values[0] * np.array([1.0, 1.0, 0.0])
+
+
+EFFECT = CounterOffset(
+    name='counter_offset',
+    sentence='The winch counters show too much or too little warp, by the same number of metres.',
+    parameters=(Parameter('offset', 'm', 0.0, -50.0, 50.0, 10.0),),
+    excited_by='warp length',
+    confused_with=('counter_scale', 'warp_strumming'),
+    direct='Pay out warp to a mark of known distance and read the counters.',
+    instrument='counters',
+)

@@ -1,0 +1,27 @@
+"""Scale and bias of the speed log."""
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Effect, Parameter, Situation
+
+
+class SpeedLog(Effect):
+    """Speed log that shows (1 + scale) times the speed, and a bias."""
+
+    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """Speed without scale and bias, beside both warp lengths."""
+        scale, bias = values
+        port, starboard, speed = inputs
+        return np.array([port, starboard, (speed - bias) / (1.0 + scale)])
+
+
+EFFECT = SpeedLog(
+    name='speed_log',
+    sentence='The log shows too much or too little speed through the water.',
+    parameters=(
+        Parameter('scale', '', 0.0, -0.4, 0.4, 0.05),
+        Parameter('bias', 'm/s', 0.0, -0.8, 0.8, 0.1),
+    ),
+    excited_by='speed',
+    confused_with=('net_drag', 'heave'),
+)

@@ -1,0 +1,41 @@
+"""Lift of the boards by their tilt."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Effect, Parameter, Situation
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.hooks import LIFT
+
+
+@dataclass(frozen=True)
+class Tilted:
+    """Coefficient modifier: lift that grows, linearly, as the outer face looks up."""
+
+    slope: float
+
+    def __call__(
+        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
+    ) -> np.ndarray:
+        """Multiply C_y^F by the factor of the tilt."""
+        bent = coefficients + 0.0 * lean[..., None]
+        bent[..., LIFT] = bent[..., LIFT] * (1.0 + self.slope * lean)
+        return bent
+
+
+class TiltLift(Effect):
+    """Lift by the boards' tilt."""
+
+    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+        """Gear model with boards whose lift depends on their tilt."""
+        return model.with_board(bend=Tilted(float(values[0])))
+
+
+EFFECT = TiltLift(
+    name='tilt_lift',
+    sentence="The boards' lift changes as they lean inward or outward.",
+    parameters=(Parameter('slope', '1/rad', 0.0, -2.0, 2.0, 0.5),),
+    excited_by='what makes the boards lean: warp length and speed',
+    confused_with=('warp_strumming',),
+)

@@ -1,0 +1,109 @@
+"""Effect set: the effects that a gear file switches on, applied one after another."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.errors import GearError
+from trawl_ros.effects.base.effect import Effect, Readings, Situation
+from trawl_ros.effects.empirical.library import dictionary
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.gear.records import EffectRecord, GearRecord
+from trawl_ros.model.gear_model import GearModel
+
+
+@dataclass(frozen=True)
+class Active:
+    """Effect with its values (m,) in the order of its parameters."""
+
+    effect: Effect
+    values: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.effect.name
+
+
+@dataclass(frozen=True)
+class Acting:
+    """Effect set; each effect is applied to the result of those before it."""
+
+    effects: tuple[Active, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.effects)
+
+    def towed(self, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
+        for active in self.effects:
+            inputs = active.effect.towed(active.values, inputs, at)
+        return inputs
+
+    def gear(self, model: GearModel, at: Situation) -> GearModel:
+        """Gear model with all effects applied."""
+        for active in self.effects:
+            model = active.effect.gear(active.values, model, at)
+        return model
+
+    def shown(self, readings: Readings, at: Situation) -> Readings:
+        """Apply to sensors: readings with the errors of all effects."""
+        for active in self.effects:
+            readings = active.effect.shown(active.values, readings, at)
+        return readings
+
+    def of(self, effect: Effect) -> Active:
+        """Effect with its values in this set, neutral where it is absent."""
+        same = [active for active in self.effects if active.name == effect.name]
+        return same[0] if same else Active(effect, effect.neutral)
+
+    def having(self, active: Active) -> 'Acting':
+        """Effect set with one effect replaced by name, or added last."""
+        names = [other.name for other in self.effects]
+        if active.name not in names:
+            return Acting((*self.effects, active))
+        place = names.index(active.name)
+        return Acting((*self.effects[:place], active, *self.effects[place + 1 :]))
+
+    def without(self, names: Collection[str]) -> 'Acting':
+        """Effect set without the named effects."""
+        return Acting(tuple(active for active in self.effects if active.name not in names))
+
+
+NONE = Acting()
+
+
+def acting(gear: GearRecord) -> Acting:
+    """Effect set of a gear file.
+
+    Raises
+    ------
+    GearError
+        If there is no such effect, or a value is missing, of another effect or out of bounds.
+    """
+    return Acting(tuple(_active(number, record) for number, record in enumerate(gear.effects)))
+
+
+def _active(number: int, record: EffectRecord) -> Active:
+    known: Mapping[str, Effect] = {**catalogue(), **dictionary()}
+    key = f'effects.{number}'
+    if record.name not in known:
+        listed = ', '.join(catalogue())
+        raise GearError(f'{key}.name: found {record.name}, expected one of {listed}')
+    effect = known[record.name]
+    names = [parameter.name for parameter in effect.parameters]
+    for name in record.values:
+        if name not in names:
+            listed = ', '.join(names)
+            raise GearError(f'{key}.values: found {name}, expected {listed} of {effect.name}')
+    values = []
+    for parameter in effect.parameters:
+        value = record.values.get(parameter.name, parameter.neutral)
+        if not parameter.low <= value <= parameter.high:
+            raise GearError(
+                f'{key}.values.{parameter.name}: found {value:g}, expected '
+                f'{parameter.low:g} to {parameter.high:g} {parameter.unit}'.rstrip()
+            )
+        values.append(value)
+    return Active(effect, np.array(values))

@@ -1,0 +1,1 @@
+"""Empirical terms for what no effect of the catalogue explains."""

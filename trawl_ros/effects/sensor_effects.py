@@ -1,0 +1,103 @@
+"""Sensor effects on samples: readings with the errors of a gear file's effects.
+
+Truth stays unchanged: counters and log show the numbers at which the effects return the true
+inputs, and sensors show the observables with the effects applied.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Readings, Situation
+from trawl_ros.effects.effect_set import Acting
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.model.water import Water
+from trawl_ros.records.samples import (
+    AttitudeSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
+
+ROUNDS = 20
+"""Of fixed points; each round leaves a fifth of what is missing, or less."""
+
+HOUR_NS = 3600 * 1_000_000_000
+DEPTHS = {
+    'port': 'port_door_depth',
+    'starboard': 'starboard_door_depth',
+    'sonar': 'net_depth',
+}
+RANGES = {'spread': 'door_spread', 'opening_height': 'vertical_opening'}
+USUAL = np.array([500.0, 500.0, 2.0])
+"""Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
+
+
+class Showing:
+    """Converter of error-free samples into those of a gear with effects.
+
+    Parameters
+    ----------
+    acting
+        The effects; without any, samples pass unchanged.
+    water
+        Turns pressure into depth and back.
+    """
+
+    def __init__(self, acting: Acting, water: Water) -> None:
+        self._acting = acting
+        self._water = water
+        self._first: int | None = None
+
+    def __call__(self, sample: Sample) -> Sample:
+        """Return the sample with the effects applied."""
+        if not self._acting:
+            return sample
+        if self._first is None or sample.stamp < self._first:
+            self._first = sample.stamp
+        at = Situation((500.0, 500.0, 2.0), hours=(sample.stamp - self._first) / HOUR_NS)
+        match sample:
+            case WinchSample():
+                lengths = self._instrument(np.array([*sample.lengths, USUAL[2]]), at)[:2]
+                tensions = {
+                    'port_tension': sample.tensions[0],
+                    'starboard_tension': sample.tensions[1],
+                }
+                seen = self._sensors(tensions, at)
+                return replace(
+                    sample,
+                    lengths=(float(lengths[0]), float(lengths[1])),
+                    tensions=(seen['port_tension'], seen['starboard_tension']),
+                )
+            case VelocitySample(over='water'):
+                ahead = self._instrument(np.array([*USUAL[:2], sample.velocity[0]]), at)[2]
+                velocity = np.array([ahead, *sample.velocity[1:]])
+                return replace(sample, velocity=velocity)
+            case PressureSample() if sample.place in DEPTHS:
+                name = DEPTHS[sample.place]
+                depth = self._sensors({name: self._water.depth(sample.pressure)}, at)[name]
+                return replace(sample, pressure=self._water.pressure(depth))
+            case RangeSample() if sample.what in RANGES:
+                name = RANGES[sample.what]
+                distance = self._sensors({name: sample.distance}, at)[name]
+                return replace(sample, distance=distance)
+            case AttitudeSample():
+                names = (f'{sample.side}_pitch', f'{sample.side}_roll')
+                true = dict(zip(names, (sample.pitch, sample.roll), strict=True))
+                pitch, roll = (self._sensors(true, at)[name] for name in names)
+                return replace(sample, pitch=pitch, roll=roll)
+            case _:
+                return sample
+
+    def _sensors(self, known: Readings, at: Situation) -> Readings:
+        """Readings of sensors; each depends on one observable, so that others need not be known."""
+        return self._acting.shown({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
+
+    def _instrument(self, true: np.ndarray, at: Situation) -> np.ndarray:
+        """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
+        shown = true
+        for _ in range(ROUNDS):
+            shown = shown + true - self._acting.towed(shown, at)
+        return shown

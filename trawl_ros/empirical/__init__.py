@@ -1,1 +1,0 @@
-"""Empirical terms for residuals that no effect of the catalogue explains."""

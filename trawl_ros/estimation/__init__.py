@@ -1,0 +1,1 @@
+"""From samples or bags to an estimate of the coefficients."""

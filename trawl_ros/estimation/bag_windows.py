@@ -1,0 +1,123 @@
+"""Steady windows of bags, each read apart from the others."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from trawl_ros.bags.samples import SampleStream
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.from_gear import identification_for
+from trawl_ros.estimation.tows import FoundWindows
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
+
+IN_TURN = 2
+"""So many bags are read sooner than processes are started for them."""
+
+
+@dataclass(frozen=True)
+class BagTask:
+    """Task of reading a bag: its path, topics, and the gear whose water gives depths."""
+
+    path: Path
+    gear: GearRecord
+    namespace: str
+
+
+def read_tow(task: BagTask, read: Callable[[float, int], None] | None = None) -> FoundWindows:
+    """Find the steady windows of one bag.
+
+    Parameters
+    ----------
+    task
+        Which bag.
+    read
+        Told how much of the tow (s) is read, and how many windows were in it.
+    """
+    identification = identification_for(task.gear)
+    finder = identification.finder
+    stream = SampleStream([task.path], task.namespace)
+    windows: list[SteadyWindow] = []
+    newest: int | None = None
+    done = 0
+    for _, sample in stream:
+        done += 0 if newest is None else max(0, sample.stamp - newest)
+        newest = sample.stamp if newest is None else max(newest, sample.stamp)
+        windows += [item for item in finder.feed(sample) if isinstance(item, SteadyWindow)]
+        if read is not None:
+            read(done / SECOND, len(windows))
+    windows += [item for item in finder.finish() if isinstance(item, SteadyWindow)]
+    return FoundWindows(
+        name=str(task.path),
+        windows=tuple(windows),
+        arrived=finder.arrived,
+        readings=finder.readings,
+        rejections=finder.rejections,
+        why_not=None if windows else identification.why_not(),
+        problems=tuple(stream.problems),
+    )
+
+
+def read_tows(
+    paths: Sequence[Path],
+    gear: GearRecord,
+    namespace: str,
+    *,
+    scheduler: str | None = None,
+    on_progress: OnProgress = ignore,
+) -> list[FoundWindows]:
+    """Find the steady windows of each bag.
+
+    Parameters
+    ----------
+    paths, gear, namespace
+        As in `BagTask`.
+    scheduler
+        Address of a Dask cluster. Without it a few bags are read in turn, more by processes of
+        this machine; what is found is the same.
+    on_progress
+        Called as bags are read.
+
+    Raises
+    ------
+    BagError
+        If a bag cannot be read at all.
+    """
+    tasks = [BagTask(path, gear, namespace) for path in paths]
+    if scheduler is None and len(tasks) <= IN_TURN:
+        return _in_turn(tasks, on_progress)
+    return _at_once(tasks, scheduler, on_progress)
+
+
+def _in_turn(tasks: Sequence[BagTask], on_progress: OnProgress) -> list[FoundWindows]:
+    found: list[FoundWindows] = []
+    before_s = reached_s = 0.0
+
+    def show(seconds: float, windows: int) -> None:
+        nonlocal reached_s
+        reached_s = before_s + seconds
+        bag = f'bag {len(found) + 1} of {len(tasks)}, ' if len(tasks) > 1 else ''
+        windows += sum(len(part.windows) for part in found)
+        detail = f'{bag}{windows} steady windows'
+        on_progress(WorkProgress('reading', reached_s, None, 's', detail))
+
+    for task in tasks:
+        found.append(read_tow(task, show))
+        before_s = reached_s
+    return found
+
+
+def _at_once(
+    tasks: Sequence[BagTask], scheduler: str | None, on_progress: OnProgress
+) -> list[FoundWindows]:
+    # Dask takes a second to import, which a single bag need not wait for.
+    from trawl_ros.core.parallel import run_tasks
+
+    # A bag may be given twice; its place among the others is unique.
+    by_name = {f'{number}: {task.path}': task for number, task in enumerate(tasks, start=1)}
+    found: dict[str, FoundWindows] = {}
+    for name, windows in run_tasks(read_tow, by_name, scheduler=scheduler):
+        found[name] = windows
+        on_progress(WorkProgress('reading', len(found), len(tasks), 'bags'))
+    return [found[name] for name in by_name]

@@ -1,0 +1,46 @@
+"""Names that classes had in checkpoints of version 0.1.0."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+MODULES: Mapping[str, str] = MappingProxyType(
+    {
+        'trawl_ros.identification.buffers': 'trawl_ros.estimation.windows.buffers',
+        'trawl_ros.identification.channels': 'trawl_ros.records.channels',
+        'trawl_ros.identification.error_terms': 'trawl_ros.estimation.fit.error_terms',
+        'trawl_ros.identification.estimate': 'trawl_ros.estimation.fit.estimate',
+        'trawl_ros.identification.estimator': 'trawl_ros.estimation.fit.estimator',
+        'trawl_ros.identification.estimator_options': 'trawl_ros.estimation.fit.estimator_options',
+        'trawl_ros.identification.fit': 'trawl_ros.estimation.fit.fit',
+        'trawl_ros.identification.guard': 'trawl_ros.estimation.window_gate',
+        'trawl_ros.identification.linearised': 'trawl_ros.estimation.fit.linearised',
+        'trawl_ros.identification.operation': 'trawl_ros.estimation.windows.operation',
+        'trawl_ros.identification.order': 'trawl_ros.estimation.windows.timestamp_check',
+        'trawl_ros.identification.over_ground': 'trawl_ros.estimation.windows.over_ground',
+        'trawl_ros.identification.pipeline': 'trawl_ros.estimation.pipeline',
+        'trawl_ros.identification.prior': 'trawl_ros.estimation.fit.prior',
+        'trawl_ros.identification.rejections': 'trawl_ros.estimation.windows.records',
+        'trawl_ros.identification.screening': 'trawl_ros.estimation.screening',
+        'trawl_ros.identification.timeline': 'trawl_ros.estimation.windows.watermark',
+        'trawl_ros.identification.window_records': 'trawl_ros.estimation.windows.records',
+        'trawl_ros.identification.windows': 'trawl_ros.estimation.windows.finder',
+    }
+)
+
+CLASSES: Mapping[str, str] = MappingProxyType({})
+
+
+FIELDS: Mapping[str, str] = MappingProxyType({})
+
+
+def present(name: str, has: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
+    """Give the name that a class has now, and its attributes as they are called now.
+
+    A class that has not moved keeps its own.
+    """
+    module, _, own = name.rpartition('.')
+    if module not in MODULES:
+        return name, has
+    now = {FIELDS.get(key, key): value for key, value in has.items()}
+    return f'{MODULES[module]}.{CLASSES.get(own, own)}', now

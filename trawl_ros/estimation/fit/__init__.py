@@ -1,0 +1,1 @@
+"""The fit: predictions, errors of readings, Gauss–Newton, the posterior."""

@@ -1,0 +1,276 @@
+"""Error budget of the readings of a tow: error terms and their course over its windows.
+
+Four kinds of error stand between a reading and the model: those of the single reading (scatter,
+and what changes from one steady state to the next), those of the window's measured warp
+lengths and speed and of a gear not quite at rest, calibration, which is wrong alike throughout
+a tow, and the model's own, alike in all tows.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+
+
+def group_of(channel: str) -> str:
+    """Return the name of the quantity, which is the same for both sides."""
+    return channel.removeprefix('port_').removeprefix('starboard_')
+
+
+GROUPS = tuple(dict.fromkeys(map(group_of, MEASURED)))
+"""Measured quantities; sensors of both sides are alike."""
+
+GROUP_OF = np.array([GROUPS.index(group_of(name)) for name in MEASURED])
+"""Index into `GROUPS` of each channel (k,)."""
+
+MODEL_FRACTION = 0.003
+MODEL_ANGLE = np.radians(0.2)
+"""Std of what the model itself is wrong by, a part of the value, and for pitch and roll an angle
+(rad). Assumed; ``trawl study identification`` measures what a gear of twice as fine warps and
+bridles and a net without joined meshes shows more than the default."""
+
+USUAL_LENGTH, LONGER = 500.0, 1.5
+"""The errors of the model at other lengths of warp differ from those at this one (m), and the more
+so with every factor."""
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Error scheme: division of errors among readings, steady states, tows and model.
+
+    Attributes
+    ----------
+    state_share
+        Part of a channel's bias, in std, that changes from one steady state to the next; the
+        rest stays through the tow.
+    model_error
+        Factor on the model's own errors; 0 is a model taken to be exact.
+    model_trend
+        By so many of their std these errors change where the warps are `LONGER` times as long.
+    net_drag, net_weight
+        Std of the factors on the net's drag and weight in water; where both are 0 the net is held.
+    unsettled
+        Std, as a part of the net's depth, of what is still to come of the gear's slowest motion
+        in a window that is steady to the eye.
+    """
+
+    state_share: float = 0.3
+    model_error: float = 1.0
+    model_trend: float = 0.0
+    unsettled: float = 0.05
+    net_drag: float = 0.0
+    net_weight: float = 0.0
+
+    @property
+    def net_std(self) -> np.ndarray:
+        """Prior std of the net's factors (2,) on drag and weight."""
+        return np.array([self.net_drag, self.net_weight])
+
+    @property
+    def tow_share(self) -> float:
+        """Part of a bias in std that stays through the tow."""
+        return float(np.sqrt(1.0 - self.state_share**2))
+
+
+@dataclass(frozen=True)
+class Term:
+    """Calibration error: the channel or input it belongs to, and its std there.
+
+    ``relative`` errors are parts of the value, others are in the channel's unit.
+    """
+
+    channel: str
+    std: float
+    relative: bool
+
+
+TERMS = tuple(
+    Term(name, std, relative)
+    for name in (*MEASURED, *INPUTS)
+    for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
+    if std > 0.0
+)
+"""Errors of calibration of one tow."""
+
+
+@dataclass(frozen=True)
+class TowErrors:
+    """Errors of one tow: n windows by k channels (in the order of `MEASURED`).
+
+    Attributes
+    ----------
+    rows : (n,) int array
+        Which of all windows these are.
+    present : (n, k) bool array
+        Whether a window has the channel; all else is 0 where it has not.
+    noise : (n, k) array
+        Std of the single reading's own error as stated, 1 where absent.
+    numbers : (n, k) array
+        How many independent readings each stands for: all windows of a state share what
+        changes with the state.
+    inputs : (n, k, 4) array
+        What one std in warp lengths, speed and rest of this window does.
+    input_std : (n, 3) array
+        That std of warp lengths (m) and speed (m/s).
+    calibration : (n, k, p) array
+        What one std of each of `TERMS` does.
+    input_calibration : (n, 3, p) array
+        By how much one std of each of `TERMS` makes warp lengths and speed read too large.
+    model : (n, k, m) array
+        What one std of the model's errors does, one per group, then of their trends, and of the
+        net's drag and weight where they are not held.
+    """
+
+    rows: np.ndarray
+    present: np.ndarray
+    noise: np.ndarray
+    numbers: np.ndarray
+    inputs: np.ndarray
+    input_std: np.ndarray
+    calibration: np.ndarray
+    input_calibration: np.ndarray
+    model: np.ndarray
+
+
+def spread(part: Linearised, values: np.ndarray) -> np.ndarray:
+    """Rows of a window's channels scattered among all channels, 0 for those it has not.
+
+    Parameters
+    ----------
+    part
+        The window.
+    values
+        (channels of the window, ...) array.
+    """
+    full = np.zeros((len(MEASURED), *values.shape[1:]))
+    full[[MEASURED.index(name) for name in part.channels]] = values
+    return full
+
+
+def tow_errors(parts: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, ...]:
+    """Errors of all windows, tow by tow.
+
+    Parameters
+    ----------
+    parts
+        Linearised windows of any tows.
+    scheme
+        How errors are divided.
+    """
+    states = [part.window.state for part in parts]
+    in_state = {state: states.count(state) for state in set(states)}
+    usual = _usual_noise([part.window for part in parts])
+    tows: dict[int, list[int]] = {}
+    for row, part in enumerate(parts):
+        tows.setdefault(part.window.tow, []).append(row)
+    return tuple(
+        _of_one_tow(rows, [parts[row] for row in rows], in_state, usual, scheme)
+        for _, rows in sorted(tows.items())
+    )
+
+
+def _of_one_tow(
+    rows: Sequence[int],
+    parts: Sequence[Linearised],
+    in_state: Mapping[int, int],
+    usual: Mapping[str, float],
+    scheme: Scheme,
+) -> TowErrors:
+    present = np.array([[name in part.channels for name in MEASURED] for part in parts])
+    by_inputs = np.array([spread(part, part.by_inputs) for part in parts])
+    own = np.array(
+        [[_own_std(part, name, in_state, usual, scheme) for name in MEASURED] for part in parts]
+    )
+    alone = np.array(
+        [[_own_std(part, name, {part.window.state: 1}, usual, scheme) for name in MEASURED]
+         for part in parts]
+    )  # fmt: skip
+    input_std = np.array(
+        [[_own_std(part, name, in_state, usual, scheme) for name in INPUTS] for part in parts]
+    )
+    slow = np.array([_unsettled(part, in_state, scheme) for part in parts])
+    return TowErrors(
+        rows=np.array(rows),
+        present=present,
+        noise=own,
+        numbers=present * alone**2 / own**2,
+        inputs=np.concatenate((by_inputs * input_std[:, None, :], slow[:, :, None]), axis=2),
+        input_std=input_std,
+        calibration=np.array([_calibration(part, scheme) for part in parts]),
+        input_calibration=np.array([_of_inputs(part, scheme) for part in parts]),
+        model=np.array([_model(part, scheme) for part in parts]),
+    )
+
+
+def _usual_noise(windows: Sequence[SteadyWindow]) -> dict[str, float]:
+    """Median over windows of each quantity's noise."""
+    found: dict[str, list[float]] = {}
+    for window in windows:
+        for name, noise in window.noise.items():
+            found.setdefault(group_of(name), []).append(noise)
+    return {group: float(np.median(noise)) for group, noise in found.items()}
+
+
+def _own_std(
+    part: Linearised,
+    name: str,
+    in_state: Mapping[int, int],
+    usual: Mapping[str, float],
+    scheme: Scheme,
+) -> float:
+    window = part.window
+    if name not in window.means or (name in MEASURED and name not in part.channels):
+        return 1.0
+    # All windows of a state share what changes with it, so their number must not wear it down.
+    changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
+    # Some thirty readings tell their own noise badly: one that seems small is small by chance.
+    noise = window.own_noise(name, usual[group_of(name)])
+    return float(np.sqrt(noise**2 + changing))
+
+
+def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> np.ndarray:
+    depth = part.window.means.get('net_depth', 0.0)
+    # The windows of one state come to rest together.
+    size = scheme.unsettled * abs(depth) * np.sqrt(in_state[part.window.state])
+    return spread(part, size * part.slow)
+
+
+def _calibration(part: Linearised, scheme: Scheme) -> np.ndarray:
+    # An input read too large makes the prediction differ, not the reading.
+    columns = -spread(part, part.by_inputs) @ _of_inputs(part, scheme)
+    for column, term in enumerate(TERMS):
+        if term.channel in part.channels:
+            columns[MEASURED.index(term.channel), column] = _size(part, term, scheme)
+    return columns
+
+
+def _of_inputs(part: Linearised, scheme: Scheme) -> np.ndarray:
+    columns = np.zeros((len(INPUTS), len(TERMS)))
+    for column, term in enumerate(TERMS):
+        if term.channel in INPUTS:
+            columns[INPUTS.index(term.channel), column] = _size(part, term, scheme)
+    return columns
+
+
+def _size(part: Linearised, term: Term, scheme: Scheme) -> float:
+    mean = part.window.means[term.channel]
+    return scheme.tow_share * term.std * (mean if term.relative else 1.0)
+
+
+def _model(part: Linearised, scheme: Scheme) -> np.ndarray:
+    columns = np.zeros((len(MEASURED), len(GROUPS)))
+    for name, value in zip(part.channels, part.values, strict=True):
+        row = MEASURED.index(name)
+        size = MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
+        columns[row, GROUP_OF[row]] = scheme.model_error * size
+    if scheme.model_trend:
+        length = 0.5 * (part.window.means['port_length'] + part.window.means['starboard_length'])
+        longer = np.log(length / USUAL_LENGTH) / np.log(LONGER)
+        columns = np.hstack((columns, scheme.model_trend * longer * columns))
+    if not scheme.net_std.any():
+        return columns
+    return np.hstack((columns, spread(part, part.by_net) * scheme.net_std))

@@ -1,0 +1,272 @@
+"""Posterior estimate after a window: values, covariance, and undetermined combinations."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.model.board import COEFFICIENTS
+
+DETERMINED_FRACTION = 0.2
+DETERMINED_SHRINK = 0.5
+NAMED_SHARE = 0.4
+
+
+@dataclass(frozen=True)
+class Combination:
+    """Combination of coefficients that the data do not determine.
+
+    ``names`` have the largest part in it; ``weights`` (12,) is its unit vector in units of
+    the prior's std, and ``std`` what the data alone know of it in these units (1 = as much
+    as was known before).
+    """
+
+    names: tuple[str, ...]
+    weights: np.ndarray
+    std: float
+
+    def __str__(self) -> str:
+        return ' with '.join(self.names)
+
+
+@dataclass(frozen=True)
+class Innovation:
+    """Innovations: measured minus predicted before the window was used, per channel (SI).
+
+    ``std`` counts the reading, the inputs and the coefficients as they were known;
+    ``test_ratio`` is innovation² over (3 std)²: below 0.5 is ordinary, above 1 is beyond
+    what the stated errors allow.
+    """
+
+    channels: tuple[str, ...]
+    values: np.ndarray
+    stds: np.ndarray
+    test_ratios: np.ndarray
+
+
+@dataclass(frozen=True)
+class TowBias:
+    """Calibration error of a channel through one tow; positive where it reads too high.
+
+    ``value``, its ``std`` after the fit and what was ``known`` before (std), in the channel's
+    ``unit``, at the channel's mean over the tow.
+    """
+
+    tow: int
+    channel: str
+    unit: str
+    value: float
+    std: float
+    known: float
+
+
+@dataclass(frozen=True)
+class NetFactor:
+    """Factor on the gear file's drag, or weight in water, of the net.
+
+    ``value`` with its ``std`` after the fit, and its prior std ``known``.
+    """
+
+    what: str
+    value: float
+    std: float
+    known: float
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """Posterior of the coefficients from prior and data, by whitened rows.
+
+    ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
+    by the prior's std, in descending order; ``root`` (12, 12) times its transpose is the
+    covariance in prior std.
+    """
+
+    covariance: np.ndarray
+    singular: np.ndarray
+    directions: np.ndarray
+    root: np.ndarray
+
+    @property
+    def condition_number(self) -> float:
+        """Condition number: largest over smallest singular value, infinite where one is zero."""
+        smallest = self.singular[-1]
+        if smallest <= 1e-12 * self.singular[0]:
+            return float('inf')
+        return float(self.singular[0] / smallest)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Posterior estimate of the coefficients (12,), in the order of eq. 36.
+
+    Attributes
+    ----------
+    revision
+        Counts estimates since the last reset.
+    stamp
+        End (ns) of the newest window.
+    values, std, covariance
+        Estimate (12,), standard deviations (12,), covariance (12, 12). Noise as found and
+        ``misfit`` are in them.
+    low, high
+        95 % interval (12,) by Student's t, cut at the bounds.
+    shrink
+        1 − std/prior std (12,): 0 where the data said nothing, 1 where they said all.
+    determined
+        Whether the data determine each coefficient: std at most 20 % of the value or of the
+        prior's std, whichever is more, and at most half the prior's std, so that a narrow
+        prior alone determines nothing.
+    active_bounds
+        Bounds the estimate rests on, by name.
+    condition_number
+        Of the sensitivities, in units of readings' std per prior std, from the data alone.
+    undetermined
+        Combinations that the data know less well than the prior did.
+    noise_scales
+        Group of channels → factor by which residuals say that its stated noise is wrong; a few
+        imagined readings as stated steady it, and intervals are set by it.
+    tow_biases
+        What the instruments of each tow read too high by.
+    net
+        Drag and weight of the net; empty where they are held.
+    freedom
+        Degrees of freedom of Student's t.
+    misfit
+        By how much standard deviations are widened, since the readings differ from the model by
+        more than all errors known of explain; 1 where they do not.
+    cost
+        Robust cost with the prior; ``objective`` is eq. 35.
+    innovation
+        Of the newest window; None after a fit of all windows together.
+    converged, reason
+        Whether the iteration has come to rest, and how one knows.
+    """
+
+    revision: int
+    stamp: int
+    windows: int
+    values: np.ndarray
+    std: np.ndarray
+    covariance: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    shrink: np.ndarray
+    determined: tuple[bool, ...]
+    active_bounds: tuple[str, ...]
+    condition_number: float
+    undetermined: tuple[Combination, ...]
+    noise_scales: Mapping[str, float]
+    tow_biases: tuple[TowBias, ...]
+    net: tuple[NetFactor, ...]
+    freedom: float
+    misfit: float
+    cost: float
+    objective: float
+    innovation: Innovation | None
+    converged: bool
+    reason: str
+
+    @property
+    def noise_scale(self) -> float:
+        """Root mean square of the noise scales of all groups."""
+        return float(np.sqrt(np.mean(np.square(list(self.noise_scales.values())))))
+
+
+def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowledge:
+    """Posterior covariance and singular directions.
+
+    Parameters
+    ----------
+    rows
+        Whitened sensitivities (m, 12), columns already scaled by ``prior_std``.
+    prior_std
+        Standard deviations (12,) of the prior.
+    prior_weight
+        1 for the prior as stated, 0 for none.
+    """
+    n = len(prior_std)
+    padded = np.vstack((rows, np.zeros((max(0, n - len(rows)), n))))
+    triangle = np.linalg.qr(padded, mode='r')
+    _, singular, directions = np.linalg.svd(triangle)
+    # Where neither data nor prior say anything, the std is a million times the scale.
+    information = singular**2 + max(prior_weight, 1e-12)
+    root = directions.T / np.sqrt(information)
+    return Knowledge(
+        covariance=(root @ root.T) * np.outer(prior_std, prior_std),
+        singular=singular,
+        directions=directions,
+        root=root,
+    )
+
+
+def undetermined(
+    knowledge: Knowledge, names: Sequence[str] = COEFFICIENTS
+) -> tuple[Combination, ...]:
+    """Directions that the data know less well than the prior, rotated by varimax."""
+    weak = knowledge.singular < 1.0
+    if not np.any(weak):
+        return ()
+    basis = _varimax(knowledge.directions[weak].T)
+    seen = knowledge.singular[:, None] * (knowledge.directions @ basis)
+    found = []
+    for column, weights in enumerate(basis.T):
+        order = np.argsort(-np.abs(weights))
+        among = [names[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
+        information = float(seen[:, column] @ seen[:, column])
+        std = information**-0.5 if information > 1e-24 else float('inf')
+        found.append(Combination(tuple(among or [names[order[0]]]), weights, std))
+    return tuple(sorted(found, key=lambda combination: -combination.std))
+
+
+def _varimax(basis: np.ndarray) -> np.ndarray:
+    """Rotate the columns (12, k) of a basis so that each rests on few coefficients.
+
+    Singular vectors of like singular values are arbitrary mixtures; this makes them readable.
+    """
+    rotated = basis
+    previous = 0.0
+    for _ in range(200):
+        cubed = rotated**3 - rotated * np.mean(rotated**2, axis=0)
+        left, size, right = np.linalg.svd(basis.T @ cubed)
+        rotated = basis @ (left @ right)
+        total = float(size.sum())
+        if total <= previous * (1.0 + 1e-10):
+            break
+        previous = total
+    return rotated
+
+
+def is_determined(values: np.ndarray, std: np.ndarray, prior: BoardPrior) -> tuple[bool, ...]:
+    """Flags of the coefficients that the data determine; the rule stands at `Estimate`."""
+    scale = np.maximum(np.abs(values), prior.std)
+    well = (std <= DETERMINED_FRACTION * scale) & (std <= DETERMINED_SHRINK * prior.std)
+    return tuple(bool(flag) for flag in well)
+
+
+def on_bound(values: np.ndarray, prior: BoardPrior) -> tuple[np.ndarray, np.ndarray]:
+    """Flags of the values that rest on their lower, and on their upper bound."""
+    near = 1e-9 * (prior.high - prior.low)
+    return values <= prior.low + near, values >= prior.high - near
+
+
+def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
+    """Names of the active bounds."""
+    at_low, at_high = on_bound(values, prior)
+    found = []
+    for i, name in enumerate(prior.names):
+        if at_low[i]:
+            found.append(f'{name} at its lower bound {prior.low[i]:g}')
+        elif at_high[i]:
+            found.append(f'{name} at its upper bound {prior.high[i]:g}')
+    return tuple(found)
+
+
+def interval(
+    values: np.ndarray, std: np.ndarray, freedom: float, confidence: float, prior: BoardPrior
+) -> tuple[np.ndarray, np.ndarray]:
+    """Student's interval (12,), (12,) around the values, cut at the bounds."""
+    half = float(student.ppf(0.5 + 0.5 * confidence, freedom)) * std
+    return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

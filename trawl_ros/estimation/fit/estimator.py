@@ -1,0 +1,355 @@
+"""Robust bounded Gauss–Newton over steady windows, in square-root information form.
+
+For constant parameters this is an iterated Kalman filter: every window stays in memory with
+its linearisation, and is solved anew when the estimate has moved so far that first order
+would no longer do. There is no forgetting: without excitation it would wind up.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.estimate import Estimate, Innovation
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.fit import AS_STATED, Fit
+from trawl_ros.estimation.fit.gauss_newton import aim
+from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
+from trawl_ros.estimation.fit.posterior import conclude, innovation_of
+from trawl_ros.estimation.fit.prediction import Predictor
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.relinearise import comparable, far, moved, with_those_of
+from trawl_ros.estimation.windows.records import SteadyWindow
+
+SHORTER = 0.5
+"""The part of a step that is taken where full steps lead to and fro."""
+
+GETTING_ON = 0.5
+"""The part of the step before to which one must have come down where full steps do lead on."""
+
+NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
+
+POOR = 1.2
+"""Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
+the readings of a tow; with those of one window it may, and then a second fit costs little."""
+
+NEGLIGIBLE_GAIN = 1e-3
+"""A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Record of an accepted step: ``windows`` in the fit, its cost, and the objective of eq. 35."""
+
+    windows: int
+    cost: float
+    objective: float
+
+
+@dataclass(frozen=True)
+class _Step:
+    """Step: ``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken,
+    ``needless`` that there was nothing to be taken.
+    """
+
+    size: float
+    gain: float
+    obstacle: str | None = None
+    needless: bool = False
+
+
+class Estimator:
+    """Estimator of the twelve coefficients from steady windows.
+
+    Parameters
+    ----------
+    predictor
+        The model of the gear.
+    prior
+        Start, std and bounds.
+    observables
+        Names of the predictor's values, in their order.
+    options
+        How the estimate is found.
+
+    Attributes
+    ----------
+    estimate : Estimate or None
+        The newest estimate.
+    history : list of Progress
+        One entry per accepted step.
+    """
+
+    def __init__(
+        self,
+        predictor: Predictor,
+        prior: BoardPrior,
+        observables: Sequence[str],
+        options: EstimatorOptions | None = None,
+    ) -> None:
+        self.predictor = predictor
+        self.prior = prior
+        self.observables = tuple(observables)
+        self.options = options or EstimatorOptions()
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset to no windows."""
+        self.estimate: Estimate | None = None
+        self.history: list[Progress] = []
+        self._fit = Fit((), np.array(self.prior.start), AS_STATED, self.prior, self.options)
+        self._without: list[SteadyWindow] = []
+        self._revision = 0
+
+    @property
+    def windows(self) -> tuple[SteadyWindow, ...]:
+        """Windows in the fit."""
+        return tuple(part.window for part in self._fit.windows)
+
+    @property
+    def coefficients(self) -> np.ndarray:
+        """Present coefficients (12,)."""
+        return self._fit.coefficients
+
+    @property
+    def fit(self) -> Fit:
+        """Fit of the windows at the present coefficients."""
+        return self._fit
+
+    @property
+    def without_steady_state(self) -> int:
+        """Number of windows for which the model has no steady state; `finish` tries them again."""
+        return len(self._without)
+
+    def add(self, window: SteadyWindow, near: Any = None) -> Estimate | None:
+        """Add one window; None when the model has no steady state there.
+
+        ``near`` is a steady state to start from, beside those of other windows.
+        """
+        try:
+            part = self._linearise(window, self.coefficients, self._inputs_of(window), start=near)
+        except NoSteadyState:
+            self._without.append(window)
+            return None
+        innovation = self._innovation(part)
+        self._fit = replace(self._fit, windows=(*self._fit.windows, part))
+        for _ in range(self.options.iterations_per_window):
+            step = self._step(self.options.relinearise)
+            if step.obstacle or step.needless:
+                break
+        said = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
+        return self._publish(innovation, False, step.obstacle or said)
+
+    def finish(self) -> Estimate | None:
+        """Iterate over all windows to convergence; None when no window can be used."""
+        self._solve_all()
+        if self._without and not self._fit.windows:
+            # First order has led the estimate where the gear has no steady state at all.
+            self._from_start()
+        converged, reason = self._rest_with_all()
+        doubtful = self._fit.misfit > POOR or not converged
+        if self.options.second_start and self._fit.windows and doubtful:
+            # The first windows, with what was known then, may have led into another valley.
+            first, without, course = self._fit, self._without, list(self.history)
+            self._from_start()
+            again, why = self._rest_with_all()
+            if _likelier(self._fit, first):
+                converged, reason = again, why
+            else:
+                self._fit, self._without, self.history = first, without, course
+        return self._publish(None, converged, reason) if self._fit.windows else None
+
+    def begin(self, parts: Sequence[Linearised], coefficients: np.ndarray) -> None:
+        """Take windows that were solved elsewhere; `finish` solves them anew where they are wanted
+        at these coefficients.
+        """
+        self._fit = replace(self._fit, windows=tuple(parts), coefficients=np.array(coefficients))
+
+    def take(self, windows: Sequence[SteadyWindow]) -> None:
+        """Take windows unsolved; `finish` solves all of them at once."""
+        self._without += windows
+
+    def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
+        """Return an estimator with the windows of some states only, starting from this estimate."""
+        part = Estimator(self.predictor, self.prior, self.observables, options or self.options)
+        chosen = tuple(fit for fit in self._fit.windows if fit.window.state in states)
+        part._fit = replace(self._fit, windows=chosen, options=part.options)
+        return part
+
+    def predictions(
+        self, coefficients: np.ndarray, windows: Sequence[SteadyWindow] | None = None
+    ) -> np.ndarray:
+        """Predict the four channels of eq. 35 at each window's inputs.
+
+        Returns
+        -------
+        (n, 4) array in the order of `PAPER_CHANNELS`, NaN where there is no steady state.
+        """
+        rows = []
+        for window in self.windows if windows is None else windows:
+            try:
+                part = self._linearise(window, coefficients)
+            except NoSteadyState:
+                rows.append(np.full(len(PAPER_CHANNELS), np.nan))
+            else:
+                rows.append(paper_values(dict(zip(part.channels, part.solved, strict=True))))
+        return stack(rows)
+
+    def _inputs_of(self, window: SteadyWindow) -> np.ndarray:
+        """Warp lengths and speed of a window, corrected for their estimated errors.
+
+        One that is new is taken to share those of the last window of its tow.
+        """
+        measured = measured_inputs(window)
+        found = measured
+        for part, inputs in zip(self._fit.windows, self._fit.inputs, strict=True):
+            if part.window.index == window.index:
+                return inputs
+            if part.window.tow == window.tow:
+                found = measured + inputs - measured_inputs(part.window)
+        return found
+
+    def _linearise(
+        self,
+        window: SteadyWindow,
+        coefficients: np.ndarray,
+        inputs: np.ndarray | None = None,
+        *,
+        start: Any = None,
+        near: Sequence[Linearised] = (),
+    ) -> Linearised:
+        """Linearise the model at a window, from a given state or that of the nearest window."""
+
+        def distance(part: Linearised) -> float:
+            return sum(
+                abs(window.means[name] / part.window.means[name] - 1.0)
+                for name in ('port_length', 'starboard_length', 'speed')
+            )
+
+        starts: list[Any] = [] if start is None else [start]
+        if known := (*self._fit.windows, *near):
+            starts.append(min(known, key=distance).state)
+        starts.append(None)
+        return linearise(
+            self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
+        )
+
+    def _from_start(self) -> None:
+        """Linearise all windows at the prior's start, as if none had been seen."""
+        self._fit = replace(self._fit, coefficients=np.array(self.prior.start), scales=AS_STATED)
+        self._solve_all()
+
+    def _rest_with_all(self) -> tuple[bool, str]:
+        """Converge with the windows that had no steady state on the way but have one there."""
+        converged, reason = self._rest()
+        if self._without and self._fit.windows:
+            number = len(self._fit.windows)
+            self._solve_all()
+            if len(self._fit.windows) != number:
+                converged, reason = self._rest()
+        return converged, reason
+
+    def _solve_all(self) -> None:
+        """Linearise all windows at the present coefficients; set aside those without a state."""
+        solved = {part.window.index: part for part in self._fit.windows}
+        windows = sorted((*self.windows, *self._without), key=lambda window: window.index)
+        self._without = []
+        parts: list[Linearised] = []
+        for window in windows:
+            part, inputs = solved.get(window.index), self._inputs_of(window)
+            threshold = self.options.relinearise_final
+            if part is None or far(part, self.coefficients, inputs, self._fit.net, threshold):
+                try:
+                    part = self._linearise(window, self.coefficients, inputs, near=parts)
+                except NoSteadyState:
+                    self._without.append(window)
+                    continue
+            parts.append(part)
+        self._fit = replace(self._fit, windows=tuple(parts))
+
+    def _rest(self) -> tuple[bool, str]:
+        """Iterate to convergence; return its success and reason."""
+        if not self._fit.windows:
+            return False, 'no window has a steady state in the model'
+        limit = self.options.iterations_final
+        part, last = 1.0, np.inf
+        for iteration in range(1, limit + 1):
+            step = self._step(self.options.relinearise_final, part)
+            if step.needless:
+                return True, (
+                    f'after {iteration} iterations the step is below '
+                    f'{self.options.tolerance:g} of every std'
+                )
+            if step.obstacle:
+                if step.gain > NEGLIGIBLE_GAIN:
+                    return False, f'{step.obstacle}, {step.size:.2g} std from rest'
+                return True, f'after {iteration} iterations no step can lower the cost noticeably'
+            # What errors do changes with a step, and may change back with the next.
+            part = SHORTER if step.size > GETTING_ON * last else 1.0
+            last = step.size
+        return False, f'still moving by {step.size:.2g} std after {limit} iterations'
+
+    def _step(self, relinearise: float, part: float = 1.0) -> _Step:
+        """Go this part of the way to where the linearised windows aim, and halve it until it
+        lowers the cost of the windows solved anew.
+        """
+        prior, options, fit = self.prior, self.options, self._fit
+        reach = options.largest_step * prior.std
+        low = np.maximum(prior.low, fit.coefficients - reach)
+        high = np.minimum(prior.high, fit.coefficients + reach)
+        aimed = aim(fit, low, high)
+        fit = replace(fit, scales=aimed.scales)
+        size = float(np.max(np.abs(aimed.coefficients - fit.coefficients) / aimed.std))
+        step = _Step(size, fit.cost - aimed.cost)
+        self._fit = fit
+        known = all(
+            not far(window, aimed.coefficients, inputs, aimed.net, relinearise)
+            for window, inputs in zip(fit.windows, aimed.inputs, strict=True)
+        )
+        if size < options.tolerance and known:
+            return replace(step, needless=True)
+        for spare, halving in product(self._spares(), range(options.halvings + 1)):
+            if spare and step.obstacle != NO_STEADY_STATE:
+                break
+            try:
+                there = moved(
+                    fit, aimed, part * 0.5**halving, relinearise, self.predictor,
+                    self.observables, spare,
+                )  # fmt: skip
+            except NoSteadyState:
+                step = replace(step, obstacle=NO_STEADY_STATE)
+                continue
+            left, lost = with_those_of(fit, there)
+            # Errors do something else there; whichever way one looks at it, it is to be better.
+            better = min(there.cost, there.cost_beside(left)) <= left.cost * (1.0 + 1e-12)
+            if better or not comparable(left, there):
+                self._fit = there
+                self._without += lost
+                self.history.append(Progress(len(there.windows), there.cost, there.objective))
+                return replace(step, obstacle=None)
+            step = replace(step, obstacle='no step lowers the cost')
+        return step
+
+    def _spares(self) -> tuple[int, ...]:
+        """Numbers of windows a step may set aside: none, or else as many as are left to be."""
+        number = len(self._fit.windows) + len(self._without)
+        left = int(self.options.set_aside * number) - len(self._without)
+        return (0, left) if left > 0 else (0,)
+
+    def _innovation(self, part: Linearised) -> Innovation:
+        known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
+        return innovation_of(part, self._fit, known)
+
+    def _publish(self, innovation: Innovation | None, converged: bool, reason: str) -> Estimate:
+        self._revision += 1
+        self.estimate = conclude(self._fit, self._revision, innovation, converged, reason)
+        return self.estimate
+
+
+def _likelier(fit: Fit, other: Fit) -> bool:
+    """True if a fit explains more windows than another, or as many with higher likelihood."""
+    return (-len(fit.windows), fit.surprise) < (-len(other.windows), other.surprise)

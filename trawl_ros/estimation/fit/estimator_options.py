@@ -1,0 +1,83 @@
+"""Options of the estimator."""
+
+from dataclasses import dataclass, fields
+
+from trawl_ros.core.errors import TrawlError
+
+MAY_BE_ZERO = (
+    'prior_weight', 'state_share', 'model_error', 'model_trend', 'unsettled', 'net_drag',
+    'net_weight', 'second_start', 'set_aside',
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class EstimatorOptions:
+    """Options of the estimator.
+
+    Attributes
+    ----------
+    huber
+        Standard deviations from where a reading's pull no longer grows (1.345 keeps 95 % of
+        the efficiency on normal noise).
+    confidence
+        Probability of the intervals.
+    prior_weight
+        1 uses the prior as stated, 0 leaves it out.
+    stated_noise_readings
+        How many imagined readings speak for the stated noise when the noise is found.
+    alike_readings
+        How many imagined readings of each channel group speak for the noise being wrong by the
+        same factor in all of them.
+    state_share, model_error, model_trend, unsettled
+        How errors are divided, as in `trawl_ros.estimation.fit.error_terms.Scheme`.
+    net_drag, net_weight
+        Std of factors on drag and weight in water of the net, which are then estimated along; where
+        both are 0 the net is held as the gear file has it.
+    iterations_per_window, iterations_final
+        Gauss–Newton steps at most after each window and at the end.
+    halvings
+        How often a step that fails is halved before giving up.
+    largest_step
+        Largest change of a coefficient in one step, in prior std.
+    relinearise, relinearise_final
+        A window is solved anew when a predicted reading has moved by this many std, on the
+        way and at the end.
+    set_aside
+        Part of the windows that are left out where they have no steady state on the way, and taken
+        back at the end. Where an effect is missing a single one would hold up all the rest.
+    tolerance
+        A step below this part of every coefficient's std is the end.
+    second_start
+        Whether a fit that explains its readings badly, or does not come to rest, is made again
+        from the prior's start.
+    """
+
+    huber: float = 1.345
+    confidence: float = 0.95
+    prior_weight: float = 1.0
+    stated_noise_readings: float = 4.0
+    alike_readings: float = 12.0
+    state_share: float = 0.3
+    model_error: float = 1.0
+    model_trend: float = 0.0
+    unsettled: float = 0.05
+    net_drag: float = 0.0
+    net_weight: float = 0.0
+    iterations_per_window: int = 1
+    iterations_final: int = 40
+    halvings: int = 6
+    largest_step: float = 1.0
+    relinearise: float = 2.0
+    relinearise_final: float = 0.02
+    set_aside: float = 0.0
+    tolerance: float = 0.02
+    second_start: bool = True
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not value >= 0.0 or (value == 0.0 and field.name not in MAY_BE_ZERO):
+                raise TrawlError(f'{field.name} is {value}, expected a positive number')
+        for name in ('confidence', 'state_share', 'set_aside'):
+            if not (value := getattr(self, name)) < 1.0:
+                raise TrawlError(f'{name} is {value}, expected a number below 1')

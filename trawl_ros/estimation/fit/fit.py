@@ -1,0 +1,251 @@
+"""Fit of all windows at one set of coefficients: cost, square-root information, posterior."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from trawl_ros.estimation.fit.error_terms import (
+    GROUP_OF,
+    GROUPS,
+    Scheme,
+    TowErrors,
+    spread,
+    tow_errors,
+)
+from trawl_ros.estimation.fit.estimate import Knowledge, know
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.linearised import Linearised, measured_inputs
+from trawl_ros.estimation.fit.nuisance import (
+    Marginal,
+    clipped_variance,
+    marginalise,
+    own_shares,
+    triangular,
+)
+from trawl_ros.estimation.fit.objective import objective, paper_values, stack
+from trawl_ros.estimation.fit.prior import BoardPrior
+
+AS_STATED = (1.0,) * len(GROUPS)
+"""Factors on the stated noise before anything is known of it."""
+
+FARTHEST = 3.0
+"""Errors of inputs are taken for no larger than this many std when the model is solved."""
+
+LEAST_FACTOR = 0.2
+"""Nor is the net ever taken to have less than this part of its drag and weight."""
+
+LEAST_SCALE = 0.3
+"""Noise is never taken to be less than this part of what is stated."""
+
+
+Known = tuple[tuple[Linearised, ...], EstimatorOptions, tuple[TowErrors, ...]]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Linearised windows, coefficients (12,), and factors on the stated noise by group.
+
+    ``weights`` of the readings are found where none are given. ``known`` are windows and their
+    errors as they were worked out once: fits that are made of each other share them.
+    """
+
+    windows: tuple[Linearised, ...]
+    coefficients: np.ndarray
+    scales: tuple[float, ...]
+    prior: BoardPrior
+    options: EstimatorOptions
+    weights: tuple[np.ndarray, ...] | None = None
+    known: Known | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def errors(self) -> tuple[TowErrors, ...]:
+        """Errors of the readings, tow by tow."""
+        known = self.known
+        if known is None or known[0] is not self.windows or known[1] is not self.options:
+            known = (self.windows, self.options, tow_errors(self.windows, self.scheme))
+            object.__setattr__(self, 'known', known)
+        return known[2]
+
+    @property
+    def scheme(self) -> Scheme:
+        """Error scheme of the options."""
+        options = self.options
+        return Scheme(
+            options.state_share,
+            options.model_error,
+            options.model_trend,
+            options.unsettled,
+            options.net_drag,
+            options.net_weight,
+        )
+
+    @property
+    def net(self) -> np.ndarray | None:
+        """Most likely factors (2,) on drag and weight of the net; None where it is held."""
+        std = self.scheme.net_std
+        if not std.any():
+            return None
+        found = np.zeros(2)
+        if self.windows:
+            found = np.clip(self.marginal.model[-2:], -FARTHEST, FARTHEST)
+        return np.maximum(1.0 + std * found, LEAST_FACTOR)
+
+    @cached_property
+    def residual(self) -> np.ndarray:
+        """Residuals (windows, k), measured minus predicted, to first order; 0 where unmeasured."""
+        rows = [
+            spread(part, part.measured - part.predicted(self.coefficients)) for part in self.windows
+        ]
+        return np.array(rows).reshape(-1, len(GROUP_OF))
+
+    @cached_property
+    def inputs(self) -> np.ndarray:
+        """Most likely warp lengths and speed (windows, 3), corrected for their estimated errors."""
+        found = np.array([measured_inputs(part.window) for part in self.windows]).reshape(-1, 3)
+        for part in self.marginal.tows:
+            own = np.clip(part.inputs[:, :3], -FARTHEST, FARTHEST)
+            calibration = np.clip(part.calibration, -FARTHEST, FARTHEST)
+            errors = part.errors
+            found[errors.rows] += errors.input_std * own - errors.input_calibration @ calibration
+        return found
+
+    @cached_property
+    def jacobian(self) -> np.ndarray:
+        """Sensitivities (windows, k, 12) per prior std."""
+        rows = [spread(part, part.by_coefficients * self.prior.std) for part in self.windows]
+        return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior.std))
+
+    @cached_property
+    def marginal(self) -> Marginal:
+        """Square-root information after elimination of all nuisance parameters."""
+        return self._marginal(self.errors, self.jacobian)
+
+    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> Marginal:
+        scales = np.array(self.scales)[GROUP_OF]
+        huber = self.options.huber
+        return marginalise(errors, scales, self.residual, jacobian, huber, self.weights)
+
+    @property
+    def cost(self) -> float:
+        """Robust loss of all windows plus half the squared departure from the prior."""
+        return self.marginal.cost + self._prior_cost
+
+    def cost_beside(self, other: 'Fit') -> float:
+        """Cost with the nuisance parameters' effect taken from another fit of the same windows.
+
+        A step is judged with that held still, as the step itself was found.
+        """
+        return self._marginal(other.errors, self.jacobian[:, :, :0]).cost + self._prior_cost
+
+    @property
+    def _prior_cost(self) -> float:
+        away = (self.coefficients - self.prior.start) / self.prior.std
+        return float(0.5 * self.options.prior_weight * away @ away)
+
+    @cached_property
+    def system(self) -> tuple[np.ndarray, np.ndarray]:
+        """Square-root information, prior included: triangle (12, 12) and right side (12,).
+
+        The step in prior std minimises ‖triangle · step − right side‖.
+        """
+        number = len(self.coefficients)
+        root = np.sqrt(self.options.prior_weight)
+        away = (self.prior.start - self.coefficients) / self.prior.std
+        left = np.vstack((self.marginal.triangle, root * np.eye(number)))
+        right = np.concatenate((self.marginal.right, root * away))
+        triangle = triangular(np.column_stack((left, right)))
+        return triangle[:number, :-1], triangle[:number, -1]
+
+    @cached_property
+    def knowledge(self) -> Knowledge:
+        """Posterior covariance and singular directions."""
+        return know(self.marginal.triangle, self.prior.std, self.options.prior_weight)
+
+    @property
+    def std(self) -> np.ndarray:
+        """Standard deviations (12,) of the coefficients."""
+        return np.sqrt(np.diag(self.knowledge.covariance))
+
+    @cached_property
+    def own_shares(self) -> np.ndarray:
+        """Redundancy numbers (windows, k) of the readings, for their own errors."""
+        return own_shares(self.marginal, self.jacobian, self.knowledge.root)
+
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom: readings less all that they determine."""
+        return float((self.own_shares * self._numbers).sum())
+
+    @property
+    def misfit(self) -> float:
+        """Birge ratio: root mean square of the residuals over their expected spread; at least 1.
+
+        The least cost is half a χ² with as many degrees of freedom as there are readings. Noise is
+        found, so a misfit is of what is not: inputs, calibration, the model's own error.
+        """
+        readings = float(self._numbers.sum())
+        if self.options.prior_weight == 0.0:
+            readings -= len(self.coefficients)
+        return float(np.sqrt(max(1.0, 2.0 * self.cost / max(readings, 1.0))))
+
+    @property
+    def surprise(self) -> float:
+        """Negative log-likelihood, up to a constant of the windows alone.
+
+        Unlike costs, these compare between fits that have found different noise.
+        """
+        scales = np.array(self.scales)[GROUP_OF]
+        return self.cost + float((self._numbers * np.log(scales)).sum())
+
+    @property
+    def _numbers(self) -> np.ndarray:
+        numbers = np.zeros(self.residual.shape)
+        for tow in self.errors:
+            numbers[tow.rows] = tow.numbers
+        return numbers
+
+    @cached_property
+    def objective(self) -> float:
+        """Eq. 35, to first order around the last solutions."""
+        predicted, measured = [], []
+        for part in self.windows:
+            values = part.predicted(self.coefficients)
+            if self.net is not None:
+                values = values + part.by_net @ (self.net - 1.0)
+            predicted.append(paper_values(dict(zip(part.channels, values, strict=True))))
+            measured.append(paper_values(part.window.means))
+        return objective(stack(predicted), stack(measured))
+
+    def rescaled(self) -> 'Fit':
+        """Copy of the fit with each group's noise scale estimated from its residuals.
+
+        Clipped squares beside what they would be on normal noise (Huber's proposal 2), per
+        degree of freedom (restricted maximum likelihood). What all groups have in common is
+        pooled with imagined readings that speak for the stated noise, each group with imagined
+        readings that speak for what they have in common.
+        """
+        # Windows that share an error vary less than each of them is taken to.
+        shares = np.clip(self.own_shares, 0.0, 1.0) * self._numbers
+        huber, stated = self.options.huber, self.options.stated_noise_readings
+        own = np.zeros(shares.shape)
+        for part in self.marginal.tows:
+            own[part.errors.rows] = part.own
+        clipped = np.minimum(np.abs(own), huber) ** 2
+        # A share of nothing has no noise to tell of.
+        limit = huber / np.sqrt(np.maximum(shares, 1e-12))
+        expected = shares * clipped_variance(limit)
+        numbers = np.array([shares[:, group == GROUP_OF].sum() for group in range(len(GROUPS))])
+        told = np.array(
+            [
+                self.scales[group] ** 2 * clipped[:, columns].sum() / expected[:, columns].sum()
+                if numbers[group] > 0.0
+                else 0.0
+                for group in range(len(GROUPS))
+                for columns in [group == GROUP_OF]
+            ]
+        )
+        common = (stated + numbers @ told) / (stated + numbers.sum())
+        alike = self.options.alike_readings
+        pooled = (alike * common + numbers * told) / (alike + numbers)
+        return replace(self, scales=tuple(np.maximum(np.sqrt(pooled), LEAST_SCALE).tolist()))

@@ -1,0 +1,141 @@
+"""Linearised window: its predictions and their derivatives."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.prediction import NetPredictor, Predictor, WindowPredictor
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.records.channels import INPUTS, MEASURED
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Linearisation at coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,), where it was
+    solved; the last are factors on drag and weight in water of the net.
+
+    ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
+    ``by_coefficients`` (n, 12, or more where more is estimated along), ``by_inputs`` (n, 3) and
+    ``by_net`` (n, 2; 0 where the net is held) in SI; ``state`` starts the solver. The values are
+    those of the measured inputs and of the net in the gear file, to first order: warp lengths are
+    measured with errors that differ between the sides, and a gear that is towed askew is not linear
+    in them.
+    """
+
+    window: SteadyWindow
+    channels: tuple[str, ...]
+    at: np.ndarray
+    inputs: np.ndarray
+    net: np.ndarray
+    measured: np.ndarray
+    values: np.ndarray
+    by_coefficients: np.ndarray
+    by_inputs: np.ndarray
+    by_net: np.ndarray
+    slow: np.ndarray
+    state: Any
+
+    def predicted(self, coefficients: np.ndarray) -> np.ndarray:
+        """Predictions (n,) at other coefficients, to first order."""
+        return self.values + self.by_coefficients @ (coefficients - self.at)
+
+    @property
+    def solved(self) -> np.ndarray:
+        """Predictions (n,) with the net as it was when they were solved."""
+        return self.values + self.by_net @ (self.net - 1.0)
+
+    def std(self, windows_in_state: int) -> np.ndarray:
+        """Standard deviations (n,) of the measured means."""
+        return np.array([self.window.std(name, windows_in_state) for name in self.channels])
+
+
+def linearise(
+    predictor: Predictor,
+    observables: Sequence[str],
+    window: SteadyWindow,
+    coefficients: np.ndarray,
+    starts: Sequence[Any] = (None,),
+    inputs: np.ndarray | None = None,
+    net: np.ndarray | None = None,
+    *,
+    even: bool = True,
+) -> Linearised:
+    """Linearise the model at one window.
+
+    Parameters
+    ----------
+    predictor, observables
+        The model and the names of its values.
+    window
+        What was measured.
+    coefficients
+        Where (12,).
+    starts
+        Where to start from, each tried in turn; None is a cold start.
+    inputs
+        Warp lengths (m) and speed (m/s); as measured if None.
+    net
+        Factors (2,) on drag and weight of the net where these are estimated along.
+    even
+        Whether a steady state may be one with both warps of their mean length, where there is
+        none else: counters may read so unequal that no gear could be towed so.
+
+    Raises
+    ------
+    NoSteadyState
+        When none of the starts leads to one.
+    """
+    channels = tuple(name for name in MEASURED if name in window.means and name in observables)
+    rows = [observables.index(name) for name in channels]
+    stated = measured_inputs(window)
+    wanted = stated if inputs is None else inputs
+    failure: NoSteadyState | None = None
+    if isinstance(predictor, WindowPredictor):
+        predictor = predictor.in_window(window)
+    there, by_net = np.ones(2), np.zeros((len(channels), 2))
+    if net is not None:
+        if not isinstance(predictor, NetPredictor):
+            raise TypeError(f'{type(predictor).__name__} does not know what its net does')
+        there, predictor = net, predictor.with_net(float(net[0]), float(net[1]))
+    for start, at in product(starts, _places(wanted) if even else (wanted,)):
+        try:
+            port, starboard, speed = map(float, at)
+            prediction = predictor.predict(coefficients, port, starboard, speed, start)
+        except NoSteadyState as error:
+            failure = error
+            continue
+        jacobian = prediction.jacobian[rows]
+        by_inputs = jacobian[:, -3:]
+        if isinstance(predictor, NetPredictor) and net is not None:
+            by_net = predictor.by_net(coefficients, at, prediction.state)[rows] / net
+        return Linearised(
+            window=window,
+            channels=channels,
+            at=np.array(coefficients),
+            inputs=np.array(at),
+            net=np.array(there),
+            measured=np.array([window.means[name] for name in channels]),
+            values=prediction.values[rows] + by_inputs @ (stated - at) + by_net @ (1.0 - there),
+            by_coefficients=jacobian[:, :-3],
+            by_inputs=by_inputs,
+            by_net=by_net,
+            slow=prediction.slow[rows],
+            state=prediction.state,
+        )
+    raise failure or NoSteadyState('no start was given to look for a steady state from')
+
+
+def measured_inputs(window: SteadyWindow) -> np.ndarray:
+    """Warp lengths (m) and speed (m/s) of a window as measured, (3,)."""
+    return np.array([window.means[name] for name in INPUTS])
+
+
+def _places(inputs: np.ndarray) -> tuple[np.ndarray, ...]:
+    if inputs[0] == inputs[1]:
+        return (inputs,)
+    mean = float(inputs[:2].mean())
+    return inputs, np.array([mean, mean, inputs[2]])

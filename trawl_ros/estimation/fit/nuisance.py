@@ -1,0 +1,296 @@
+"""Nuisance elimination: square-root information of the coefficients alone.
+
+A reading's residual is r = ε + G δ + U ν + M μ + J Δ: the reading's own error ε of variance D,
+errors δ of the window's inputs and what it lacks of rest, calibration ν of the tow, the model's
+own error μ and the step Δ of the coefficients; δ, ν, μ are normal with unit variance. Windows
+are whitened by V = D/w + G Gᵀ, then each tow's ν and then μ are eliminated by QR, which leaves a
+triangle for Δ. A Huber loss acts, through the weights w, on each reading's own error
+D V⁻¹ (r - U ν - M μ) and not on a mixture, so that one bad sensor is weighed down and its
+neighbours are not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.special import erf, ndtr
+
+from trawl_ros.estimation.fit.error_terms import TowErrors
+
+ROUNDS = 50
+"""Reweighting converges fast; this is a guard, not a setting."""
+
+ALIKE = 1e-5
+"""Weights that change by less are the last; they err the cost by the square of that."""
+
+
+@dataclass(frozen=True)
+class TowPart:
+    """Contribution of one tow; n windows by k channels, p errors of calibration.
+
+    Attributes
+    ----------
+    errors : TowErrors
+        Of this tow.
+    std : (n, k) array
+        Of the reading's own error, noise scale included.
+    weights : (n, k) array
+        Huber weights, 1 for a reading within the limit.
+    roots : (n, k, k) array
+        Lower Cholesky factors of V.
+    triangle : (p, p + m + q) array
+        Of ν in terms of ν, μ and Δ, with q coefficients.
+    own : (n, k) array
+        The readings' own errors, in std.
+    calibration : (p,) array
+        Most likely errors of calibration, in std.
+    inputs : (n, 4) array
+        Most likely errors of each window's inputs and rest, in std.
+    cost : float
+        Huber loss of the readings' own errors and half the squares of δ and ν.
+    """
+
+    errors: TowErrors
+    std: np.ndarray
+    weights: np.ndarray
+    roots: np.ndarray
+    triangle: np.ndarray
+    own: np.ndarray
+    calibration: np.ndarray
+    inputs: np.ndarray
+    cost: float
+
+
+@dataclass(frozen=True)
+class Marginal:
+    """Result of the nuisance elimination over all tows.
+
+    Attributes
+    ----------
+    tows : tuple of TowPart
+        In the order of their numbers.
+    triangle, right : (q, q) and (q,) arrays
+        Square-root information of Δ from the data alone.
+    model_triangle : (m, m + q) array
+        Of μ in terms of μ and Δ.
+    model : (m,) array
+        Most likely errors of the model at Δ = 0, in std.
+    cost : float
+        Robust cost at Δ = 0, without the prior of the coefficients.
+    """
+
+    tows: tuple[TowPart, ...]
+    triangle: np.ndarray
+    right: np.ndarray
+    model_triangle: np.ndarray
+    model: np.ndarray
+    cost: float
+
+
+def marginalise(
+    tows: Sequence[TowErrors],
+    scales: np.ndarray,
+    residual: np.ndarray,
+    jacobian: np.ndarray,
+    huber: float,
+    weights: Sequence[np.ndarray] | None = None,
+) -> Marginal:
+    """Eliminate all nuisance parameters, robustly.
+
+    Parameters
+    ----------
+    tows
+        Errors of the windows, tow by tow.
+    scales
+        Factor (k,) on the stated noise of each channel.
+    residual
+        Measured minus predicted (windows, k), 0 where a window has no such channel.
+    jacobian
+        Sensitivities (windows, k, q) to the coefficients in units of their prior's std.
+    huber
+        Limit in std from where the loss grows linearly.
+    weights
+        Huber weights (n, k) of each tow that are taken as they are; found if None.
+    """
+    if weights is not None:
+        return _solved(tows, weights, scales, residual, jacobian, huber)
+    weights = [np.ones(tow.noise.shape) for tow in tows]
+    for _ in range(ROUNDS):
+        found = _solved(tows, weights, scales, residual, jacobian, huber)
+        updated = reweighted(found, huber)
+        change = max(
+            (float(np.max(np.abs(a - b))) for a, b in zip(updated, weights, strict=True)),
+            default=0.0,
+        )
+        if change < ALIKE:
+            break
+        weights = updated
+    return found
+
+
+def reweighted(found: Marginal, huber: float) -> tuple[np.ndarray, ...]:
+    """Huber weights (n, k) of each tow for the readings' own errors."""
+    return tuple(huber / np.maximum(np.abs(part.own), huber) for part in found.tows)
+
+
+def _solved(
+    tows: Sequence[TowErrors],
+    weights: Sequence[np.ndarray],
+    scales: np.ndarray,
+    residual: np.ndarray,
+    jacobian: np.ndarray,
+    huber: float,
+) -> Marginal:
+    m = tows[0].model.shape[2] if tows else 0
+    q = jacobian.shape[2]
+    whitened, remainders = [], []
+    for tow, weight in zip(tows, weights, strict=True):
+        std = np.where(tow.present, tow.noise * scales, 1.0)
+        roots = _roots(tow, std, weight)
+        rows = np.concatenate(
+            (
+                tow.calibration,
+                tow.model,
+                jacobian[tow.rows],
+                residual[tow.rows][:, :, None],
+            ),
+            axis=2,
+        )
+        rows = np.linalg.solve(roots, rows).reshape(-1, rows.shape[2])
+        p = tow.calibration.shape[2]
+        triangle = _eliminated(rows, p)
+        whitened.append((std, roots, triangle[:p]))
+        remainders.append(triangle[p:, p:])
+    rest = np.vstack(remainders) if remainders else np.zeros((0, m + q + 1))
+    triangle = _eliminated(rest, m)
+    of_model, of_coefficients = triangle[:m], triangle[m:, m:]
+    padded = np.vstack((of_coefficients, np.zeros((q + 1, q + 1))))
+    last = triangular(padded)
+    model = solve_triangular(of_model[:, :m], of_model[:, -1])
+    parts = tuple(
+        _explained(tow, weight, *solution, model, residual, huber)
+        for tow, weight, solution in zip(tows, weights, whitened, strict=True)
+    )
+    return Marginal(
+        tows=parts,
+        triangle=last[:q, :q],
+        right=last[:q, q],
+        model_triangle=of_model[:, :-1],
+        model=model,
+        cost=float(sum(part.cost for part in parts) + 0.5 * model @ model),
+    )
+
+
+def _roots(tow: TowErrors, std: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    variance = std**2 / weights
+    diagonal = variance[:, :, None] * np.eye(variance.shape[1])
+    return np.linalg.cholesky(diagonal + tow.inputs @ tow.inputs.transpose(0, 2, 1))
+
+
+def _eliminated(rows: np.ndarray, number: int) -> np.ndarray:
+    """Triangular rows with unit normal priors on the first columns added."""
+    prior = np.zeros((number, rows.shape[1]))
+    prior[:, :number] = np.eye(number)
+    return triangular(np.vstack((prior, rows)))
+
+
+def triangular(rows: np.ndarray) -> np.ndarray:
+    """Triangular factor R of a QR decomposition of the rows."""
+    return np.asarray(np.linalg.qr(rows, mode='r'))
+
+
+def _explained(
+    tow: TowErrors,
+    weights: np.ndarray,
+    std: np.ndarray,
+    roots: np.ndarray,
+    triangle: np.ndarray,
+    model: np.ndarray,
+    residual: np.ndarray,
+    huber: float,
+) -> TowPart:
+    p, m = len(triangle), len(model)
+    right = triangle[:, -1] - triangle[:, p : p + m] @ model
+    calibration = solve_triangular(triangle[:, :p], right)
+    left = residual[tow.rows] - tow.calibration @ calibration - tow.model @ model
+    half = np.linalg.solve(roots, left[:, :, None])
+    solved = np.linalg.solve(roots.transpose(0, 2, 1), half)
+    inputs = (tow.inputs.transpose(0, 2, 1) @ solved)[:, :, 0]
+    own = std / weights * solved[:, :, 0] * tow.present
+    size = np.abs(own)
+    loss = np.where(size <= huber, 0.5 * size**2, huber * (size - 0.5 * huber))
+    squares = float(np.sum(inputs**2) + calibration @ calibration)
+    return TowPart(
+        errors=tow,
+        std=std,
+        weights=weights,
+        roots=roots,
+        triangle=triangle[:, :-1],
+        own=own,
+        calibration=calibration,
+        inputs=inputs,
+        cost=float(loss.sum() + 0.5 * squares),
+    )
+
+
+def own_shares(marginal: Marginal, jacobian: np.ndarray, root: np.ndarray) -> np.ndarray:
+    """Redundancy numbers (windows, k): share of each reading's variance kept by its own error.
+
+    The rest goes into inputs, calibration, the model's errors and the coefficients: diagonal of
+    D P with P = V⁻¹ - V⁻¹ X C Xᵀ V⁻¹, where C is the posterior covariance of all those.
+
+    Parameters
+    ----------
+    marginal
+        From `marginalise` with the same ``jacobian``.
+    jacobian
+        Sensitivities (windows, k, q) per prior std.
+    root
+        Of the posterior covariance (q, q) of the coefficients, S Sᵀ, in prior std.
+    """
+    shares = np.zeros(jacobian.shape[:2])
+    joint = joint_root(marginal, root)
+    for part in marginal.tows:
+        tow = part.errors
+        p = part.triangle.shape[0]
+        upper = np.concatenate((tow.model, jacobian[tow.rows]), axis=2)
+        solved = solve_triangular(part.triangle[:, :p], np.eye(p))
+        of_tow = tow.calibration @ solved
+        of_upper = upper - of_tow @ part.triangle[:, p:]
+        terms = np.concatenate((of_tow, of_upper @ joint), axis=2)
+        inverse = np.linalg.inv(part.roots)
+        known = inverse.transpose(0, 2, 1) @ (inverse @ terms)
+        own = np.einsum('nij,nij->nj', inverse, inverse) - np.einsum('nkt,nkt->nk', known, known)
+        shares[tow.rows] = np.where(tow.present, part.std**2 / part.weights * own, 0.0)
+    return shares
+
+
+def joint_root(marginal: Marginal, root: np.ndarray) -> np.ndarray:
+    """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
+
+    ``root`` (q, q) is that of the coefficients alone.
+    """
+    m, q = len(marginal.model), len(root)
+    solved = solve_triangular(marginal.model_triangle[:, :m], np.eye(m))
+    joint = np.zeros((m + q, m + q))
+    joint[:m, :m] = solved
+    joint[:m, m:] = -solved @ marginal.model_triangle[:, m:] @ root
+    joint[m:, m:] = root
+    return joint
+
+
+def calibration_root(part: TowPart, joint: np.ndarray) -> np.ndarray:
+    """Root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
+
+    ``joint`` is from `joint_root`.
+    """
+    p = len(part.triangle)
+    solved = solve_triangular(part.triangle[:, :p], np.eye(p))
+    return np.hstack((solved, -solved @ part.triangle[:, p:] @ joint))
+
+
+def clipped_variance(limit: np.ndarray) -> np.ndarray:
+    """Mean of min(|z|, limit)² for a standard normal z."""
+    density = np.exp(-0.5 * limit**2) / np.sqrt(2.0 * np.pi)
+    return erf(limit / np.sqrt(2.0)) + 2.0 * limit * (limit * ndtr(-limit) - density)

@@ -1,0 +1,85 @@
+"""Posterior of a fit: its estimate, and the innovations of a window before it is used."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.estimation.fit.calibration import net_factors, tow_biases
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS
+from trawl_ros.estimation.fit.estimate import (
+    Estimate,
+    Innovation,
+    active_bounds,
+    interval,
+    is_determined,
+    undetermined,
+)
+from trawl_ros.estimation.fit.fit import Fit
+from trawl_ros.estimation.fit.linearised import Linearised
+
+GATE = 3.0
+"""Standard deviations at which an innovation's test ratio is 1."""
+
+
+def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
+    """Innovations of a window.
+
+    Parameters
+    ----------
+    part
+        The window, solved at the coefficients of the fit.
+    fit
+        Of the windows before it.
+    known : (12, 12) array
+        Covariance of the coefficients before it.
+    """
+    (errors,) = replace(fit, windows=(part,)).errors
+    there = errors.present[0]
+    own = (errors.noise[0] * np.array(fit.scales)[GROUP_OF])[there]
+    shared = np.hstack(
+        [errors.inputs[0][there], errors.calibration[0][there], errors.model[0][there]]
+    )
+    spread = part.by_coefficients @ known @ part.by_coefficients.T
+    std = np.sqrt(own**2 + np.sum(shared**2, axis=1) + np.diag(spread))
+    difference = part.measured - part.solved
+    return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
+
+
+def conclude(
+    fit: Fit, revision: int, innovation: Innovation | None, converged: bool, reason: str
+) -> Estimate:
+    """Posterior estimate of a fit; the arguments beside it go into the estimate as they are.
+
+    A model that the data contradict knows less than it says: standard deviations are as many times
+    larger as the misfit is (Birge 1932).
+    """
+    prior, options = fit.prior, fit.options
+    values = np.array(fit.coefficients)
+    std = fit.misfit * fit.std
+    freedom = fit.freedom + options.stated_noise_readings
+    low, high = interval(values, std, freedom, options.confidence, prior)
+    return Estimate(
+        revision=revision,
+        stamp=max(part.window.end_ns for part in fit.windows),
+        windows=len(fit.windows),
+        values=values,
+        std=std,
+        covariance=fit.misfit**2 * fit.knowledge.covariance,
+        low=low,
+        high=high,
+        shrink=1.0 - std / prior.std,
+        determined=is_determined(values, std, prior),
+        active_bounds=active_bounds(values, prior),
+        condition_number=fit.knowledge.condition_number,
+        undetermined=undetermined(fit.knowledge, prior.names),
+        noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
+        tow_biases=tow_biases(fit),
+        net=net_factors(fit),
+        freedom=freedom,
+        misfit=fit.misfit,
+        cost=fit.cost,
+        objective=fit.objective,
+        innovation=innovation,
+        converged=converged,
+        reason=reason,
+    )

@@ -1,0 +1,72 @@
+"""Construction of predictor, window finder and estimator for a gear, with its file's prior."""
+
+import numpy as np
+
+from trawl_ros.effects.effect_set import acting
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.pipeline import Identification
+from trawl_ros.estimation.windows.finder import SteadyWindowFinder
+from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_model, build_water
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.predict import Predictor
+
+NET_STD = 0.2
+"""Std of the factors on drag and weight of the net, where these are estimated along; assumed."""
+
+
+def estimator_options(*, prior: bool = True, net: bool = False) -> EstimatorOptions:
+    """Return the estimator options that node and command line share.
+
+    ``prior`` is False without the prior; ``net`` estimates drag and weight of the net along.
+    """
+    std = NET_STD if net else 0.0
+    return EstimatorOptions(prior_weight=float(prior), net_drag=std, net_weight=std)
+
+
+def board_prior(gear: GearRecord) -> BoardPrior:
+    """Prior of the board's coefficients in a gear file."""
+    known = gear.identification
+    return BoardPrior(
+        start=np.array(known.start),
+        std=np.array(known.std),
+        low=np.array(known.low),
+        high=np.array(known.high),
+    )
+
+
+def predictor_for(gear: GearRecord) -> Predictor:
+    """Predictor of a gear with the effects its file switches on."""
+    return Predictor(build_model(gear), acting(gear))
+
+
+def finder_for(gear: GearRecord, options: WindowOptions | None = None) -> SteadyWindowFinder:
+    """Finder of steady windows for a gear, whose water turns pressure into depth."""
+    return SteadyWindowFinder(build_water(gear).depth, options or WindowOptions())
+
+
+def identification_for(
+    gear: GearRecord,
+    *,
+    window_options: WindowOptions | None = None,
+    estimator_options: EstimatorOptions | None = None,
+) -> Identification:
+    """Build the identification that node and command line share.
+
+    Parameters
+    ----------
+    gear
+        From `load_gear`: the model as it is believed, not the plant.
+    window_options, estimator_options
+        When a window is steady; how the estimate is found.
+    """
+    return Identification(
+        predictor_for(gear),
+        board_prior(gear),
+        OBSERVABLES,
+        build_water(gear).depth,
+        window_options,
+        estimator_options,
+    )

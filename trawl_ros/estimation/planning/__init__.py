@@ -1,0 +1,1 @@
+"""Trials planned for what they tell of the coefficients."""

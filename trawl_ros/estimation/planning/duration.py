@@ -1,0 +1,281 @@
+"""Duration of manoeuvres, and the order of a trial.
+
+Warp lengths rise through a trial, so that each metre is paid out once. While warp runs out, the
+gear goes through the water that much slower than the ship; so she first goes faster, lest the
+boards lose their lift.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+
+from trawl_ros.estimation.planning.states import DEPTHS, Candidate, Manoeuvre
+from trawl_ros.estimation.windows.operation import Block, Operation
+from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.records.channels import CHANNELS
+
+STEADY_SHARE = 0.25
+"""Part of the drift that a window may have which a planned one does have: readings' noise makes
+it seem more or less."""
+
+STEP_MINUTES = 0.5
+"""To this a leg is rounded up: what one can say to a bridge."""
+
+
+@dataclass(frozen=True)
+class Ability:
+    """Limits of ship and winches, and the range of towing speeds.
+
+    ``winch_speed``, ``least_speed`` (m/s), ``winch_acceleration``, ``ship_acceleration`` (m/s²);
+    ``least_speed`` is the lowest at which the gear keeps its steady state, ``most_speed`` the
+    highest that is to be used.
+    """
+
+    winch_speed: float
+    winch_acceleration: float
+    ship_acceleration: float
+    least_speed: float
+    most_speed: float
+
+    @property
+    def veering_speed(self) -> float:
+        """Speed of the ship (m/s) while veering warp."""
+        return min(self.least_speed + self.winch_speed, self.most_speed)
+
+
+def ability_of(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> Ability:
+    """Limits by a gear file, between the speeds of these manoeuvres."""
+    speeds = [one.speed for one in manoeuvres]
+    return Ability(
+        gear.winch.max_speed_m_s,
+        gear.winch.max_acceleration_m_s2,
+        gear.ship.max_acceleration_m_s2,
+        min(speeds),
+        max(speeds),
+    )
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Leg: one manoeuvre of a trial.
+
+    ``veering_minutes`` at ``veering_speed`` come first where warp runs out from a slower tow;
+    then ``minutes`` to change, settle and take the windows.
+    """
+
+    manoeuvre: Manoeuvre
+    minutes: float
+    veering_speed: float = 0.0
+    veering_minutes: float = 0.0
+
+    @property
+    def total_minutes(self) -> float:
+        """Minutes of veering and of the manoeuvre together."""
+        return self.minutes + self.veering_minutes
+
+
+def winch_time(ability: Ability, metres: float) -> float:
+    """Time (s) to veer or haul so many metres, from rest to rest."""
+    most, speed = ability.winch_acceleration, ability.winch_speed
+    if metres <= speed**2 / most:
+        return 2.0 * math.sqrt(metres / most)
+    return metres / speed + speed / most
+
+
+@dataclass(frozen=True)
+class Rest:
+    """Settling of a gear in a steady state.
+
+    Tension and spread settle soon; net and doors sink or rise together for minutes. ``net_depth``
+    (m) of the net, ``decay`` (s) of its slowest motion to 1/e, and the ``drift`` (m) in one window
+    of ``window`` (s) at which that counts as steady.
+    """
+
+    net_depth: float
+    decay: float
+    drift: float
+    window: float
+
+    def left(self, change: float, moving: float, since: float = 0.0) -> float:
+        """Remaining change of the net's depth, m.
+
+        Parameters
+        ----------
+        change
+            By how much (m) the depth is to change.
+        moving
+            Time (s) that ship and winches take for it; in that the gear follows already.
+        since
+            Time (s) since they have done it.
+        """
+        shrunk = self.decay / moving * -math.expm1(-moving / self.decay) if moving else 1.0
+        return abs(change) * shrunk * math.exp(-since / self.decay)
+
+    def time(self, left: float) -> float:
+        """Time (s) until the net, with so much (m) to come, drifts by no more than that."""
+        first = left * -math.expm1(-self.window / self.decay)
+        return self.decay * math.log(max(first / self.drift, 1.0))
+
+    def to_come(self, options: WindowOptions) -> float:
+        """Assumed departure from rest of a window with that drift, m of depth."""
+        return self.drift * options.slow_s / self.window
+
+
+def rest_of(candidate: Candidate, options: WindowOptions) -> Rest:
+    """Settling of the gear at a candidate, by the windows' criterion."""
+    part = candidate.part
+    depths = {
+        name: float(value)
+        for name, value in zip(part.channels, part.values, strict=True)
+        if name in DEPTHS
+    }
+    steady = min(
+        max(options.drift_fraction * depth, CHANNELS[name].bias) for name, depth in depths.items()
+    )
+    return Rest(depths['net_depth'], candidate.decay, STEADY_SHARE * steady, options.window_s)
+
+
+@cache
+def holding_time(manoeuvre: Manoeuvre, options: WindowOptions, rest: float = 0.0) -> float:
+    """Time (s) for which a steady state is held until all its windows are taken.
+
+    Windows lie on a grid of blocks: one block more, since the change ends within one.
+
+    Parameters
+    ----------
+    manoeuvre
+        Warp lengths and speed.
+    options
+        When a window is steady.
+    rest
+        Time (s) until the gear drifts no more than a window may.
+    """
+    operation = Operation(options)
+    inputs = (manoeuvre.port_length, manoeuvre.starboard_length, manoeuvre.speed)
+    for index in range(operation.window_blocks):
+        operation.add(Block(index, inputs, None, None))
+    windows = options.max_windows_per_state * operation.window_blocks
+    settle = max(operation.settle_blocks, math.ceil(rest / options.block_s))
+    return (settle + windows + 1) * options.block_s
+
+
+def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
+    """Order manoeuvres: warp lengths rising, at each length speeds falling; None if impossible.
+
+    What is done twice comes again after another manoeuvre of that length, for a state that goes
+    on gives no more windows. None where nothing can come in between.
+    """
+    ordered: list[Manoeuvre] = []
+    for length in sorted({one.length for one in manoeuvres}):
+        left = Counter(one for one in manoeuvres if one.length == length)
+        while left:
+            last = ordered[-1] if ordered else None
+            free = [one for one in left if one != last]
+            if not free:
+                return None
+            # The one that is left most often first: else it would meet itself at the end.
+            chosen = max(free, key=lambda one: (left[one], one.equal, one.speed))
+            ordered.append(chosen)
+            left -= Counter([chosen])
+    return tuple(ordered)
+
+
+class Timetable:
+    """Timetable: durations of manoeuvres one after the other.
+
+    Parameters
+    ----------
+    ability
+        Of ship and winches.
+    options
+        When a window is steady.
+    candidates
+        All manoeuvres that are asked for, but for the first.
+    """
+
+    def __init__(
+        self, ability: Ability, options: WindowOptions, candidates: Iterable[Candidate]
+    ) -> None:
+        self.ability = ability
+        self.options = options
+        self._by_lengths: dict[tuple[float, float], dict[float, Rest]] = {}
+        for one in candidates:
+            done = one.manoeuvre
+            lengths = (done.port_length, done.starboard_length)
+            self._by_lengths.setdefault(lengths, {})[done.speed] = rest_of(one, options)
+        self._legs: dict[tuple[Manoeuvre, Manoeuvre, float], Leg] = {}
+
+    def legs(
+        self, manoeuvres: Sequence[Manoeuvre], first_depth: float | None = None
+    ) -> tuple[Leg, ...]:
+        """Return the legs of manoeuvres in the given order.
+
+        Parameters
+        ----------
+        manoeuvres
+            The gear is at rest in the first when it begins.
+        first_depth
+            Depth (m) of the net in the first, if that is not among the candidates.
+        """
+        if not manoeuvres:
+            return ()
+        first = manoeuvres[0]
+        depth = self._rest(first).net_depth if first_depth is None else first_depth
+        legs = [Leg(first, _rounded(holding_time(first, self.options)))]
+        for before, after in pairwise(manoeuvres):
+            change = (before, after, depth)
+            if change not in self._legs:
+                self._legs[change] = self._leg(*change)
+            legs.append(self._legs[change])
+            depth = self._rest(after).net_depth
+        return tuple(legs)
+
+    def _rest(self, manoeuvre: Manoeuvre) -> Rest:
+        return self._at(manoeuvre)[manoeuvre.speed]
+
+    def _leg(self, before: Manoeuvre, after: Manoeuvre, depth: float) -> Leg:
+        ability, rest = self.ability, self._rest(after)
+        moved = (
+            after.port_length - before.port_length,
+            after.starboard_length - before.starboard_length,
+        )
+        winding = winch_time(ability, max(map(abs, moved)))
+        out = max(moved) > 0.0 and after.speed < ability.veering_speed
+        speed = max(ability.veering_speed, before.speed) if out else after.speed
+        # The ship changes her speed first: the net rises or sinks, and then with the warps.
+        changing = abs(speed - before.speed) / ability.ship_acceleration
+        between = self._depth_at(before, speed, depth)
+        there = self._depth_at(after, speed, rest.net_depth)
+        left = rest.left(between - depth, changing, max(winding - changing, 0.0))
+        left += rest.left(there - between, winding)
+        if not out:
+            hold = holding_time(after, self.options, rest.time(left))
+            return Leg(after, _rounded(max(winding, changing) + hold))
+        running = _rounded(changing + winding)
+        slowing = abs(speed - after.speed) / ability.ship_acceleration
+        left = rest.left(left, 0.0, slowing) + rest.left(rest.net_depth - there, slowing)
+        hold = holding_time(after, self.options, rest.time(left))
+        return Leg(after, _rounded(slowing + hold), speed, running)
+
+    def _depth_at(self, manoeuvre: Manoeuvre, speed: float, known: float) -> float:
+        """Depth (m) of the net at these lengths, at the nearest known speed."""
+        depths = {one: rest.net_depth for one, rest in self._at(manoeuvre).items()}
+        depths[manoeuvre.speed] = known
+        return depths[min(depths, key=lambda one: abs(one - speed))]
+
+    def _at(self, manoeuvre: Manoeuvre) -> Mapping[float, Rest]:
+        """Settling at these lengths, by speed."""
+        return self._by_lengths.get((manoeuvre.port_length, manoeuvre.starboard_length), {})
+
+
+def minutes_of(legs: Sequence[Leg]) -> float:
+    """Duration of a trial, min."""
+    return sum(leg.total_minutes for leg in legs)
+
+
+def _rounded(seconds: float) -> float:
+    return STEP_MINUTES * math.ceil(seconds / 60.0 / STEP_MINUTES - 1e-9)

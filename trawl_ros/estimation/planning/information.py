@@ -1,0 +1,99 @@
+"""Information matrices of windows: of the coefficients, with shared errors as unknowns.
+
+Information of independent windows adds up when that which they share is counted among the
+unknowns: errors of calibration of the tow and of the model, in std, before the coefficients, in
+std of their prior. It is the estimator's own account (`trawl_ros.estimation.fit.nuisance`), in a
+form in which one may add and leave out windows at little cost.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.fit import AS_STATED, Fit
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.prior import BoardPrior
+
+SHARED = len(TERMS) + len(GROUPS)
+"""Unknowns before the coefficients: errors of calibration, and of the model."""
+
+
+def information_of(
+    parts: Sequence[Linearised],
+    prior: BoardPrior,
+    options: EstimatorOptions,
+    scales: Sequence[float] = AS_STATED,
+) -> np.ndarray:
+    """Information matrix (`SHARED` + 12 squared) of windows in one steady state.
+
+    Parameters
+    ----------
+    parts
+        All windows of the state, as they would be.
+    prior
+        Its std is the coefficients' scale.
+    options
+        How errors are divided.
+    scales
+        Factors on the stated noise, by group of channels.
+    """
+    fit = Fit(tuple(parts), parts[0].at, tuple(scales), prior, options)
+    (errors,) = fit.errors
+    std = np.where(errors.present, errors.noise * np.array(scales)[GROUP_OF], 1.0)
+    variance = std[:, :, None] ** 2 * np.eye(std.shape[1])
+    root = np.linalg.cholesky(variance + errors.inputs @ errors.inputs.transpose(0, 2, 1))
+    rows = np.concatenate((errors.calibration, errors.model, fit.jacobian), axis=2)
+    rows = np.linalg.solve(root, rows).reshape(-1, rows.shape[2])
+    return rows.T @ rows
+
+
+def information_before(options: EstimatorOptions) -> np.ndarray:
+    """Prior information matrix: of calibration, of the model's errors, and of the coefficients."""
+    # As in `know`: where neither data nor prior say anything, a std of a million.
+    weight = max(options.prior_weight, 1e-12)
+    return np.diag(np.concatenate((np.ones(SHARED), np.full(12, weight))))
+
+
+def information_in(fit: Fit) -> np.ndarray:
+    """Information matrix of a fit: calibration of its newest tow, model errors, and coefficients.
+
+    Parameters
+    ----------
+    fit
+        With one window at least.
+    """
+    marginal = fit.marginal
+    of_tow, of_model = marginal.tows[-1].triangle, marginal.model_triangle
+    rows = [
+        of_tow,
+        np.pad(of_model, ((0, 0), (len(TERMS), 0))),
+        np.pad(marginal.triangle, ((0, 0), (SHARED, 0))),
+    ]
+    weight = max(fit.options.prior_weight, 1e-12)
+    before = np.diag(np.concatenate((np.zeros(SHARED), np.full(12, weight))))
+    return sum((part.T @ part for part in rows), before)
+
+
+def covariance_from(information: np.ndarray, prior: BoardPrior) -> np.ndarray:
+    """Covariance (12, 12) of the coefficients by an information matrix."""
+    root = np.linalg.cholesky(information)
+    # The lower right block of the inverse needs the lower right block of the factor alone.
+    inverse = solve_triangular(root[-12:, -12:], np.eye(12), lower=True)
+    return inverse.T @ inverse * np.outer(prior.std, prior.std)
+
+
+def fitted_covariance(
+    parts: Sequence[Linearised],
+    coefficients: np.ndarray,
+    prior: BoardPrior,
+    options: EstimatorOptions,
+) -> np.ndarray:
+    """Posterior covariance (12, 12) that the estimator would give with these windows."""
+    numbered = tuple(
+        replace(part, window=replace(part.window, index=index)) for index, part in enumerate(parts)
+    )
+    return Fit(numbered, coefficients, AS_STATED, prior, options).knowledge.covariance

@@ -1,0 +1,66 @@
+"""Limits of knowledge after a trial: reasons why a quantity stays badly known."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from trawl_ros.estimation.fit.error_terms import TERMS
+from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES, LawQuantities, law_rows
+from trawl_ros.estimation.planning.information import SHARED, covariance_from
+from trawl_ros.estimation.planning.search import Designer
+from trawl_ros.estimation.planning.states import Manoeuvre
+from trawl_ros.model.board import COEFFICIENTS
+
+WITHOUT_END = 1e4
+"""Each leg so many times over: what noise is left hides nothing any more."""
+
+
+def limits_of(
+    designer: Designer, manoeuvres: Sequence[Manoeuvre], known: LawQuantities
+) -> Mapping[str, str]:
+    """Return the reason for each quantity that is not well known after a trial.
+
+    ``noise`` where the same legs without end would do, ``calibration`` where instruments without
+    bias would, ``model`` where a model without error would, several where all of these together
+    would, and else the coefficient of another law with which it is confounded most.
+
+    Parameters
+    ----------
+    designer
+        Of the trial.
+    manoeuvres
+        The trial.
+    known
+        What is known after it.
+    """
+    once, often = (designer.information(manoeuvres, times) for times in (1.0, WITHOUT_END))
+    every = set(range(len(once)))
+    calibration, model = set(range(len(TERMS))), set(range(len(TERMS), SHARED))
+    remedies = (
+        ('noise', often, every),
+        ('calibration', once, every - calibration),
+        ('model', once, every - model),
+        ('noise and calibration', often, every - calibration),
+        ('noise, calibration and model', often, every - calibration - model),
+    )
+    found: dict[str, str] = {}
+    for name, information, kept in remedies:
+        chosen = sorted(kept)
+        covariance = covariance_from(information[np.ix_(chosen, chosen)], designer.question.prior)
+        helped = designer.question.quantities(covariance).well_known
+        for quantity, before, after in zip(QUANTITIES, known.well_known, helped, strict=True):
+            if after and not before:
+                found.setdefault(quantity, name)
+    covariance = designer.covariance(manoeuvres)
+    for index, quantity in enumerate(QUANTITIES):
+        if not known.well_known[index] and quantity not in found:
+            found[quantity] = f'confounded with {_partner(designer, covariance, index)}'
+    return {quantity: found[quantity] for quantity in QUANTITIES if quantity in found}
+
+
+def _partner(designer: Designer, covariance: np.ndarray, index: int) -> str:
+    """Name the coefficient of another law whose knowledge would improve a quantity most."""
+    row = law_rows(designer.question.angles)[index]
+    shared = (covariance @ row) ** 2 / np.diag(covariance)
+    shared[LAWS[index % len(LAWS)].columns] = 0.0
+    return COEFFICIENTS[int(np.argmax(shared))]

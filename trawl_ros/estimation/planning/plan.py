@@ -1,0 +1,245 @@
+"""Trial planning: the most informative trial in a given time, beside the paper's sweep."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.laws import (
+    QUANTITIES,
+    WELL_KNOWN,
+    LawQuantities,
+    WorkingAngles,
+    law_spans,
+    working_angles,
+)
+from trawl_ros.estimation.from_gear import board_prior, predictor_for
+from trawl_ros.estimation.planning.duration import Leg, ability_of
+from trawl_ros.estimation.planning.limits import limits_of
+from trawl_ros.estimation.planning.search import Designer, Question
+from trawl_ros.estimation.planning.states import (
+    Candidate,
+    Choice,
+    Explorer,
+    Limits,
+    Manoeuvre,
+    Refused,
+    explore,
+)
+from trawl_ros.estimation.planning.sweep import Trial, best_sweep, paper_noise
+from trawl_ros.estimation.planning.windows import TABLE_NOISE
+from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.board import COEFFICIENTS
+
+LEAST_LEGS = 2
+"""One steady state cannot tell a law's slope from its value."""
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Gain of a leg: number of well-known quantities after it, and the one it improves most.
+
+    ``before`` and ``after`` are the std of ``quantity`` as a share of its law's span.
+    """
+
+    well_known: int
+    quantity: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class TrialPlan:
+    """Planned trial.
+
+    Attributes
+    ----------
+    gear
+        Its name.
+    question
+        What was asked.
+    choice
+        The manoeuvres among which was chosen, and those that are not to be had.
+    trial
+        The plan.
+    gains
+        What each of its legs adds.
+    limits
+        Quantity that is not well known after it → what keeps it from that.
+    before
+        What is known before any tow.
+    sweeps
+        The paper's sweep in the same time, with all planned channels and with the paper's.
+    """
+
+    gear: str
+    question: Question
+    choice: Choice
+    trial: Trial
+    gains: tuple[Gain, ...]
+    limits: Mapping[str, str]
+    before: LawQuantities
+    sweeps: tuple[Trial, ...]
+
+
+Progress = Callable[[str, int, int], None]
+
+
+def plan_trial(
+    gear: GearRecord,
+    *,
+    hours: float = 6.0,
+    limits: Limits | None = None,
+    windows: WindowOptions | None = None,
+    estimator: EstimatorOptions | None = None,
+    progress: Progress = lambda what, done, number: None,
+) -> TrialPlan:
+    """Plan a trial: optimal experiment design over manoeuvres, within the given time.
+
+    It is planned with the board as identification starts, for nothing more is known before. All
+    its legs can be towed with that board and with the one that the gear file describes.
+
+    Parameters
+    ----------
+    gear
+        From `load_gear`.
+    hours
+        Time at sea, from the first leg's beginning to the last one's end.
+    limits
+        Among which manoeuvres one may choose.
+    windows, estimator
+        When a window is steady; how the estimate is found.
+    progress
+        Is told what is being looked up, how much of it is done, and how much there is.
+
+    Raises
+    ------
+    TrawlError
+        When there is nothing to choose from, or no time for two legs.
+    """
+    prior = board_prior(gear)
+    predictor = predictor_for(gear)
+    explorer = Explorer(predictor, prior.start, limits)
+    choice = explore(
+        explorer,
+        lambda done: progress('steady states of the board as believed', done, len(explorer)),
+    )
+    question = Question(
+        coefficients=np.array(prior.start),
+        prior=prior,
+        angles=_angles(choice.candidates, gear),
+        span=law_spans(prior.start, prior.std),
+        estimator=estimator or EstimatorOptions(),
+        windows=windows or WindowOptions(),
+        ability=ability_of(gear, [one.manoeuvre for one in choice.candidates]),
+        minutes=60.0 * hours,
+    )
+    filed = Explorer(predictor, filed_coefficients(gear), limits)
+    seen: dict[Manoeuvre, Candidate] = {}
+    while True:
+        designer = Designer(question, choice.candidates)
+        legs = designer.best()
+        if len(legs) < LEAST_LEGS:
+            raise TrawlError(
+                f'{hours:g} h are time for {len(legs)} of at least {LEAST_LEGS} legs, each held '
+                'until the gear has settled and its windows are taken; expected more hours'
+            )
+        sweep = best_sweep(designer)
+        lost = _look_up((*legs, *sweep), filed, choice.candidates, seen, progress)
+        if not lost:
+            break
+        choice = choice.without(lost)
+    there = _as_filed(question, list(seen.values()), gear)
+    data_alone = replace(question, estimator=replace(question.estimator, prior_weight=0.0))
+    trials = []
+    for name, chosen, noise in (
+        ('plan', legs, TABLE_NOISE),
+        ('sweep', sweep, TABLE_NOISE),
+        ("sweep, the paper's channels", sweep, paper_noise()),
+    ):
+        done = [leg.manoeuvre for leg in chosen]
+        known, by_data, as_filed = (
+            asked.quantities(Designer(asked, candidates, noise).fitted(done))
+            for asked, candidates in (
+                (question, choice.candidates),
+                (data_alone, choice.candidates),
+                (there, seen.values()),
+            )
+        )
+        trials.append(Trial(name, chosen, known, by_data, as_filed))
+    trial = trials[0]
+    return TrialPlan(
+        gear=gear.name,
+        question=question,
+        choice=choice,
+        trial=trial,
+        gains=_gains(designer, trial.manoeuvres),
+        limits=limits_of(designer, trial.manoeuvres, trial.known),
+        before=question.quantities(np.diag(prior.std**2)),
+        sweeps=tuple(trials[1:]),
+    )
+
+
+def filed_coefficients(gear: GearRecord) -> np.ndarray:
+    """Coefficients (12,) of the board in a gear file, in the order of eq. 36."""
+    return np.array([getattr(gear.board.coefficients, name) for name in COEFFICIENTS])
+
+
+def _angles(candidates: Sequence[Candidate], gear: GearRecord) -> WorkingAngles:
+    return working_angles([one.part.state.observables for one in candidates], gear.board.slip_sign)
+
+
+def _look_up(
+    legs: Sequence[Leg],
+    explorer: Explorer,
+    near: Sequence[Candidate],
+    seen: dict[Manoeuvre, Candidate],
+    progress: Progress,
+) -> dict[Manoeuvre, Refused]:
+    """Look the legs up with another board, from the states near them that are known; give those
+    that are not to be had with it.
+    """
+    wanted = sorted({leg.manoeuvre for leg in legs} - seen.keys())
+    lost = {}
+    for done, manoeuvre in enumerate(wanted, 1):
+        found = explorer.look_up(manoeuvre, near)
+        if isinstance(found, Candidate):
+            seen[manoeuvre] = found
+        else:
+            lost[manoeuvre] = found
+        progress('the plan with the board of the file', done, len(wanted))
+    return lost
+
+
+def _gains(designer: Designer, manoeuvres: Sequence[Manoeuvre]) -> tuple[Gain, ...]:
+    gains = []
+    before = designer.quantities([])
+    for number in range(1, len(manoeuvres) + 1):
+        after = designer.quantities(manoeuvres[:number])
+        # As the search counts it: the logarithm, and little of it for what is well known.
+        term = [np.log1p((one.ratio / WELL_KNOWN) ** 2) for one in (before, after)]
+        most = int(np.argmax(term[0] - term[1]))
+        gains.append(
+            Gain(
+                int(after.well_known.sum()),
+                QUANTITIES[most],
+                float(before.ratio[most]),
+                float(after.ratio[most]),
+            )
+        )
+        before = after
+    return tuple(gains)
+
+
+def _as_filed(question: Question, candidates: Sequence[Candidate], gear: GearRecord) -> Question:
+    """The same design question with the board that the gear file describes."""
+    coefficients = filed_coefficients(gear)
+    return replace(
+        question,
+        coefficients=coefficients,
+        angles=_angles(candidates, gear),
+        span=law_spans(coefficients),
+    )

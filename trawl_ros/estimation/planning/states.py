@@ -1,0 +1,258 @@
+"""Candidate steady states of a trial, and the predictions in each.
+would show.
+
+A turn is not among them: a gear that is towed around has no steady state in fixed axes. Nor is an
+opposite heading, which shows nothing new where there is no current.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.estimation.fit.linearised import Linearised, linearise
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.channels import INPUTS, MEASURED
+from trawl_ros.solver.equilibrium import Equilibrium, require_usable
+from trawl_ros.solver.predict import Predictor
+
+PLANNED = tuple(name for name in MEASURED if name in OBSERVABLES)
+"""Channels that a planned window is imagined to have: all that the model predicts."""
+
+DEPTHS = tuple(name for name in PLANNED if name.endswith('depth'))
+"""Of these, those that come to rest last."""
+
+
+@dataclass(frozen=True, order=True)
+class Manoeuvre:
+    """Manoeuvre: warp lengths (m) and speed through the water (m/s) of a steady state."""
+
+    port_length: float
+    starboard_length: float
+    speed: float
+
+    @property
+    def length(self) -> float:
+        """Length of the longer warp, m."""
+        return max(self.port_length, self.starboard_length)
+
+    @property
+    def equal(self) -> bool:
+        """True if both warps are equally long."""
+        return self.port_length == self.starboard_length
+
+    def __str__(self) -> str:
+        lengths = f'{self.port_length:g}'
+        if not self.equal:
+            lengths += f'/{self.starboard_length:g}'
+        return f'{lengths} m at {self.speed:g} m/s'
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of the choice of manoeuvres.
+
+    Attributes
+    ----------
+    lengths, speeds
+        Warp lengths (m) and speeds (m/s), rising.
+    shorter
+        Metres by which the port warp may be shorter than the starboard one; the other way around
+        shows the same.
+    max_tension
+        Highest tension (N) of a warp.
+    seabed
+        Depth of the water (m).
+    clearance
+        How far (m) the gear stays above the seabed.
+    """
+
+    lengths: tuple[float, ...] = (200.0, 300.0, 400.0, 500.0, 700.0, 900.0)
+    speeds: tuple[float, ...] = (1.9, 2.1, 2.3, 2.5)
+    shorter: tuple[float, ...] = (5.0,)
+    max_tension: float | None = None
+    seabed: float | None = None
+    clearance: float = 10.0
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Candidate: a feasible manoeuvre, the linearised model there, and the decay time (s, to 1/e)
+    of its slowest motion.
+    """
+
+    manoeuvre: Manoeuvre
+    part: Linearised
+    decay: float
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Refused manoeuvre with the reason."""
+
+    manoeuvre: Manoeuvre
+    reason: str
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Choice: feasible and refused manoeuvres."""
+
+    candidates: tuple[Candidate, ...]
+    refused: tuple[Refused, ...]
+
+    def without(self, lost: Mapping[Manoeuvre, Refused]) -> 'Choice':
+        """Copy of the choice without manoeuvres found infeasible."""
+        left = tuple(one for one in self.candidates if one.manoeuvre not in lost)
+        return Choice(left, (*self.refused, *lost.values()))
+
+
+def deepest_point(model: GearModel, found: Equilibrium) -> float:
+    """Depth (m) of the gear's deepest node or door's edge."""
+    state = found.state
+    half = 0.5 * model.board.span * np.abs(state.board_rotations[:, 2, 2])
+    return -float(min(state.nodes[:, 2].min(), (state.board_positions[:, 2] - half).min()))
+
+
+class Explorer:
+    """Solver of manoeuvres one after the other, so that one may stop in between.
+
+    Parameters
+    ----------
+    predictor
+        The model of the gear.
+    coefficients
+        Of the board, (12,), as they are believed to be.
+    limits
+        Among which manoeuvres one may choose.
+    """
+
+    def __init__(
+        self,
+        predictor: Predictor,
+        coefficients: np.ndarray,
+        limits: Limits | None = None,
+    ) -> None:
+        self.predictor = predictor
+        self.coefficients = np.array(coefficients)
+        self.limits = limits or Limits()
+
+    def __len__(self) -> int:
+        limits = self.limits
+        return len(limits.lengths) * len(limits.speeds) * (1 + len(limits.shorter))
+
+    @property
+    def manoeuvres(self) -> tuple[Manoeuvre, ...]:
+        """All manoeuvres: lengths rising, and at each from the highest speed down."""
+        limits = self.limits
+        return tuple(
+            Manoeuvre(length - shorter, length, speed)
+            for length in limits.lengths
+            for shorter in (0.0, *limits.shorter)
+            for speed in reversed(limits.speeds)
+        )
+
+    def __iter__(self) -> Iterator[Candidate | Refused]:
+        """Yield the solution of every manoeuvre once.
+
+        At a length, nothing is sought at and below a speed at which a gear that could be towed
+        faster cannot be towed any more: there the boards have lost their lift.
+        """
+        known: list[Candidate] = []
+        lost: dict[float, tuple[float, str]] = {}
+        for manoeuvre in self.manoeuvres:
+            slowest, reason = lost.get(manoeuvre.length, (0.0, ''))
+            if manoeuvre.speed <= slowest:
+                yield Refused(manoeuvre, reason)
+                continue
+            found = self.look_up(manoeuvre, known)
+            if isinstance(found, Candidate):
+                known.append(found)
+            elif any(_faster(one.manoeuvre, manoeuvre) for one in known):
+                lost[manoeuvre.length] = manoeuvre.speed, found.reason
+            yield found
+
+    def look_up(self, manoeuvre: Manoeuvre, known: Sequence[Candidate]) -> Candidate | Refused:
+        """Solve one manoeuvre, warm from those known, and check it."""
+
+        def distance(other: Candidate) -> float:
+            there = other.manoeuvre
+            return (
+                abs(there.port_length / manoeuvre.port_length - 1.0)
+                + abs(there.starboard_length / manoeuvre.starboard_length - 1.0)
+                + abs(there.speed / manoeuvre.speed - 1.0)
+            )
+
+        starts = (min(known, key=distance).part.state, None) if known else (None,)
+        try:
+            asked = _asked(manoeuvre)
+            part = linearise(
+                self.predictor, OBSERVABLES, asked, self.coefficients, starts, even=False
+            )
+            model = self.predictor.gear(self.coefficients, part.inputs)
+            steady = require_usable(model, part.state)
+        except NoSteadyState as reason:
+            return Refused(manoeuvre, reason.reason)
+        if trouble := self._trouble(model, part):
+            return Refused(manoeuvre, trouble)
+        return Candidate(manoeuvre, part, steady.stability.settling_time)
+
+    def _trouble(self, model: GearModel, part: Linearised) -> str:
+        limits, seen = self.limits, part.state.observables
+        tension = max(seen.port_tension, seen.starboard_tension)
+        if limits.max_tension is not None and tension > limits.max_tension:
+            return 'tension'
+        if limits.seabed is not None:
+            depth = deepest_point(model, part.state)
+            if depth + limits.clearance > limits.seabed:
+                return 'seabed'
+        return ''
+
+
+def explore(explorer: Explorer, progress: Callable[[int], None] = lambda done: None) -> Choice:
+    """Solve all manoeuvres.
+
+    Parameters
+    ----------
+    explorer
+        Which ones.
+    progress
+        Is told how many are done.
+
+    Raises
+    ------
+    TrawlError
+        When the gear can be towed in none of them.
+    """
+    candidates, refused = [], []
+    for done, found in enumerate(explorer, 1):
+        if isinstance(found, Candidate):
+            candidates.append(found)
+        else:
+            refused.append(found)
+        progress(done)
+    if not candidates:
+        reasons = ', '.join(sorted({one.reason for one in refused}))
+        limits = explorer.limits
+        raise TrawlError(
+            f'the gear can be towed in none of {len(explorer)} manoeuvres, '
+            f'{limits.lengths[0]:g} to {limits.lengths[-1]:g} m of warp at {limits.speeds[0]:g} to '
+            f'{limits.speeds[-1]:g} m/s (found: {reasons}); expected one at least'
+        )
+    return Choice(tuple(candidates), tuple(refused))
+
+
+def _faster(one: Manoeuvre, other: Manoeuvre) -> bool:
+    """True if one is the other at a higher speed."""
+    return one.speed > other.speed and replace(one, speed=other.speed) == other
+
+
+def _asked(manoeuvre: Manoeuvre) -> SteadyWindow:
+    """Window that asks the model for all planned channels."""
+    inputs = (manoeuvre.port_length, manoeuvre.starboard_length, manoeuvre.speed)
+    means = dict.fromkeys(PLANNED, 0.0) | dict(zip(INPUTS, inputs, strict=True))
+    nothing = dict.fromkeys(means, 0.0)
+    return SteadyWindow(0, 0, 0, 0, means, nothing, nothing, dict.fromkeys(means, 1))

@@ -1,0 +1,77 @@
+"""Predicted windows of a manoeuvre."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.planning.states import DEPTHS, PLANNED, Candidate
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.records.channels import CHANNELS, INPUTS
+
+WINDOW_S = 60.0
+"""Length (s) of the window for which `TABLE_NOISE` is."""
+
+TABLE_NOISE: Mapping[str, float] = MappingProxyType(
+    {
+        name: CHANNELS[name].noise / max(1.0, CHANNELS[name].min_rate * WINDOW_S) ** 0.5
+        for name in (*INPUTS, *PLANNED)
+    }
+)
+"""Standard error of a window's mean where no data have shown it yet: the channel table's noise
+at the lowest rate that the instrument may have."""
+
+
+def imagined_windows(
+    candidate: Candidate,
+    coefficients: np.ndarray,
+    *,
+    state: int,
+    number: int,
+    tow: int = 0,
+    noise: Mapping[str, float] = TABLE_NOISE,
+    to_come: float = 0.0,
+) -> tuple[Linearised, ...]:
+    """Predict the windows in a steady state at the assumed coefficients.
+
+    Parameters
+    ----------
+    candidate
+        Where.
+    coefficients
+        Of the board, (12,), as they are believed to be.
+    state, tow
+        Numbers they get.
+    number
+        How many windows.
+    noise
+        Standard error of each channel's mean; channels that are not in it are not heard.
+    to_come
+        By how much (m) depths are still to change.
+    """
+    part = candidate.part
+    rows = [row for row, name in enumerate(part.channels) if name in noise]
+    channels = tuple(part.channels[row] for row in rows)
+    measured = part.predicted(coefficients)[rows]
+    means = {name: part.window.means[name] for name in INPUTS}
+    means |= {name: float(value) for name, value in zip(channels, measured, strict=True)}
+    bias = {name: CHANNELS[name].bias_std(value) for name, value in means.items()}
+    counts = dict.fromkeys(means, 1)
+    chosen = {name: noise[name] for name in means}
+    left = {name: to_come for name in DEPTHS if name in means}
+    return tuple(
+        replace(
+            part,
+            window=SteadyWindow(index, state, 0, 0, means, chosen, bias, counts, tow, to_come=left),
+            channels=channels,
+            measured=measured,
+            values=part.values[rows],
+            by_coefficients=part.by_coefficients[rows],
+            by_inputs=part.by_inputs[rows],
+            by_net=part.by_net[rows],
+            slow=part.slow[rows],
+        )
+        for index in range(number)
+    )

@@ -1,0 +1,120 @@
+"""Files of a plan: JSON, scenario and figure."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import write_figure, write_text
+from trawl_ros.estimation.fit.laws import QUANTITIES, LawQuantities
+from trawl_ros.estimation.planning.figure import plan_figure
+from trawl_ros.estimation.planning.plan import TrialPlan
+from trawl_ros.estimation.planning.scenario import scenario_of
+from trawl_ros.estimation.planning.states import Manoeuvre
+from trawl_ros.estimation.planning.sweep import Trial
+from trawl_ros.report.style import DPI
+from trawl_ros.scenario.scenario import load_scenario
+
+PLAN, SCENARIO, PICTURE = 'plan.json', 'trial.yaml', 'plan.png'
+
+
+def write_plan(plan: TrialPlan, gear: str, folder: Path) -> None:
+    """Write ``plan.json``, ``trial.yaml`` and ``plan.png``.
+
+    Parameters
+    ----------
+    plan
+        What to write.
+    gear
+        The gear as the user named it: the name of one that comes with the package, or a file,
+        which is copied beside the scenario so that this can be moved.
+    folder
+        Made if need be.
+
+    Raises
+    ------
+    TrawlError
+        If the folder cannot be written to.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(plan_record(plan), indent=2)
+        write_text(folder / PLAN, text)
+        named = gear
+        if Path(gear).is_file():
+            named = f'{Path(gear).stem}.yaml'
+            if not (folder / named).exists() or not Path(gear).samefile(folder / named):
+                write_text(folder / named, Path(gear).read_text(encoding='utf-8'))
+        record = scenario_of(plan.trial, named)
+        lines = yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100)
+        write_text(folder / SCENARIO, lines)
+        write_figure(folder / PICTURE, plan_figure(plan), DPI)
+    except OSError as reason:
+        raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
+    load_scenario(folder / SCENARIO)
+
+
+def plan_record(plan: TrialPlan) -> dict[str, Any]:
+    """Plan as JSON content; lengths in m, speeds in m/s, times in minutes."""
+    return {
+        'gear': plan.gear,
+        'minutes': plan.trial.minutes,
+        'budget_minutes': plan.question.minutes,
+        'working_angles_deg': {
+            'attack': math.degrees(plan.question.angles.attack),
+            'slip': math.degrees(plan.question.angles.slip),
+        },
+        'legs': [
+            {
+                **_manoeuvre(leg.manoeuvre),
+                'minutes': leg.total_minutes,
+                'well_known_after': gain.well_known,
+                'helps_most': gain.quantity,
+                'sd_of_span_before': gain.before,
+                'sd_of_span_after': gain.after,
+            }
+            for leg, gain in zip(plan.trial.legs, plan.gains, strict=True)
+        ],
+        'quantities': {
+            name: {
+                'sd_of_span_before': float(plan.before.ratio[index]),
+                **{_key(one): float(one.known.ratio[index]) for one in (plan.trial, *plan.sweeps)},
+                'well_known': bool(plan.trial.known.well_known[index]),
+                'limited_by': plan.limits.get(name),
+            }
+            for index, name in enumerate(QUANTITIES)
+        },
+        'trials': [_trial(one) for one in (plan.trial, *plan.sweeps)],
+        'refused': [
+            {**_manoeuvre(one.manoeuvre), 'reason': one.reason} for one in plan.choice.refused
+        ],
+    }
+
+
+def _key(trial: Trial) -> str:
+    return f'sd_of_span_after_{trial.name}'.replace(', ', '_').replace("'s", '').replace(' ', '_')
+
+
+def _trial(trial: Trial) -> dict[str, Any]:
+    def number(known: LawQuantities) -> int:
+        return int(known.well_known.sum())
+
+    return {
+        'name': trial.name,
+        'legs': len(trial.legs),
+        'minutes': trial.minutes,
+        'well_known': number(trial.known),
+        'well_known_by_data_alone': number(trial.by_data),
+        'well_known_with_the_board_of_the_file': number(trial.as_filed),
+    }
+
+
+def _manoeuvre(manoeuvre: Manoeuvre) -> dict[str, float]:
+    return {
+        'port_length': manoeuvre.port_length,
+        'starboard_length': manoeuvre.starboard_length,
+        'speed': manoeuvre.speed,
+    }

@@ -1,0 +1,95 @@
+"""Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.windows.records import SteadyWindow
+
+NEAR_ENOUGH = 0.1
+"""Std to which fits for hold-out come to rest."""
+
+STEPS = 3
+"""They start at the rest of all windows, from where the first step leads nearly all the way."""
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Hold-out predictions of the windows left out.
+
+    Attributes
+    ----------
+    by
+        'tow' or 'state'.
+    groups
+        How many tows or states there are.
+    predicted : (n, 4) array
+        In the order of `PAPER_CHANNELS`, NaN where a fit or a steady state is missing.
+    """
+
+    by: str
+    groups: int
+    predicted: np.ndarray
+
+
+def hold_out(
+    estimator: Estimator,
+    folds: int = 5,
+    seed: int = 0,
+    begun: Callable[[int, int], None] | None = None,
+) -> HeldOut:
+    """Predict each window by a fit without any window of its tow.
+
+    With a single tow it is the window's steady state that the fit has not seen: less of a
+    test, since errors of calibration are the same throughout a tow.
+
+    Parameters
+    ----------
+    estimator
+        With all its windows and at rest; it is left as it is.
+    folds
+        Parts into which the states of a single tow are divided; with fewer states each is left
+        out alone. Of several tows each is.
+    seed
+        Of the random order in which states are dealt to the folds, so that a fold is not
+        one warp length at all speeds.
+    begun
+        Told before each fit which it is, from 1, and of how many.
+    """
+    windows = estimator.windows
+    predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
+    states = {window.state for window in windows}
+    tows = sorted({window.tow for window in windows})
+    if len(tows) > 1:
+        by, groups = 'tow', len(tows)
+        parts = [_states(windows, tow) for tow in tows]
+    else:
+        by, groups = 'state', len(states)
+        order = np.random.default_rng(seed).permutation(sorted(states))
+        parts = [set(part.tolist()) for part in np.array_split(order, min(folds, max(groups, 1)))]
+    if groups < 2:
+        return HeldOut(by, groups, predicted)
+    options = replace(
+        estimator.options,
+        relinearise_final=NEAR_ENOUGH,
+        tolerance=NEAR_ENOUGH,
+        iterations_final=STEPS,
+        # They are stopped before they are at rest.
+        second_start=False,
+    )
+    for number, left_out in enumerate(parts, start=1):
+        if begun is not None:
+            begun(number, len(parts))
+        part = estimator.subset(states - left_out, options)
+        if part.finish() is None:
+            continue
+        rows = [i for i, window in enumerate(windows) if window.state in left_out]
+        predicted[rows] = part.predictions(part.coefficients, [windows[i] for i in rows])
+    return HeldOut(by, groups, predicted)
+
+
+def _states(windows: Sequence[SteadyWindow], tow: int) -> set[int]:
+    return {window.state for window in windows if window.tow == tow}

@@ -1,0 +1,139 @@
+"""HTML report as one self-contained page."""
+
+import base64
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.core.version import __version__
+from trawl_ros.estimation.fit.laws import LAWS
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.figures import Drawing
+from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.residuals import ChannelResiduals
+from trawl_ros.estimation.report.verdict import BEYOND, verdict
+from trawl_ros.estimation.windows.records import REASONS
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.report.rendering import page as filled
+
+PAGE = 'report.html'
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """Figure embedded as text, and its caption."""
+
+    caption: str
+    data: str
+
+
+def page(
+    report: Report, folder: Path, drawings: Sequence[Drawing], advice: Sequence[str] = ()
+) -> str:
+    """Render the page as HTML.
+
+    Parameters
+    ----------
+    report
+        What it is about.
+    folder
+        Where the figures have been drawn.
+    drawings
+        The figures.
+    advice
+        Sentences on what to tow next; without any the page has no such heading.
+    """
+    sections: dict[str, list[Embedded]] = {}
+    for drawing in drawings:
+        data = base64.b64encode((folder / drawing.file).read_bytes()).decode('ascii')
+        sections.setdefault(drawing.section, []).append(Embedded(drawing.caption, data))
+    return filled(
+        'trawl_ros.estimation.report',
+        PAGE,
+        report=report,
+        verdict=verdict(report),
+        advice=advice,
+        coefficients=_coefficients(report),
+        sections=list(sections.items()),
+        residuals=[_residual(row) for row in report.residuals],
+        channels=PAPER_CHANNELS,
+        tows=_tows(report),
+        rejected=[
+            (key, count, REASONS[key], report.found.get(key, ''))
+            for key, count in report.rejected.items()
+        ],
+        laws=_laws(report),
+        attack_deg=math.degrees(report.laws.angles.attack) if report.laws else math.nan,
+        objectives=report.objectives,
+        version=__version__,
+    )
+
+
+def _coefficients(report: Report) -> list[dict[str, Any]]:
+    estimate, rows = report.estimate, []
+    for i, name in enumerate(COEFFICIENTS):
+        row: dict[str, Any] = {
+            'name': name,
+            'start': report.prior.start[i],
+            'value': estimate.values[i],
+            'low': estimate.low[i],
+            'high': estimate.high[i],
+            'shrink': estimate.shrink[i],
+            'determined': estimate.determined[i],
+        }
+        if report.truth is not None:
+            row['truth'] = report.truth[i]
+            row['inside'] = estimate.low[i] <= report.truth[i] <= estimate.high[i]
+        rows.append(row)
+    return rows
+
+
+def _laws(report: Report) -> list[dict[str, Any]]:
+    """Rows of the laws, none where they are not known."""
+    if report.laws is None:
+        return []
+    known, number = report.laws.quantities, len(LAWS)
+
+    def cells(i: int) -> dict[str, Any]:
+        return {'value': known.values[i], 'sd': known.sd[i], 'well': known.well_known[i]}
+
+    return [
+        {'name': law.name, 'angle': law.angle, 'at': cells(i), 'over': cells(number + i)}
+        for i, law in enumerate(LAWS)
+    ]
+
+
+def _residual(row: ChannelResiduals) -> dict[str, Any]:
+    white = row.whiteness
+    scale, unit = {'N': (1e-3, 'kN'), 'rad': (180.0 / math.pi, '°')}.get(row.unit, (1.0, row.unit))
+    return {
+        'name': row.channel.replace('_', ' '),
+        'unit': unit,
+        'windows': len(row.values),
+        'mean': scale * row.mean,
+        'std': scale * row.std,
+        'stated_std': scale * row.stated_std,
+        'test_ratio': row.test_ratio,
+        'beyond': row.test_ratio > BEYOND,
+        'white': 'too few' if white is None else f'{white.p_value:.2g}',
+        'coloured': white is not None and not white.white,
+    }
+
+
+def _tows(report: Report) -> list[dict[str, Any]]:
+    return [
+        {
+            'name': tow.name,
+            'windows': tow.windows,
+            'states': tow.states,
+            'errors': [percent(error) for error in tow.held_out],
+        }
+        for tow in report.by_tow
+    ]
+
+
+def percent(value: float) -> str:
+    """Format a share as a percentage, or a dash where it is not known."""
+    return f'{100.0 * value:.1f} %' if math.isfinite(value) else '–'

@@ -1,0 +1,248 @@
+"""Report of an identification, computed once for JSON, figures and page."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.fit.estimator import Progress
+from trawl_ros.estimation.fit.laws import (
+    LawQuantities,
+    WorkingAngles,
+    law_quantities,
+    law_spans,
+    working_angles,
+)
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, objective, paper_values, stack
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.pipeline import Identification, WindowUsed
+from trawl_ros.estimation.report.holdout import HeldOut, hold_out
+from trawl_ros.estimation.report.residuals import ChannelResiduals, innovations, residuals, solve
+from trawl_ros.estimation.report.spectrum import Spectrum, spectrum
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.records.channels import INPUTS
+
+
+@dataclass(frozen=True)
+class TowOutcome:
+    """Outcome of a tow: its number, name, counts of windows and steady states, and the errors
+    (4,) in the channels of eq. 35 with which they were predicted when ``held_out``.
+    """
+
+    tow: int
+    name: str
+    windows: int
+    states: int
+    held_out: np.ndarray
+
+
+@dataclass(frozen=True)
+class KnownLaws:
+    """Laws of the boards at their working angles.
+
+    ``attack`` has the least and largest mean α (rad) of both boards in the windows' states,
+    ``angles`` the means over them, and ``quantities`` values and slopes there.
+    """
+
+    attack: tuple[float, float]
+    angles: WorkingAngles
+    quantities: LawQuantities
+
+
+@dataclass(frozen=True)
+class Report:
+    """Report of an identification with its data.
+
+    Attributes
+    ----------
+    estimate, prior
+        Where it ended and where it started.
+    prior_weight
+        1 where the prior was used, 0 where the data alone decided.
+    truth : (12,) array or None
+        The coefficients that made the data, where they are known.
+    rejected, found
+        Reason → count, and → what was found last.
+    windows
+        The steady windows in the fit, n of them.
+    tows
+        The name of each tow that a window can belong to.
+    measured, at_start, at_end : (n, 4) arrays
+        The channels of eq. 35: measured, and solved at the start and at the estimate. NaN
+        where there is no steady state.
+    held_out
+        What fits predict of the tows, or states, they have not seen.
+    at_truth : (n, 4) array or None
+        Solved at the truth.
+    residuals
+        What each channel's readings differ by from the model at the estimate.
+    innovations
+        What they differed by before their window was used.
+    course
+        The windows, each with the estimate after it, as they came.
+    history
+        The steps of the iteration.
+    spectrum
+        How much the data know of which direction.
+    laws
+        What is known of the boards' laws; None where the gear is not at hand.
+    """
+
+    estimate: Estimate
+    prior: BoardPrior
+    prior_weight: float
+    truth: np.ndarray | None
+    rejected: dict[str, int]
+    found: dict[str, str]
+    windows: tuple[SteadyWindow, ...]
+    tows: tuple[str, ...]
+    measured: np.ndarray
+    at_start: np.ndarray
+    at_end: np.ndarray
+    held_out: HeldOut
+    at_truth: np.ndarray | None
+    residuals: tuple[ChannelResiduals, ...]
+    innovations: tuple[ChannelResiduals, ...]
+    course: tuple[WindowUsed, ...]
+    history: tuple[Progress, ...]
+    spectrum: Spectrum
+    laws: KnownLaws | None
+
+    @property
+    def inputs(self) -> np.ndarray:
+        """Port and starboard warp length (m) and speed (m/s) of each window, (n, 3)."""
+        return np.array([[window.means[name] for name in INPUTS] for window in self.windows])
+
+    @property
+    def tow_of(self) -> np.ndarray:
+        """Number of the tow (n,) of each window."""
+        return np.array([window.tow for window in self.windows])
+
+    @property
+    def objectives(self) -> dict[str, float]:
+        """Objective of eq. 35 at ``start``, ``end``, and the ``truth`` where that is known."""
+        found = {
+            'start': objective(self.at_start, self.measured),
+            'end': objective(self.at_end, self.measured),
+        }
+        if self.at_truth is not None:
+            found['truth'] = objective(self.at_truth, self.measured)
+        return found
+
+    @property
+    def errors(self) -> dict[str, np.ndarray]:
+        """Mean normalised absolute errors (4,) at ``start``, ``end`` and ``held_out``."""
+        return {
+            'start': mnae(self.at_start, self.measured),
+            'end': mnae(self.at_end, self.measured),
+            'held_out': mnae(self.held_out.predicted, self.measured),
+        }
+
+    @property
+    def by_tow(self) -> tuple[TowOutcome, ...]:
+        """Outcomes of the tows."""
+        found = []
+        for tow in map(int, np.unique(self.tow_of)):
+            of_tow = self.tow_of == tow
+            windows = [window for window in self.windows if window.tow == tow]
+            found.append(
+                TowOutcome(
+                    tow=tow,
+                    name=self.tows[tow],
+                    windows=len(windows),
+                    states=len({window.state for window in windows}),
+                    held_out=mnae(self.held_out.predicted[of_tow], self.measured[of_tow]),
+                )
+            )
+        return tuple(found)
+
+
+def report(
+    identification: Identification,
+    truth: np.ndarray | None = None,
+    folds: int = 5,
+    tows: Sequence[str] = (),
+    gear: GearRecord | None = None,
+    begun: Callable[[int, int], None] | None = None,
+) -> Report:
+    """Compute the report of a finished identification.
+
+    Parameters
+    ----------
+    identification
+        After its `finish`.
+    truth
+        True coefficients (12,), where known.
+    folds
+        Of the hold-out within a single tow.
+    tows
+        Names of the tows; numbered where none are given.
+    gear
+        Whose boards these are, to say what is known of their laws at the angles they work at.
+    begun
+        Told before each fit of the hold-out which it is, from 1, and of how many.
+
+    Raises
+    ------
+    TrawlError
+        When there is no estimate, with the reason.
+    """
+    estimator, estimate = identification.estimator, identification.estimate
+    if estimate is None:
+        raise TrawlError(identification.why_not() or 'nothing is estimated')
+    windows, weight = estimator.windows, estimator.options.prior_weight
+    number = 1 + max(window.tow for window in windows)
+    at_end = solve(estimator, estimate.values, estimator.fit.net)
+    return Report(
+        estimate=estimate,
+        prior=estimator.prior,
+        prior_weight=weight,
+        truth=None if truth is None else np.asarray(truth, dtype=float),
+        rejected=identification.rejected,
+        found=identification.found,
+        windows=windows,
+        tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
+        measured=stack([paper_values(window.means) for window in windows]),
+        at_start=_values(solve(estimator, estimator.prior.start)),
+        at_end=_values(at_end),
+        held_out=hold_out(estimator, folds, begun=begun),
+        at_truth=None if truth is None else _values(solve(estimator, np.asarray(truth))),
+        residuals=residuals(at_end),
+        innovations=innovations(identification.course),
+        course=tuple(identification.course),
+        history=tuple(estimator.history),
+        spectrum=spectrum(estimate.covariance, estimator.prior, weight),
+        laws=None if gear is None else _laws(at_end, estimate, gear),
+    )
+
+
+def _laws(
+    parts: Sequence[Linearised | None], estimate: Estimate, gear: GearRecord
+) -> KnownLaws | None:
+    seen = [part.state.observables for part in parts if part is not None]
+    if not seen:
+        return None
+    attack = [0.5 * (one.port_attack + one.starboard_attack) for one in seen]
+    angles = working_angles(seen, gear.board.slip_sign)
+    span = law_spans(estimate.values, estimate.std)
+    return KnownLaws(
+        attack=(min(attack), max(attack)),
+        angles=angles,
+        quantities=law_quantities(estimate.values, estimate.covariance, angles, span),
+    )
+
+
+def _values(parts: Sequence[Linearised | None]) -> np.ndarray:
+    """Values of the channels of eq. 35 (n, 4), NaN where there is no steady state."""
+    return stack(
+        [
+            np.full(len(PAPER_CHANNELS), np.nan)
+            if part is None
+            else paper_values(dict(zip(part.channels, part.solved, strict=True)))
+            for part in parts
+        ]
+    )

@@ -1,0 +1,162 @@
+"""Residuals of each channel, window by window, and their statistics."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.linearised import Linearised, linearise
+from trawl_ros.estimation.fit.posterior import GATE
+from trawl_ros.estimation.fit.whiteness import Whiteness, ljung_box
+from trawl_ros.estimation.pipeline import WindowUsed
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+
+
+@dataclass(frozen=True)
+class ChannelResiduals:
+    """Residuals of one channel, measured minus modelled, in order of time.
+
+    Attributes
+    ----------
+    channel, unit
+        Which, and the SI unit of ``values`` and ``stds``.
+    windows, tows : (n,) int arrays
+        Which of the report's windows these are, and the tows they belong to.
+    values, stds : (n,) arrays
+        Residuals, and the standard deviations stated for them: of the reading, its
+        calibration, and what errors of warp lengths and speed do to the prediction.
+    """
+
+    channel: str
+    unit: str
+    windows: np.ndarray
+    tows: np.ndarray
+    values: np.ndarray
+    stds: np.ndarray
+
+    @property
+    def scaled(self) -> np.ndarray:
+        """Normalised residuals (n,), over their stated std."""
+        return self.values / self.stds
+
+    @property
+    def mean(self) -> float:
+        """Mean residual."""
+        return float(self.values.mean())
+
+    @property
+    def std(self) -> float:
+        """Standard deviation of the residuals about their mean; NaN for a single one."""
+        return float(self.values.std(ddof=1)) if len(self.values) > 1 else float('nan')
+
+    @property
+    def stated_std(self) -> float:
+        """Root mean square of the stated std."""
+        return float(np.sqrt(np.mean(self.stds**2)))
+
+    @property
+    def test_ratio(self) -> float:
+        """Mean of residual² over (3 std)²: 0.11 where errors are as stated, above 1 beyond."""
+        return float(np.mean((self.scaled / GATE) ** 2))
+
+    @property
+    def whiteness(self) -> Whiteness | None:
+        """Ljung–Box test of the residuals; None with too few of them."""
+        return ljung_box([self.scaled[self.tows == tow] for tow in np.unique(self.tows)])
+
+
+def solve(
+    estimator: Estimator, coefficients: np.ndarray, net: np.ndarray | None = None
+) -> list[Linearised | None]:
+    """Solve the model at the inputs of each window, from the nearest one already solved.
+
+    Parameters
+    ----------
+    estimator
+        With the windows of the fit.
+    coefficients
+        Shape (12,).
+    net
+        Factors (2,) on drag and weight of the net; as in the gear file if None.
+
+    Returns
+    -------
+    list
+        In the order of the windows; None where the model has no steady state.
+    """
+    found: list[Linearised | None] = []
+    inputs = np.array([[window.means[name] for name in INPUTS] for window in estimator.windows])
+    without: set[int] = set()
+    for row, window in enumerate(estimator.windows):
+        if window.state in without:
+            # It takes long to find that there is none, and is the same throughout a state.
+            found.append(None)
+            continue
+        away = np.abs(inputs[:row] / inputs[row] - 1.0).sum(axis=1)
+        solved = [found[i] for i in np.argsort(away, kind='stable')]
+        near = next((part.state for part in solved if part is not None), None)
+        starts = (None,) if near is None else (near, None)
+        try:
+            part = linearise(
+                estimator.predictor, estimator.observables, window, coefficients, starts, net=net
+            )
+        except NoSteadyState:
+            without.add(window.state)
+            found.append(None)
+        else:
+            found.append(part)
+    return found
+
+
+def residuals(parts: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...]:
+    """Collect the residuals of each channel that any of the windows has.
+
+    Parameters
+    ----------
+    parts
+        From `solve`, at the estimate.
+    """
+    rows: dict[str, list[tuple[int, int, float, float]]] = {}
+    for i, part in enumerate(parts):
+        if part is None:
+            continue
+        window = part.window
+        input_std = np.array([window.std(name) for name in INPUTS])
+        std = np.hypot(
+            [window.std(name) for name in part.channels],
+            np.linalg.norm(part.by_inputs * input_std, axis=1),
+        )
+        left = part.measured - part.solved
+        for name, value, size in zip(part.channels, left, std, strict=True):
+            rows.setdefault(name, []).append((i, window.tow, float(value), float(size)))
+    return _gathered(rows)
+
+
+def innovations(course: Sequence[WindowUsed]) -> tuple[ChannelResiduals, ...]:
+    """Collect the innovations: readings minus their predictions before each window was used.
+
+    Parameters
+    ----------
+    course
+        The windows, each with the estimate after it.
+    """
+    rows: dict[str, list[tuple[int, int, float, float]]] = {}
+    for i, event in enumerate(course):
+        found = event.estimate.innovation
+        if found is None:
+            continue
+        for name, value, std in zip(found.channels, found.values, found.stds, strict=True):
+            rows.setdefault(name, []).append((i, event.window.tow, float(value), float(std)))
+    return _gathered(rows)
+
+
+def _gathered(rows: dict[str, list[tuple[int, int, float, float]]]) -> tuple[ChannelResiduals, ...]:
+    gathered = []
+    for name in MEASURED:
+        if name in rows:
+            windows, tows, values, stds = (np.array(column) for column in zip(*rows[name]))
+            unit = CHANNELS[name].unit
+            gathered.append(ChannelResiduals(name, unit, windows, tows, values, stds))
+    return tuple(gathered)

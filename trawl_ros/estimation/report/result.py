@@ -1,0 +1,151 @@
+"""Content of ``identification.json``."""
+
+import math
+from typing import Any
+
+from trawl_ros.estimation.fit.laws import QUANTITIES
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.residuals import ChannelResiduals
+from trawl_ros.model.board import COEFFICIENTS
+
+
+def result(report: Report) -> dict[str, Any]:
+    """Build the content of ``identification.json``; numbers that do not exist are None."""
+    estimate, errors = report.estimate, report.errors
+    return {
+        'windows': estimate.windows,
+        'rejected': dict(report.rejected),
+        'objective': {key: _number(value) for key, value in report.objectives.items()},
+        'coefficients': {
+            name: {
+                'start': float(report.prior.start[i]),
+                'value': float(estimate.values[i]),
+                'std': float(estimate.std[i]),
+                'low': float(estimate.low[i]),
+                'high': float(estimate.high[i]),
+                'shrink': float(estimate.shrink[i]),
+                'determined': estimate.determined[i],
+            }
+            for i, name in enumerate(COEFFICIENTS)
+        },
+        'channels': {
+            channel.name: {
+                'unit': channel.unit,
+                'mnae_start': _number(errors['start'][i]),
+                'mnae_end': _number(errors['end'][i]),
+                'mnae_held_out': _number(errors['held_out'][i]),
+            }
+            for i, channel in enumerate(PAPER_CHANNELS)
+        },
+        'condition_number': _number(estimate.condition_number),
+        'undetermined': [str(combination) for combination in estimate.undetermined],
+        'converged': estimate.converged,
+        'reason': estimate.reason,
+        'active_bounds': list(estimate.active_bounds),
+        'covariance': estimate.covariance.tolist(),
+        'singular_values': report.spectrum.singular.tolist(),
+        'weak_combinations': [
+            {
+                'names': list(combination.names),
+                'weights': dict(zip(COEFFICIENTS, combination.weights.tolist(), strict=True)),
+                'std': _number(combination.std),
+            }
+            for combination in estimate.undetermined
+        ],
+        'misfit': estimate.misfit,
+        'noise_scales': dict(estimate.noise_scales),
+        'net': {
+            factor.what: {'value': factor.value, 'std': factor.std, 'known': factor.known}
+            for factor in report.estimate.net
+        },
+        'prior_used': report.prior_weight > 0.0,
+        'held_out_by': report.held_out.by,
+        'accepted': _accepted(report),
+        'tows': _tows(report),
+        'residuals': {row.channel: _statistics(row) for row in report.residuals},
+        'innovations': {row.channel: _statistics(row) for row in report.innovations},
+        'laws': _laws(report),
+        'rejected_last': dict(report.found),
+    }
+
+
+def _laws(report: Report) -> dict[str, Any] | None:
+    """Value and slope of each law at the mean working angle, by name."""
+    if report.laws is None:
+        return None
+    known = report.laws.quantities
+    return {
+        'attack_deg': math.degrees(report.laws.angles.attack),
+        'slip_deg': math.degrees(report.laws.angles.slip),
+        'quantities': {
+            name: {
+                'value': float(known.values[i]),
+                'std': float(known.sd[i]),
+                'span': float(known.span[i]),
+                'well_known': bool(known.well_known[i]),
+            }
+            for i, name in enumerate(QUANTITIES)
+        },
+    }
+
+
+def _accepted(report: Report) -> dict[str, Any]:
+    """Numbers of windows and, per channel, readings in the fit."""
+    readings: dict[str, int] = {}
+    for window in report.windows:
+        for name, count in window.counts.items():
+            readings[name] = readings.get(name, 0) + count
+    return {'windows': len(report.windows), 'readings': readings}
+
+
+def _tows(report: Report) -> list[dict[str, Any]]:
+    tows = []
+    for tow in report.by_tow:
+        tows.append(
+            {
+                'name': tow.name,
+                'windows': tow.windows,
+                'states': tow.states,
+                'mnae_held_out': {
+                    channel.name: _number(error)
+                    for channel, error in zip(PAPER_CHANNELS, tow.held_out, strict=True)
+                },
+                'biases': {
+                    bias.channel: {
+                        'unit': bias.unit,
+                        'value': bias.value,
+                        'std': bias.std,
+                        'known': bias.known,
+                    }
+                    for bias in report.estimate.tow_biases
+                    if bias.tow == tow.tow
+                },
+            }
+        )
+    return tows
+
+
+def _statistics(row: ChannelResiduals) -> dict[str, Any]:
+    white = row.whiteness
+    return {
+        'unit': row.unit,
+        'windows': len(row.values),
+        'mean': row.mean,
+        'std': _number(row.std),
+        'stated_std': row.stated_std,
+        'test_ratio': row.test_ratio,
+        'whiteness': None
+        if white is None
+        else {
+            'statistic': white.statistic,
+            'lags': white.lags,
+            'p_value': white.p_value,
+            'white': white.white,
+        },
+    }
+
+
+def _number(value: float) -> float | None:
+    # JSON has neither NaN nor infinity.
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,77 @@
+"""Tables of the report for the terminal."""
+
+from rich.table import Table
+
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.page import percent
+from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.verdict import verdict
+from trawl_ros.model.board import COEFFICIENTS
+
+
+def coefficient_table(report: Report) -> Table:
+    """Start, value, 95 % interval, truth where known, and whether the data determine it."""
+    tows = len(set(report.tow_of.tolist()))
+    of = '' if tows == 1 else f' of {tows} tows'
+    table = Table(title=f'Board coefficients from {report.estimate.windows} steady windows{of}')
+    table.add_column('', style='bold')
+    headings = ['start', 'value', 'low', 'high']
+    if report.truth is not None:
+        headings += ['truth', 'in interval']
+    for heading in (*headings, 'determined'):
+        table.add_column(heading, justify='right')
+    estimate = report.estimate
+    for i, name in enumerate(COEFFICIENTS):
+        numbers = [report.prior.start[i], estimate.values[i], estimate.low[i], estimate.high[i]]
+        cells = [f'{number:.3f}' for number in numbers]
+        if report.truth is not None:
+            truth = report.truth[i]
+            inside = estimate.low[i] <= truth <= estimate.high[i]
+            cells += [f'{truth:.3f}', 'yes' if inside else '[red]no[/red]']
+        cells.append('yes' if estimate.determined[i] else 'no')
+        table.add_row(name, *cells)
+    return table
+
+
+def channel_table(report: Report) -> Table:
+    """Mean absolute error over mean measured value per channel: before, after, left out."""
+    table = Table(title='Error per channel')
+    table.add_column('', style='bold')
+    left_out = 'tows held out' if report.held_out.by == 'tow' else 'states held out'
+    for heading in ('mean measured', 'before', 'after', left_out):
+        table.add_column(heading, justify='right')
+    errors = report.errors
+    for i, channel in enumerate(PAPER_CHANNELS):
+        mean, unit = report.measured[:, i].mean(), channel.unit
+        if unit == 'N':
+            mean, unit = mean / 1e3, 'kN'
+        table.add_row(
+            channel.words,
+            f'{mean:.1f} {unit}',
+            *(percent(errors[key][i]) for key in ('start', 'end', 'held_out')),
+        )
+    return table
+
+
+def opening_line(report: Report) -> str:
+    """Verdict in one sentence."""
+    return verdict(report).fit
+
+
+def closing_lines(report: Report) -> list[str]:
+    """Closing remarks, one sentence per line."""
+    estimate, objectives = report.estimate, report.objectives
+    truth = f', {objectives["truth"]:.4f} at the truth' if 'truth' in objectives else ''
+    judged = verdict(report)
+    lines = [
+        f'Objective of eq. 35: {objectives["start"]:.4f} at the start, '
+        f'{objectives["end"]:.4f} at the end{truth}.',
+        *judged.knowledge,
+        *judged.concerns,
+    ]
+    if estimate.converged:
+        lines.append(f'Converged: {estimate.reason}.')
+    if report.rejected:
+        counts = ', '.join(f'{reason} {count}' for reason, count in report.rejected.items())
+        lines.append(f'Rejected: {counts}.')
+    return lines

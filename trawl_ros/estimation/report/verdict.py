@@ -1,0 +1,156 @@
+"""Verdict on an identification, in sentences; the first one is the verdict itself."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.estimation.fit.laws import QUANTITIES
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.residuals import ChannelResiduals
+from trawl_ros.model.board import COEFFICIENTS
+
+BEYOND = 1.0
+"""Test ratio above which residuals are beyond what the stated errors allow."""
+
+GRAVE = ('wrong unit', 'implausible', 'speed over ground')
+"""Reasons of a rejection that one should not have to look for."""
+
+WIDENED = 1.2
+"""Misfit from where it is worth a word."""
+
+NOISY = 2.0
+"""Scatter over what is stated from where it is worth a word."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Verdict: sentences on one identification.
+
+    Attributes
+    ----------
+    fit
+        How well what was left out is predicted.
+    holds
+        Whether that is at least as good as the paper's own fit in every channel, and the
+        iteration at rest.
+    knowledge
+        How many coefficients the data determine, and which combinations they do not.
+    concerns
+        What speaks against trusting it, most weighty first; empty where nothing does.
+    """
+
+    fit: str
+    holds: bool
+    knowledge: tuple[str, ...]
+    concerns: tuple[str, ...]
+
+
+def verdict(report: Report) -> Verdict:
+    """Return the verdict on a report."""
+    held = report.errors['held_out']
+    paper = np.array([channel.paper for channel in PAPER_CHANNELS])
+    return Verdict(
+        fit=_fit(report, held, paper),
+        holds=report.estimate.converged and bool(np.all(held <= paper)),
+        knowledge=_knowledge(report),
+        concerns=_concerns(report),
+    )
+
+
+def _fit(report: Report, held: np.ndarray, paper: np.ndarray) -> str:
+    out = report.held_out
+    if not np.all(np.isfinite(held)):
+        return (
+            f'Nothing could be left out and predicted from the rest ({_count(out.groups, out.by)} '
+            'in the data), so how good the fit is remains unknown.'
+        )
+    listed = ', '.join(
+        f'{channel.words} {100.0 * error:.1f} %'
+        for channel, error in zip(PAPER_CHANNELS, held, strict=True)
+    )
+    worse = [c.words for c, error in zip(PAPER_CHANNELS, held, strict=True) if error > c.paper]
+    if worse:
+        beside = f'worse than the paper fits its own points in {" and ".join(worse)}'
+    elif np.all(held <= 0.5 * paper):
+        beside = 'less than half of what the paper has on the points it fitted'
+    else:
+        beside = 'no more than the paper has on the points it fitted'
+    left = 'Tows' if out.by == 'tow' else 'Steady states of this one tow'
+    return f'{left} left out of the fit are predicted with an error of {listed}: {beside}.'
+
+
+def _knowledge(report: Report) -> tuple[str, ...]:
+    estimate = report.estimate
+    known = [name for name, flag in zip(COEFFICIENTS, estimate.determined, strict=True) if flag]
+    listed = f': {", ".join(known)}' if known else ''
+    sentences = [
+        f'The data determine {len(known)} of the {len(COEFFICIENTS)} coefficients{listed}.'
+    ]
+    if estimate.undetermined:
+        names = '; '.join(str(combination) for combination in estimate.undetermined)
+        sentences.append(f'Known no better than before any tow: {names}.')
+    for factor in estimate.net:
+        sentences.append(
+            f'{factor.what.capitalize()} of the net: {factor.value:.2f} times that of the gear '
+            f'file, standard deviation {factor.std:.2f}, {factor.known:.2f} before any tow.'
+        )
+    if report.laws is not None:
+        well = report.laws.quantities.well_known
+        lacking = [name for name, flag in zip(QUANTITIES, well, strict=True) if not flag]
+        listed = f'; not {", ".join(lacking)}' if lacking else ''
+        sentences.append(
+            f'At the angles the boards work at, {int(well.sum())} of the {len(well)} values and '
+            f'slopes of their laws are known to a fifth of what the law spans over 15°{listed}.'
+        )
+    return tuple(sentences)
+
+
+def _concerns(report: Report) -> tuple[str, ...]:
+    estimate = report.estimate
+    found = [
+        f'Refused, {reason}: {report.found[reason]}.' for reason in GRAVE if reason in report.found
+    ]
+    if not estimate.converged:
+        found.append(f'The iteration has not come to rest: {estimate.reason}.')
+    if estimate.active_bounds:
+        bounds = '; '.join(estimate.active_bounds)
+        found.append(f'On a bound, so that its interval is worth little: {bounds}.')
+    if estimate.misfit > WIDENED:
+        found.append(
+            'The readings differ from the model by more than all known errors explain; intervals '
+            f'are widened {estimate.misfit:.1f} times for it.'
+        )
+    if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > BEYOND]:
+        found.append(f'Residuals are beyond what the stated errors allow in {", ".join(beyond)}.')
+    if coloured := [row for row in report.residuals if row.whiteness and not row.whiteness.white]:
+        names = ', '.join(_words(row) for row in coloured)
+        found.append(
+            f'Residuals follow each other, rather than scatter, in {names}: something that '
+            'changes slowly is not in the model.'
+        )
+    if noisy := [
+        f'{group.replace("_", " ")} ({scale:.1f} times)'
+        for group, scale in estimate.noise_scales.items()
+        if scale > NOISY
+    ]:
+        found.append(f'Readings scatter far more than stated in {", ".join(noisy)}.')
+    if report.held_out.by == 'state':
+        found.append(
+            'There is one tow only: errors of calibration are in what was fitted and in what was '
+            'left out alike.'
+        )
+    return tuple(found)
+
+
+def _ratio(row: ChannelResiduals) -> str:
+    return f'{_words(row)} (test ratio {row.test_ratio:.1f})'
+
+
+def _words(row: ChannelResiduals) -> str:
+    return row.channel.replace('_', ' ')
+
+
+def _count(number: int, word: str) -> str:
+    kind = 'steady state' if word == 'state' else word
+    return f'{number} {kind}' if number == 1 else f'{number} {kind}s'

@@ -1,0 +1,103 @@
+"""Tows read in parallel, and brought together in one estimate."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from trawl_ros.estimation.pipeline import Identification
+from trawl_ros.estimation.windows.records import Rejections, SteadyWindow
+
+
+@dataclass(frozen=True)
+class FoundWindows:
+    """Windows found in one recording.
+
+    Attributes
+    ----------
+    name
+        Of the recording, for people.
+    windows
+        Its steady windows, whose indices, states and tows count from 0.
+    arrived, readings
+        Channel → readings that came, and those of them that were accepted.
+    rejections
+        What was refused.
+    why_not
+        Where there is no window, one sentence on why.
+    problems
+        A sentence for each thing that was damaged.
+    """
+
+    name: str
+    windows: tuple[SteadyWindow, ...]
+    arrived: Mapping[str, int]
+    readings: Mapping[str, int]
+    rejections: Rejections
+    why_not: str | None
+    problems: tuple[str, ...]
+
+
+def numbered(found: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[str]]:
+    """Number windows, states and tows consecutively over all recordings.
+
+    Returns
+    -------
+    list
+        All windows, recording after recording.
+    list
+        The name of each tow: that of its recording, with a number where this holds several.
+    """
+    windows: list[SteadyWindow] = []
+    names: list[str] = []
+    states = 0
+    for part in found:
+        first = len(names)
+        tows = 1 + max((window.tow for window in part.windows), default=-1)
+        base = len(windows)
+        windows += [
+            replace(
+                window,
+                index=base + window.index,
+                state=states + window.state,
+                tow=first + window.tow,
+            )
+            for window in part.windows
+        ]
+        states += 1 + max((window.state for window in part.windows), default=-1)
+        names += [part.name] if tows == 1 else [f'{part.name}, tow {i + 1}' for i in range(tows)]
+    return windows, names
+
+
+def estimate_tows(
+    identification: Identification,
+    found: Sequence[FoundWindows],
+    taken: Callable[[int, int], None] | None = None,
+) -> list[str]:
+    """Use the windows of several recordings, as if one finder had found them one after another.
+
+    Parameters
+    ----------
+    identification
+        To which nothing was fed yet; brought to rest afterwards.
+    found
+        Recordings in the order in which they count.
+    taken
+        Told after each window how many of how many are taken.
+
+    Returns
+    -------
+    list
+        The name of each tow.
+    """
+    windows, names = numbered(found)
+    finder = identification.finder
+    for part in found:
+        finder.arrived.update(part.arrived)
+        finder.readings.update(part.readings)
+        finder.rejections.counts.update(part.rejections.counts)
+        finder.rejections.sentences.update(part.rejections.sentences)
+    for number, window in enumerate(windows, start=1):
+        identification.take([window])
+        if taken is not None:
+            taken(number, len(windows))
+    identification.estimator.finish()
+    return names

@@ -1,0 +1,1 @@
+"""Steady windows: stamps, buffers and means of channels, and what is refused."""

@@ -1,0 +1,287 @@
+"""Window finder: steady windows in a stream of samples.
+
+Windows lie on a grid of header stamps, and a window is decided only when all channels that
+speak have passed its end less their delay. So the result does not depend on when samples
+arrive or how channels interleave, as long as they do by less than half the stated patience.
+Memory is bounded by one window of readings per channel.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+
+from trawl_ros.estimation.windows.buffers import ChannelBuffer
+from trawl_ros.estimation.windows.channel_means import ChannelMean, channel_mean
+from trawl_ros.estimation.windows.operation import Block, Operation, Unheld
+from trawl_ros.estimation.windows.over_ground import ground_track
+from trawl_ros.estimation.windows.records import (
+    RejectedWindow,
+    Rejections,
+    SteadyWindow,
+    WindowOptions,
+)
+from trawl_ros.estimation.windows.statistics import circular_median
+from trawl_ros.estimation.windows.timestamp_check import Order
+from trawl_ros.estimation.windows.watermark import NANO, Timeline
+from trawl_ros.records.channels import CHANNELS, INPUTS, WITNESSES, readings
+from trawl_ros.records.samples import Sample
+
+WINCH = INPUTS[:2]
+
+
+class SteadyWindowFinder:
+    """Streaming finder of steady windows.
+
+    Parameters
+    ----------
+    pressure_to_depth
+        Depth (m) for an absolute pressure (Pa).
+    options
+        When a window is steady.
+
+    Attributes
+    ----------
+    rejections : Rejections
+        Counts by reason, of what `REASONS` says, and what was found.
+    arrived, readings : Counter
+        Channel → readings that came, and those of them that were accepted.
+    """
+
+    def __init__(
+        self,
+        pressure_to_depth: Callable[[float], float],
+        options: WindowOptions | None = None,
+    ) -> None:
+        self._pressure_to_depth = pressure_to_depth
+        self._options = options or WindowOptions()
+        self._block_ns = round(self._options.block_s * NANO)
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset to no data: time has jumped back."""
+        self.rejections = Rejections()
+        self.arrived: Counter[str] = Counter()
+        self.readings: Counter[str] = Counter()
+        self._windows = 0
+        self._state = -1
+        self._tow = -1
+        self._begin_tow()
+        self._clear()
+
+    def _clear(self) -> None:
+        self._timeline = Timeline()
+        self._buffers = {
+            name: ChannelBuffer(
+                channel,
+                Order(channel, self._options, self._timeline, self.rejections),
+                self.rejections,
+            )
+            for name, channel in CHANNELS.items()
+        }
+        self._operation = Operation(self._options)
+        self._next_block: int | None = None
+        self._last_winch: int | None = None
+
+    def _begin_tow(self) -> None:
+        self._tow += 1
+        self._in_state = 0
+        self._held = False
+        self._reference: np.ndarray | None = None
+        self._last_end = 0
+        self._stretch: tuple[str, bool] | None = None
+        self._began: int | None = None
+
+    def newest(self, channel: str) -> int | None:
+        """Newest stamp (ns) accepted on a channel."""
+        return self._buffers[channel].newest
+
+    @property
+    def rejected(self) -> Counter[str]:
+        """Counts of rejections by reason."""
+        return self.rejections.counts
+
+    def feed(self, sample: Sample) -> list[SteadyWindow | RejectedWindow]:
+        """Take one sample; return what could be decided with it, in order of time."""
+        for reading in readings(sample, self._pressure_to_depth):
+            # Most ships have no yaw rate on the log: NaN there is no fault to be counted.
+            if reading.channel == 'yaw_rate' and not math.isfinite(reading.value):
+                continue
+            self.arrived[reading.channel] += 1
+            self.readings[reading.channel] += self._buffers[reading.channel].add(reading)
+        return self._advance(self._watermark())
+
+    def finish(self) -> list[SteadyWindow | RejectedWindow]:
+        """Decide the remaining windows: no more samples will come."""
+        for buffer in self._buffers.values():
+            buffer.order.give_up()
+        lead = self._timeline.lead
+        return [] if lead is None else self._advance(lead + 1)
+
+    def next_tow(self) -> list[SteadyWindow | RejectedWindow]:
+        """Decide the remaining windows of this tow and begin the next; states and counts go on."""
+        found = self.finish()
+        if any(buffer.newest is not None for buffer in self._buffers.values()):
+            self._begin_tow()
+        self._clear()
+        return found
+
+    def _watermark(self) -> int | None:
+        """Watermark: stamp (ns) that all channels have passed that are waited for."""
+        lead = self._timeline.lead
+        if lead is None:
+            return None
+        patience = round(self._options.patience_s * NANO)
+        reorder = round(self._options.reorder_s * NANO)
+        begins = lead < self._timeline.start + patience
+        passed = lead
+        for buffer in self._buffers.values():
+            if buffer.newest is None:
+                if begins:
+                    return None
+            elif begins or buffer.newest + buffer.delay >= lead - patience:
+                passed = min(passed, buffer.newest + buffer.delay - reorder)
+        return passed
+
+    def _advance(self, watermark: int | None) -> list[SteadyWindow | RejectedWindow]:
+        if watermark is None or self._timeline.first is None:
+            return []
+        if self._next_block is None:
+            self._next_block = self._timeline.first // self._block_ns
+        found: list[SteadyWindow | RejectedWindow] = []
+        end_block = watermark // self._block_ns
+        history = self._operation.most_blocks
+        if end_block - self._next_block > 2 * history:
+            # A hole longer than any look-back needs no block by block walk.
+            start_ns, end_ns = self._next_block * self._block_ns, end_block * self._block_ns
+            if all(len(self._buffers[name].window(start_ns, end_ns)[0]) == 0 for name in WINCH):
+                self._next_block = end_block - history
+        while self._next_block < end_block:
+            found.extend(self._block(self._next_block))
+            self._next_block += 1
+        return found
+
+    def _block(self, index: int) -> list[SteadyWindow | RejectedWindow]:
+        end_ns = (index + 1) * self._block_ns
+        self._look_for_tow(end_ns - self._block_ns, end_ns)
+        self._operation.add(self._summary(index))
+        start_ns = end_ns - self._operation.window_blocks * self._block_ns
+        found = self._decide(start_ns, end_ns) if self._operation.full else []
+        for buffer in self._buffers.values():
+            buffer.decide(end_ns, start_ns + self._block_ns)
+        return found
+
+    def _look_for_tow(self, start_ns: int, end_ns: int) -> None:
+        stamps = np.concatenate([self._buffers[name].window(start_ns, end_ns)[0] for name in WINCH])
+        if len(stamps) == 0:
+            return
+        gap = round(self._options.tow_gap_s * NANO)
+        if self._last_winch is not None and stamps.min() - self._last_winch > gap:
+            self._begin_tow()
+        if self._began is None:
+            self._began = int(stamps.min())
+        self._last_winch = int(stamps.max())
+
+    def _hours(self, stamp: float) -> float:
+        """Time since the tow began, h."""
+        return 0.0 if self._began is None else (stamp - self._began) / (3600.0 * NANO)
+
+    def _summary(self, index: int) -> Block:
+        def values(name: str) -> np.ndarray:
+            start_ns = index * self._block_ns
+            return self._buffers[name].window(start_ns, start_ns + self._block_ns)[1]
+
+        def median(name: str) -> float | None:
+            return float(np.median(found)) if len(found := values(name)) else None
+
+        heading = values('heading')
+        return Block(
+            index,
+            (median(INPUTS[0]), median(INPUTS[1]), median(INPUTS[2])),
+            circular_median(heading) if len(heading) else None,
+            median('yaw_rate'),
+        )
+
+    def _decide(self, start_ns: int, end_ns: int) -> list[SteadyWindow | RejectedWindow]:
+        unheld = self._operation.unheld()
+        if unheld is not None:
+            self._held = False
+            return self._reject(unheld, False, start_ns, end_ns)
+        inputs = self._operation.inputs()
+        known = self._held and self._in_state > 0 and self._same_state(inputs)
+        if known and (
+            self._in_state >= self._options.max_windows_per_state or start_ns < self._last_end
+        ):
+            return []
+        window = self._window(start_ns, end_ns, self._state if known else self._state + 1)
+        if isinstance(window, Unheld):
+            return self._reject(window, True, start_ns, end_ns)
+        if not known:
+            self._state += 1
+            self._in_state = 0
+            self._reference = inputs
+        self._held = True
+        self._stretch = None
+        self._in_state += 1
+        self._windows += 1
+        self._last_end = end_ns
+        return [window]
+
+    def _same_state(self, inputs: np.ndarray) -> bool:
+        tolerance = np.array(
+            [*(self._options.length_tolerance,) * 2, self._options.speed_tolerance]
+        )
+        return bool(np.all(np.abs(inputs - self._reference) <= tolerance))
+
+    def _reject(
+        self, why: Unheld, held: bool, start_ns: int, end_ns: int
+    ) -> list[SteadyWindow | RejectedWindow]:
+        # What goes on for the same reason counts once, however many windows it would fill.
+        stretch = (why.reason, held)
+        if stretch == self._stretch:
+            return []
+        self._stretch = stretch
+        self.rejections.add(why.reason, why.detail)
+        return [RejectedWindow(why.reason, start_ns, end_ns, why.detail)]
+
+    def _window(self, start_ns: int, end_ns: int, state: int) -> SteadyWindow | Unheld:
+        used: dict[str, ChannelMean] = {}
+        lost: list[Unheld] = []
+        for name, channel in CHANNELS.items():
+            buffer = self._buffers[name]
+            silent = not buffer.heard(end_ns) and len(buffer.outside(start_ns, end_ns)) == 0
+            if name in WITNESSES or (silent and not channel.required):
+                continue
+            found = channel_mean(buffer, start_ns, end_ns, self._options)
+            if isinstance(found, ChannelMean):
+                used[name] = found
+            elif channel.required:
+                return found
+            else:
+                lost.append(found)
+        for why in lost:
+            self.rejections.add(why.reason, why.detail)
+        for name, mean in used.items():
+            if mean.excluded:
+                sentence = f'{name} ({CHANNELS[name].topic}) has {mean.excluded} outliers'
+                self.rejections.add('outlier', sentence, mean.excluded)
+        return SteadyWindow(
+            self._windows,
+            state,
+            start_ns,
+            end_ns,
+            means={name: found.mean for name, found in used.items()},
+            noise={name: found.noise for name, found in used.items()},
+            to_come={name: found.to_come for name, found in used.items()},
+            bias={name: CHANNELS[name].bias_std(found.mean) for name, found in used.items()},
+            counts={name: found.count for name, found in used.items()},
+            tow=self._tow,
+            hours=self._hours(0.5 * (start_ns + end_ns)),
+            track=ground_track(
+                *(
+                    self._buffers[name].window(start_ns, end_ns)[:2]
+                    for name in ('speed', 'ground_east', 'ground_north', 'heading')
+                )
+            ),
+        )

@@ -1,0 +1,97 @@
+"""Wrong units of instruments, and the factors by which they change a value."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.records.channels import CHANNELS, INPUTS, Channel
+
+WRONG_UNITS: Mapping[str, Mapping[str, float]] = {
+    'm': {'feet': 3.28084, 'fathoms': 0.546807},
+    'm/s': {'knots': 1.943844, 'kilometres per hour': 3.6},
+    'N': {
+        'kilonewtons': 1e-3,
+        'tonnes-force': 1.019716e-4,
+        'kilograms-force': 0.1019716,
+        'pounds-force': 0.2248089,
+    },
+    'rad': {'degrees': 57.29578},
+}
+"""SI unit → unit mistaken for it → reading per SI value."""
+
+NAMES: Mapping[str, str] = {
+    'm': 'metres', 'm/s': 'metres per second', 'N': 'newtons', 'rad': 'radians',
+}  # fmt: skip
+
+DOORS = ('port_door_depth', 'starboard_door_depth')
+TENSIONS = ('port_tension', 'starboard_tension')
+PITCHES, ROLLS = ('port_pitch', 'starboard_pitch'), ('port_roll', 'starboard_roll')
+
+TOGETHER = (
+    INPUTS[:2], ('speed',), TENSIONS, ('door_spread',), DOORS, ('net_depth',),
+    (*DOORS, 'net_depth'), *((name,) for name in (*DOORS, *TENSIONS)),
+    ('vertical_opening',), PITCHES, ROLLS, (*PITCHES, *ROLLS),
+)  # fmt: skip
+"""Channels that are set to a unit together."""
+
+TOWING = (1.2, 3.5)
+"""Speeds (m/s) at which mid-water trawls are towed."""
+
+
+@dataclass(frozen=True)
+class Misreading:
+    """Misreading: channels whose readings are in ``unit``: ``factor`` times the SI value."""
+
+    channels: tuple[str, ...]
+    unit: str
+    factor: float
+
+    def repaired(self, means: Mapping[str, float]) -> dict[str, float]:
+        """Means converted to SI."""
+        return {
+            name: mean / self.factor if name in self.channels else mean
+            for name, mean in means.items()
+        }
+
+    @property
+    def optional(self) -> bool:
+        """True if windows can do without these channels."""
+        return not any(CHANNELS[name].required for name in self.channels)
+
+    def sentence(self, means: Mapping[str, float]) -> str:
+        """Sentence on the misreading and its correction."""
+        name = next(name for name in self.channels if name in means)
+        row = CHANNELS[name]
+        return (
+            f'{" and ".join(self.channels)} ({row.topic}) look like {self.unit}, expected '
+            f'{NAMES[row.unit]}: {means[name]:.4g} agrees with the other channels as '
+            f'{means[name] / self.factor:.4g} {row.unit}'
+        )
+
+
+def misreadings(means: Mapping[str, float]) -> list[Misreading]:
+    """Return all possible wrong units of these channels."""
+    return [
+        Misreading(channels, unit, factor)
+        for channels in TOGETHER
+        if all(name in means for name in channels)
+        for unit, factor in WRONG_UNITS[CHANNELS[channels[0]].unit].items()
+    ]
+
+
+def towable(means: Mapping[str, float]) -> bool:
+    """True in the range of a mid-water trawl's operation; a false speed is not worth a solution."""
+    return TOWING[0] <= means['speed'] <= TOWING[1]
+
+
+def unit_of(outside: np.ndarray, channel: Channel) -> str | None:
+    """Name the unit in which values (n,), all outside a channel's range, would be plausible."""
+    if np.any((outside >= channel.low) & (outside <= channel.high)):
+        return None
+    for unit, factor in WRONG_UNITS.get(channel.unit, {}).items():
+        if factor > 1.0 and np.all(
+            (outside / factor >= channel.low) & (outside / factor <= channel.high)
+        ):
+            return unit
+    return None

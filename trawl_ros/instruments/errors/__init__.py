@@ -1,0 +1,1 @@
+"""Errors, faults and timing that all instruments share."""

@@ -1,0 +1,219 @@
+"""Faults of sensors on command: their kinds, places and switching.
+
+A fault is named by a word and, where it has a size, a number in the SI unit of the quantity:
+``frozen``, ``offset -3.5``, ``scale 1.02``. It sits on a whole instrument (by its topic) or on
+one of its quantities (topic/quantity).
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Protocol
+
+from trawl_ros.core.errors import InstrumentError
+
+NONE = 'none'
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Kind of fault: its description, and the range of its size; no range, no size."""
+
+    sentence: str
+    low: float | None = None
+    high: float = math.inf
+
+    @property
+    def sized(self) -> bool:
+        """True for a kind with a size."""
+        return self.low is not None
+
+
+OF_QUANTITIES: Mapping[str, Kind] = MappingProxyType(
+    {
+        'frozen': Kind('the reading stays what it was'),
+        'lost': Kind('the reading is NaN'),
+        'offset': Kind('this much is added', -math.inf),
+        'scale': Kind('the reading is multiplied by this', -math.inf),
+        'drift': Kind('this much more is added each hour', -math.inf),
+        'noise': Kind('normal noise of this standard deviation is added', 0.0),
+        'outliers': Kind('this share of the readings lies far off', 0.0, 1.0),
+        'saturated': Kind('no reading is larger than this', -math.inf),
+    }
+)
+"""Faults of a quantity; on a whole instrument they sit on all of its quantities."""
+
+OF_INSTRUMENTS: Mapping[str, Kind] = MappingProxyType(
+    {
+        'silent': Kind('nothing is sent'),
+        'dropouts': Kind('this share of the time nothing is sent, in bursts of 10 s', 0.0, 0.99),
+        'late': Kind('samples are sent this many seconds later', 0.0, 3600.0),
+        'jitter': Kind('samples are taken off the beat by this standard deviation, s', 0.0, 60.0),
+    }
+)
+"""Faults of a whole instrument."""
+
+KINDS: Mapping[str, Kind] = MappingProxyType({**OF_QUANTITIES, **OF_INSTRUMENTS})
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Fault: a kind and its size (NaN where it has none)."""
+
+    kind: str
+    size: float = math.nan
+
+    def __str__(self) -> str:
+        return f'{self.kind} {self.size:g}' if KINDS[self.kind].sized else self.kind
+
+
+def parse_fault(text: str) -> Fault | None:
+    """Parse a fault such as ``offset -3.5``; None for ``none``.
+
+    Raises
+    ------
+    InstrumentError
+        If there is no such fault, or its size is missing, not a number or out of range.
+    """
+    word, _, size = text.strip().partition(' ')
+    if word == NONE and not size:
+        return None
+    if word not in KINDS:
+        raise InstrumentError(
+            f"fault '{text}': no such fault; expected one of {', '.join(KINDS)}, or {NONE}"
+        )
+    kind = KINDS[word]
+    if not kind.sized:
+        if size.strip():
+            raise InstrumentError(f"fault '{text}': {word} has no size; expected '{word}'")
+        return Fault(word)
+    try:
+        number = float(size)
+    except ValueError:
+        number = math.nan
+    low = -math.inf if kind.low is None else kind.low
+    if not (math.isfinite(number) and low <= number <= kind.high):
+        bounds = '' if low == -math.inf else f' from {low:g} to {kind.high:g}'
+        raise InstrumentError(
+            f"fault '{text}': found size '{size}', expected a number{bounds}: {kind.sentence}"
+        )
+    return Fault(word, number)
+
+
+class Faulty(Protocol):
+    """Instrument that can have faults."""
+
+    @property
+    def name(self) -> str:
+        """Topic of the instrument."""
+
+    @property
+    def quantities(self) -> Sequence[str]:
+        """Names of its quantities."""
+
+    def put(self, fault: Fault, quantity: str | None) -> None:
+        """Activate a fault; one of the same kind is replaced."""
+
+    def take_off(self, kind: str, quantity: str | None) -> None:
+        """Deactivate one kind of fault."""
+
+    def clear(self, quantity: str | None) -> None:
+        """Deactivate all faults of a quantity, or all there are."""
+
+    def faults(self) -> dict[str, tuple[Fault, ...]]:
+        """Return the active faults by topic or topic/quantity."""
+
+
+class FaultPanel:
+    """Fault panel: activates and deactivates faults of several instruments.
+
+    Parameters
+    ----------
+    instruments
+        With names of their own.
+    """
+
+    def __init__(self, instruments: Sequence[Faulty]) -> None:
+        self._instruments = {instrument.name: instrument for instrument in instruments}
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Possible places of faults: topics, and topics with a quantity."""
+        found = []
+        for name, instrument in self._instruments.items():
+            found.append(name)
+            if len(instrument.quantities) > 1:
+                found += [f'{name}/{quantity}' for quantity in instrument.quantities]
+        return tuple(found)
+
+    def knows(self, where: str) -> bool:
+        """True if a place is one of these instruments'."""
+        return self._place(where) is not None
+
+    def check(self, where: str, what: str) -> tuple[Faulty, str | None, Fault | None]:
+        """Parse place and fault without activating anything.
+
+        Raises
+        ------
+        InstrumentError
+            If there is no such place or fault, or the fault cannot sit there.
+        """
+        place = self._place(where)
+        if place is None:
+            raise InstrumentError(
+                f"fault at '{where}': no such place; expected one of {', '.join(self.places)}"
+            )
+        instrument, quantity = place
+        fault = parse_fault(what)
+        if fault is None:
+            return instrument, quantity, None
+        if quantity is not None and fault.kind in OF_INSTRUMENTS:
+            raise InstrumentError(
+                f"fault at '{where}': {fault.kind} concerns a whole instrument; expected "
+                f"'{instrument.name}'"
+            )
+        if not instrument.quantities and fault.kind in OF_QUANTITIES:
+            raise InstrumentError(
+                f"fault at '{where}': {fault.kind} concerns a quantity, and '{where}' has none; "
+                f'expected one of {", ".join(OF_INSTRUMENTS)}'
+            )
+        return instrument, quantity, fault
+
+    def switch(self, where: str, what: str) -> None:
+        """Activate a fault, or deactivate all of a place by ``none``.
+
+        Raises
+        ------
+        InstrumentError
+            As `check`.
+        """
+        instrument, quantity, fault = self.check(where, what)
+        if fault is None:
+            instrument.clear(quantity)
+        else:
+            instrument.put(fault, quantity)
+
+    def switch_off(self, where: str, what: str) -> None:
+        """Deactivate one fault that `switch` has activated, and leave others at its place."""
+        place, fault = self._place(where), parse_fault(what)
+        if place is not None and fault is not None:
+            instrument, quantity = place
+            instrument.take_off(fault.kind, quantity)
+
+    def active(self) -> dict[str, str]:
+        """Return the active faults by place."""
+        return {
+            place: ', '.join(map(str, faults))
+            for instrument in self._instruments.values()
+            for place, faults in instrument.faults().items()
+        }
+
+    def _place(self, where: str) -> tuple[Faulty, str | None] | None:
+        for name, instrument in self._instruments.items():
+            if where == name:
+                return instrument, None
+            quantity = where.removeprefix(f'{name}/')
+            if quantity != where and quantity in instrument.quantities:
+                return instrument, quantity
+        return None

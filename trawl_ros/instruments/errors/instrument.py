@@ -1,0 +1,245 @@
+"""Base class of instruments: sampling clock, channels with errors, faults, and a seed."""
+
+from abc import ABC, abstractmethod
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from trawl_ros.core.time import SECOND
+from trawl_ros.instruments.errors.bursts import HOUR, NO_BURSTS, BurstModel, Bursts
+from trawl_ros.instruments.errors.channel import Channel, ErrorModel
+from trawl_ros.instruments.errors.faults import OF_INSTRUMENTS, Fault
+from trawl_ros.instruments.errors.random_streams import generator
+from trawl_ros.instruments.errors.sampling import TOLERANCE, Sampler
+from trawl_ros.instruments.errors.timing import Timing
+
+PartT = TypeVar('PartT')
+SampleT = TypeVar('SampleT')
+
+DROPOUT_S = 10.0
+"""Mean length of the bursts of a fault 'dropouts'."""
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Seed plan of an instrument's random numbers.
+
+    ``seed`` is not negative. ``state_changes`` are the times at which biases are drawn anew,
+    rising, in seconds since the instrument's first truth. They are given, as a trial's plan
+    gives them, and not guessed from the truth: a door sensor cannot see the warps move.
+    """
+
+    seed: int = 0
+    state_changes: tuple[float, ...] = ()
+
+
+class Beat:
+    """Sampling clock of an instrument: times of sampling and sending, with timing faults.
+
+    Parameters
+    ----------
+    name
+        Of the instrument.
+    timing
+        Without faults.
+    seed
+        Shared by all instruments.
+    """
+
+    def __init__(self, name: str, timing: Timing, seed: int) -> None:
+        self._name = name
+        self._timing = timing
+        self._seed = seed
+        self._sampler = Sampler(timing.rate, timing.start_up)
+        self._faults: dict[str, float] = {}
+        self._shift = 0.0
+        self._restart()
+
+    @property
+    def first(self) -> int:
+        """Stamp of the first truth (ns)."""
+        return self._sampler.first
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """Active faults of the timing."""
+        return tuple(Fault(kind, size) for kind, size in self._faults.items())
+
+    @property
+    def latency_s(self) -> float:
+        """Time from sampling to sending."""
+        return self._timing.latency + self._faults.get('late', 0.0)
+
+    def put(self, fault: Fault) -> None:
+        """Activate a fault."""
+        self._faults[fault.kind] = fault.size
+        if fault.kind == 'dropouts':
+            share = fault.size
+            rate = HOUR * share / (DROPOUT_S * (1.0 - share))
+            drawn = generator(self._seed, f'{self._name}/fault')
+            self._faulty = Bursts(BurstModel(rate, DROPOUT_S), drawn)
+
+    def take_off(self, kind: str) -> None:
+        """Deactivate one kind of fault."""
+        self._faults.pop(kind, None)
+        if kind == 'dropouts':
+            self._faulty = Bursts(NO_BURSTS, generator(self._seed, f'{self._name}/fault'))
+
+    def clear(self) -> None:
+        """Deactivate all faults."""
+        for kind in list(self._faults):
+            self.take_off(kind)
+
+    def started_anew(self, stamp: int) -> bool:
+        """Register a stamp (ns); True if it is the first, or lies before the last one."""
+        anew = self._sampler.started_anew(stamp)
+        if anew:
+            self._restart()
+        return anew
+
+    def due(self, stamp: int) -> bool:
+        """True if a sample is due at a stamp (ns), which `started_anew` has registered."""
+        size = self._timing.jitter + self._faults.get('jitter', 0.0)
+        if not self._sampler.due(stamp, size * self._shift if size else 0.0):
+            return False
+        self._shift = self._drawn_shift()
+        return True
+
+    def sends(self, stamp: int) -> bool:
+        """True if a sample taken at a stamp (ns) is sent."""
+        # Both are asked, so that each has its own time.
+        dropped, faulty = self._dropouts.on(stamp), self._faulty.on(stamp)
+        return not (dropped or faulty or 'silent' in self._faults)
+
+    def _drawn_shift(self) -> float:
+        return float(self._jitter.standard_normal())
+
+    def _restart(self) -> None:
+        self._jitter = generator(self._seed, f'{self._name}/jitter')
+        self._shift = self._drawn_shift()
+        dropouts = generator(self._seed, f'{self._name}/dropouts')
+        self._dropouts = Bursts(self._timing.dropouts, dropouts)
+        share = self._faults.pop('dropouts', None)
+        self._faulty = Bursts(NO_BURSTS, generator(self._seed, f'{self._name}/fault'))
+        if share is not None:
+            self.put(Fault('dropouts', share))
+
+
+class Instrument(ABC, Generic[PartT, SampleT]):
+    """Instrument: observes its part of the truth and reports samples at its rate.
+
+    It samples on the stamps it is shown, never on a clock. A stamp before the last one (a
+    looping bag, a reset simulation) starts it anew, with the readings of a new instrument;
+    faults stay.
+
+    Parameters
+    ----------
+    name
+        Unique among all instruments: its topic.
+    timing
+        When it samples and sends.
+    errors
+        Errors of each of its channels, by the channel's name.
+    draws
+        Seed and changes of state.
+    """
+
+    def __init__(
+        self, name: str, timing: Timing, errors: dict[str, ErrorModel], draws: Draws
+    ) -> None:
+        self.name = name
+        self._beat = Beat(name, timing, draws.seed)
+        self._channels = {
+            channel: Channel(f'{name}/{channel}', model, draws.seed)
+            for channel, model in errors.items()
+        }
+        self._changes: Sequence[int] = [round(t * SECOND) for t in draws.state_changes]
+        self._state = 0
+        self._under_way: deque[tuple[int, SampleT]] = deque()
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Names of the measured quantities."""
+        return tuple(self._channels)
+
+    def put(self, fault: Fault, quantity: str | None = None) -> None:
+        """Activate a fault, on one quantity or, without it, on the whole instrument."""
+        if fault.kind in OF_INSTRUMENTS:
+            self._beat.put(fault)
+        else:
+            for channel in self._chosen(quantity):
+                channel.put(fault)
+
+    def take_off(self, kind: str, quantity: str | None = None) -> None:
+        """Deactivate one kind of fault."""
+        if kind in OF_INSTRUMENTS:
+            self._beat.take_off(kind)
+        else:
+            for channel in self._chosen(quantity):
+                channel.take_off(kind)
+
+    def clear(self, quantity: str | None = None) -> None:
+        """Deactivate all faults of a quantity, or all there are."""
+        if quantity is None:
+            self._beat.clear()
+        for channel in self._chosen(quantity):
+            channel.clear()
+
+    def faults(self) -> dict[str, tuple[Fault, ...]]:
+        """Return the active faults by topic or topic/quantity."""
+        alone = len(self._channels) == 1
+        found = {self.name: self._beat.faults}
+        for channel in self._channels.values():
+            place = self.name if alone else channel.name
+            found[place] = found.get(place, ()) + channel.faults
+        return {place: on for place, on in found.items() if on}
+
+    def observe(self, part: PartT, stamp: int) -> list[SampleT]:
+        """Observe the truth; return the samples that arrive.
+
+        Parameters
+        ----------
+        part
+            What this instrument sees of the truth; the class says what.
+        stamp
+            Of that truth, ns.
+
+        Returns
+        -------
+        list of Sample
+            What is sent now: a sample of this stamp where one is due, or, where sending takes
+            time, one of an earlier stamp.
+        """
+        if self._beat.started_anew(stamp):
+            self._under_way.clear()
+            for channel in self._channels.values():
+                channel.restart()
+            self._restart()
+        if self._beat.due(stamp):
+            self._state = bisect_right(self._changes, stamp + TOLERANCE - self._beat.first)
+            sample = self._read(part, stamp)
+            if sample is not None and self._beat.sends(stamp):
+                at = stamp + round(self._beat.latency_s * SECOND)
+                self._under_way.append((at, sample))
+        arrived = []
+        while self._under_way and self._under_way[0][0] <= stamp + TOLERANCE:
+            arrived.append(self._under_way.popleft()[1])
+        return arrived
+
+    @abstractmethod
+    def _read(self, part: PartT, stamp: int) -> SampleT | None:
+        """Return the sample that is due; None where nothing can be measured."""
+
+    def _restart(self) -> None:
+        """Reset state beside that of the channels."""
+
+    def _measure(self, channel: str, value: float, stamp: int) -> float:
+        return self._channels[channel].measure(value, stamp, self._state)
+
+    def _stated_std(self, channel: str) -> float:
+        return self._channels[channel].stated_std
+
+    def _chosen(self, quantity: str | None) -> list[Channel]:
+        return list(self._channels.values()) if quantity is None else [self._channels[quantity]]

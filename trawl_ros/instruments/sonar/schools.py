@@ -1,0 +1,40 @@
+"""Acoustic geometry of schools of fish."""
+
+import math
+
+import numpy as np
+
+from trawl_ros.records.truth import SchoolTruth
+
+
+def inside(
+    school: SchoolTruth, position: np.ndarray, ways: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distances at which straight lines enter and leave a school.
+
+    Parameters
+    ----------
+    school
+        An ellipsoid with axes along those of ``map``.
+    position : (3,) array
+        Where all lines start, m.
+    ways : (n, 3) array
+        Unit vectors.
+
+    Returns
+    -------
+    near, far : (n,) arrays
+        m, negative behind the start; infinite where a line misses the school.
+    """
+    start = 2 * (position - school.position) / school.size
+    move = 2 * ways / school.size
+    a, b, c = (move**2).sum(1), move @ start, start @ start - 1
+    root = b * b - a * c
+    met = root > 0
+    half = np.sqrt(np.where(met, root, 0.0))
+    return np.where(met, (-b - half) / a, np.inf), np.where(met, (-b + half) / a, np.inf)
+
+
+def fish_in(school: SchoolTruth) -> float:
+    """Number of fish."""
+    return school.density * math.pi / 6 * float(np.prod(school.size))

@@ -1,0 +1,1 @@
+"""Validation, benchmark, studies and demo: run once in a while, imported by nothing else."""

@@ -1,0 +1,137 @@
+"""Steady states of the full gear, warm and cold, beside tools that solve less."""
+
+import math
+from collections.abc import Callable
+from functools import partial
+from itertools import cycle
+from statistics import median
+
+from trawl_ros.lab.benchmark.findings import Findings
+from trawl_ros.lab.benchmark.gears import default_gear
+from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.timing import median_s, timed
+from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed, peer
+from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
+from trawl_ros.lab.reference_codes.towed_wire import TowedWire
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state
+from trawl_ros.solver.operating_point import OperatingPoint
+
+WARM_MS, COLD_S, OVER_TRAWLKIT = 50.0, 2.0, 50.0
+
+CHANGES = ((20.0, 0.0), (-20.0, 0.0), (0.0, 0.05), (0.0, -0.05), (100.0, 0.0), (-100.0, 0.0))
+"""Of warp length (m) and speed (m/s), from 500 m and 2.1 m/s."""
+
+COLD_POINTS = ((300.0, 2.1), (500.0, 1.9), (500.0, 2.1), (700.0, 2.1), (900.0, 2.1))
+
+TRAWLKIT_COARSE = 2
+"""Divisions per panel of the small version; the default is trawlkit's own."""
+
+
+def _point(length: float, speed: float) -> OperatingPoint:
+    return OperatingPoint(length, length, speed)
+
+
+def measure(small: bool) -> Findings:
+    """Time steady states near a known one, from nothing, and with the check of stability."""
+    model = build_model(default_gear(small=small))
+    repeats = 1 if small else 5
+    known = find_equilibrium(model, _point(500.0, 2.1))
+    warm = [_warm_s(model, known, change, repeats) for change in CHANGES]
+    points = COLD_POINTS[2:3] if small else COLD_POINTS
+    cold = [median_s(_cold(model, *point), 1 if small else 3) for point in points]
+    usable = [median_s(_usable(model, *point), 1 if small else 3) for point in points]
+    near = median_s(lambda: steady_state(model, 520.0, 2.1, start=known), repeats)
+    size = f'{model.nodes} nodes, {len(model.ends)} bars, two boards in 6-DOF'
+    rows = [
+        Row(
+            'steady state of the full gear, warm', 1e3 * median(warm), 'ms', WARM_MS, 'at_most',
+            f'{size}; median over {len(CHANGES)} changes of warp length (±20, ±100 m) and speed '
+            f'(±0.05 m/s), {1e3 * min(warm):.0f} to {1e3 * max(warm):.0f} ms',
+        ),
+        Row(
+            'the same, cold', median(cold), 's', COLD_S, 'at_most',
+            f'from a first guess; median over {len(points)} operating points, slowest '
+            f'{max(cold):.2f} s',
+        ),
+        Row(
+            'the same, cold, with the check of stability', median(usable), 's', COLD_S, 'at_most',
+            f'slowest {max(usable):.2f} s',
+        ),
+        Row('the same, warm, with the check of stability', 1e3 * near, 'ms', note='+20 m of warp'),
+    ]  # fmt: skip
+    rows += _beside_trawlkit(median(warm), median(cold), small=small)
+    rows += _beside_moorpy(median(warm), small=small)
+    return Findings(
+        tuple(rows),
+        text='A warm start begins at a known steady state nearby, as a fit or a trial does; a '
+        'cold one begins with straight ropes. All end at the same residual. trawlkit solves '
+        'another and smaller problem, a bottom trawl of its own by dynamic relaxation with doors '
+        'as points, each speed starting from the one before; MoorPy one wire alone.',
+    )
+
+
+def _warm_s(
+    model: GearModel, known: Equilibrium, change: tuple[float, float], repeats: int
+) -> float:
+    point = _point(500.0 + change[0], 2.1 + change[1])
+    return median_s(lambda: find_equilibrium(model, point, known), repeats)
+
+
+def _cold(model: GearModel, length: float, speed: float) -> Callable[[], Equilibrium]:
+    return lambda: find_equilibrium(model, _point(length, speed))
+
+
+def _usable(model: GearModel, length: float, speed: float) -> Callable[[], SteadyState]:
+    return lambda: steady_state(model, length, speed)
+
+
+def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[Row]:
+    what = "trawlkit's time for one speed, over the warm steady state"
+    try:
+        times = trawlkit_s(small=small)
+    except PeerAbsent as absent:
+        return [Row(what, math.nan, '×', OVER_TRAWLKIT, 'at_least', str(absent))]
+    peer = median(times)
+    note = (
+        f'trawlkit {peer:.1f} s, {min(times):.1f} to {max(times):.1f} s over {len(times)} speeds '
+        'of its example, doors coupled'
+    )
+    return [
+        Row(what, peer / warm_s, '×', OVER_TRAWLKIT, 'at_least', note),
+        Row('the same, over the cold steady state', peer / cold_s, '×', note=note),
+    ]
+
+
+def trawlkit_s(*, small: bool) -> list[float]:
+    """CPU time (s) of each speed in trawlkit's own example, every one but the first warm."""
+    trawlkit, sim = peer('trawlkit'), peer('trawlkit.sim')
+    case = trawlkit.run(peer('trawlkit.sim.validation').standard_case())
+    start, times = None, []
+    for knots in (3.0,) if small else (2.0, 2.5, 3.0, 3.5, 4.0):
+        solve = partial(
+            sim.simulate, case, knots, scenario=sim.Scenario(), x_init=start,
+            resolution=TRAWLKIT_COARSE if small else sim.DEFAULT_RESOLUTION,
+        )  # fmt: skip
+        found, seconds = timed(solve)
+        start = found.nodes
+        times.append(seconds)
+    return times
+
+
+def _beside_moorpy(warm_s: float, *, small: bool) -> list[Row]:
+    what = "MoorPy's time for one wire alone, warm, over the warm steady state of the gear"
+    try:
+        seconds = moorpy_s(1 if small else 5)
+    except (PeerAbsent, PeerFailed) as error:
+        return [Row(what, math.nan, '×', note=str(error))]
+    note = f'MoorPy {1e3 * seconds:.0f} ms, 20 m more or less of a towed wire of 600 m'
+    return [Row(what, seconds / warm_s, '×', note=note)]
+
+
+def moorpy_s(repeats: int) -> float:
+    """CPU time (s) of MoorPy for a towed wire whose length has changed by 20 m."""
+    wire = MoorPyWire(TowedWire())
+    wire.solve()
+    lengths = cycle((620.0, 600.0))
+    return median_s(lambda: wire.solve(next(lengths)), repeats)

@@ -1,0 +1,149 @@
+"""Rival optimisers of the twelve coefficients, for the benchmark only."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.objective import objective, paper_values, stack
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.channels import INPUTS
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.predict import Prediction, Predictor
+from trawl_ros.solver.sensitivity import PARAMETERS
+from trawl_ros.solver.slow_mode import slow_mode
+
+DIFFERENCE = 1e-4
+"""Step of the differences: of a coefficient's std, of a metre, of a metre per second."""
+
+FIRST_STEP, LAST_STEP = 0.5, 1e-6
+"""Steps of the coordinate search, in std of each coefficient."""
+
+
+class Counting(Predictor):
+    """Predictor that ships, with a count of the steady states it is asked for."""
+
+    def __init__(self, model: GearModel) -> None:
+        super().__init__(model)
+        self.solves = 0
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Equilibrium | None = None,
+    ) -> Prediction:
+        """Count, and predict."""
+        self.solves += 1
+        return super().predict(coefficients, port_length, starboard_length, speed, start)
+
+
+class Differences(Counting):
+    """Predictor with derivatives by forward differences, each a warm steady state."""
+
+    def __init__(self, model: GearModel, std: np.ndarray) -> None:
+        super().__init__(model)
+        self._steps = DIFFERENCE * np.concatenate([std, np.ones(len(INPUTS))])
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Equilibrium | None = None,
+    ) -> Prediction:
+        """Predict, and move one parameter after another."""
+        at = np.array([*coefficients, port_length, starboard_length, speed])
+        found = self._solve(at, start)
+        values = found.observables.array()
+        jacobian = np.empty((len(OBSERVABLES), len(PARAMETERS)))
+        for index, step in enumerate(self._steps):
+            moved = at.copy()
+            moved[index] += step
+            jacobian[:, index] = (self._solve(moved, found).observables.array() - values) / step
+        model = self.model.with_coefficients(at[:-3])
+        return Prediction(values, jacobian, slow_mode(model, found).shape, found)
+
+    def _solve(self, at: np.ndarray, start: Equilibrium | None) -> Equilibrium:
+        self.solves += 1
+        model = self.model.with_coefficients(at[:-3])
+        return find_equilibrium(model, OperatingPoint(*at[-3:]), start)
+
+
+@dataclass(frozen=True)
+class Searched:
+    """Result of a coordinate search: objective, number of steady states, and its end."""
+
+    objective: float
+    solves: int
+    reached: bool
+
+
+class CoordinateSearch:
+    """Cyclic search of the minimum of eq. 35 along one coefficient after another, in the bounds.
+
+    A step that lowers the objective is kept; where neither direction does, the coefficient's
+    step is halved. Steady states start from those of the best coefficients so far.
+    """
+
+    def __init__(
+        self, model: GearModel, windows: Sequence[SteadyWindow], prior: BoardPrior
+    ) -> None:
+        self._model, self._prior = model, prior
+        self._points = [
+            OperatingPoint(*(window.means[name] for name in INPUTS)) for window in windows
+        ]
+        self._measured = stack([paper_values(window.means) for window in windows])
+        self._starts: list[Equilibrium | None] = [None] * len(windows)
+        self.solves = 0
+
+    def search(self, target: float, budget: int) -> Searched:
+        """Search until the objective is no worse than ``target``, steps are short, or
+        ``budget`` steady states were solved.
+        """
+        prior = self._prior
+        best = np.array(prior.start)
+        least = self._try(best, np.inf)
+        steps = np.full(len(best), FIRST_STEP)
+        while least > target and self.solves < budget and steps.max() > LAST_STEP:
+            for index in range(len(best)):
+                for direction in (1.0, -1.0):
+                    trial = best.copy()
+                    trial[index] += direction * steps[index] * prior.std[index]
+                    trial = np.clip(trial, prior.low, prior.high)
+                    value = self._try(trial, least)
+                    if value < least:
+                        best, least = trial, value
+                        break
+                else:
+                    steps[index] *= 0.5
+                if least <= target or self.solves >= budget:
+                    break
+        return Searched(least, self.solves, least <= target)
+
+    def _try(self, coefficients: np.ndarray, least: float) -> float:
+        """Objective; the states found become the starts when it is lower than ``least``."""
+        model = self._model.with_coefficients(coefficients)
+        found: list[Equilibrium] = []
+        try:
+            for point, start in zip(self._points, self._starts, strict=True):
+                self.solves += 1
+                found.append(find_equilibrium(model, point, start))
+        except NoSteadyState:
+            return np.inf
+        rows = [
+            paper_values(dict(zip(OBSERVABLES, state.observables.array(), strict=True)))
+            for state in found
+        ]
+        value = objective(stack(rows), self._measured)
+        if value < least:
+            self._starts = list(found)
+        return value

@@ -1,0 +1,147 @@
+"""Growth of time and memory as the net is refined, around and along alike."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.lab.benchmark.findings import Findings
+from trawl_ros.lab.benchmark.gears import default_gear, with_around
+from trawl_ros.lab.benchmark.haul import START, haul_of
+from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.timing import factor_cost, median_s
+from trawl_ros.lab.report.check import Drawing
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.stepper import StepFailed
+
+AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
+"""Meshes around, from less than 150 net nodes to more than 5000; rows are as short as keeps the
+angle of the meshes."""
+
+MOST_NODES = 5000.0
+
+EXPONENT = 1.6
+STEP_S = 0.2
+
+
+@dataclass(frozen=True)
+class Size:
+    """One refinement: its ``nodes`` in the net, and CPU times (s) of a time step, a steady
+    state from a known one 20 m of warp away, and one factorisation with its solution.
+    ``factor_mb`` is the size of the factors, ``peak_mb`` the most that the process ever held.
+    """
+
+    around: int
+    nodes: int
+    step_s: float
+    warm_s: float
+    factor_s: float
+    factor_mb: float
+    peak_mb: float
+
+
+def measure(small: bool) -> Findings:
+    """Time one refinement after another."""
+    gear = default_gear(small=False)
+    sizes, refused = [], 'no finer one was tried'
+    for around in AROUND[:2] if small else AROUND:
+        model = build_model(with_around(gear, around))
+        try:
+            sizes.append(_size(model, small=small))
+        except (NoSteadyState, StepFailed) as error:
+            refused = f'{len(model.layout.net)} net nodes: {error}'
+    last = sizes[-1]
+    span = f'{sizes[0].nodes} to {last.nodes} net nodes'
+    step = exponent([size.nodes for size in sizes], [size.step_s for size in sizes])
+    warm = exponent([size.nodes for size in sizes], [size.warm_s for size in sizes])
+    linear = exponent([size.nodes for size in sizes], [size.factor_s for size in sizes])
+    upper = sizes[-max(2, len(sizes) // 2) :]
+    step_there = exponent([s.nodes for s in upper], [s.step_s for s in upper])
+    warm_there = exponent([s.nodes for s in upper], [s.warm_s for s in upper])
+    rows = (
+        Row('net nodes of the largest net', last.nodes, '', MOST_NODES, 'at_least', refused),
+        Row(
+            'exponent of the time per step in the number of net nodes', step, '', EXPONENT,
+            'at_most', f'{span}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
+            f'{1e3 * last.step_s:.0f} ms; {step_there:.2f} in the finer half of the sizes',
+        ),
+        Row(
+            'exponent of the time per steady state, warm', warm, '', EXPONENT, 'at_most',
+            f'{span}; {1e3 * sizes[0].warm_s:.0f} to {1e3 * last.warm_s:.0f} ms; '
+            f'{warm_there:.2f} in the finer half of the sizes',
+        ),
+        Row(
+            'exponent of one factorisation and solution', linear, '',
+            note=f'{1e3 * sizes[0].factor_s:.2f} to {1e3 * last.factor_s:.0f} ms',
+        ),
+        Row(f'memory of the factors at {last.nodes} net nodes', last.factor_mb, 'MB'),
+        Row(
+            f'most memory of the process up to {last.nodes} net nodes', last.peak_mb, 'MB',
+            note='interpreter, libraries and what was measured before included',
+        ),
+    )  # fmt: skip
+    return Findings(
+        rows,
+        (Drawing('nodes', 'Time and memory against the number of net nodes.', _draw(sizes)),),
+        'Meshes around the net are refined and rows along it with them; warps and bridles stay '
+        'as they are. Exponents are slopes of straight lines through the logarithms.',
+    )
+
+
+def exponent(nodes: Sequence[int], values: Sequence[float]) -> float:
+    """Exponent of growth: slope of the straight line through the logarithms."""
+    return float(np.polyfit(np.log(nodes), np.log(values), 1)[0])
+
+
+def _size(model: GearModel, *, small: bool) -> Size:
+    steps, repeats = (4, 1) if small else (40, 3)
+    known = find_equilibrium(model, START)
+    haul = haul_of(model, steps * STEP_S, known)
+    longer = START.port_length + 20.0
+    point = OperatingPoint(longer, longer, START.speed)
+    factor_s, factor_mb = factor_cost(model, known.state, known.tow, repeats)
+    return Size(
+        around=model.gear.netting.around,
+        nodes=len(model.layout.net),
+        step_s=median_s(lambda: haul.run(STEP_S), repeats) / steps,
+        warm_s=median_s(lambda: find_equilibrium(model, point, known), repeats),
+        factor_s=factor_s,
+        factor_mb=factor_mb,
+        peak_mb=peak_mb(),
+    )
+
+
+def peak_mb() -> float:
+    """Largest resident memory of this process so far, MB; NaN where the system does not say."""
+    if sys.platform == 'win32':
+        return float('nan')
+    import resource
+
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / 1e6 if sys.platform == 'darwin' else peak * 1024 / 1e6
+
+
+def _draw(sizes: Sequence[Size]) -> Figure:
+    figure = Figure(figsize=(9.0, 4.0), layout='constrained')
+    left, right = figure.subplots(1, 2)
+    nodes = np.array([size.nodes for size in sizes])
+    for label, values in (
+        ('steady state, warm', [size.warm_s for size in sizes]),
+        ('time step', [size.step_s for size in sizes]),
+        ('one factorisation', [size.factor_s for size in sizes]),
+    ):
+        slope = exponent([size.nodes for size in sizes], values)
+        left.loglog(nodes, values, 'o-', label=f'{label}: exponent {slope:.2f}')
+    left.set(xlabel='nodes of the net', ylabel='CPU time [s]')
+    right.loglog(nodes, [size.factor_mb for size in sizes], 'o-', label='factors')
+    right.loglog(nodes, [size.peak_mb for size in sizes], 's--', label='most of the process so far')
+    right.set(xlabel='nodes of the net', ylabel='memory [MB]')
+    for axes in (left, right):
+        axes.grid(alpha=0.3, which='both')
+        axes.legend()
+    return figure

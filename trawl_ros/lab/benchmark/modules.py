@@ -1,0 +1,52 @@
+"""Modules of the benchmark, in the order of the report."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.lab.benchmark.findings import Findings
+from trawl_ros.lab.benchmark.row import Row
+
+TITLES: Mapping[str, str] = MappingProxyType(
+    {
+        'gear': 'The full gear in motion',
+        'web': 'MoorDyn on a web as large as the gear',
+        'wire': 'One wire in motion',
+        'equilibrium': 'Steady states of the full gear',
+        'fit': 'One fit of twelve coefficients to fifteen states',
+        'growth': 'Growth with the number of net nodes',
+        'start': 'Cold start of the nodes',
+        'recording': 'Recording the full chain',
+    }
+)
+"""Modules of this folder, each with ``measure(small) -> Findings``, → their titles."""
+
+NAMES: tuple[str, ...] = tuple(TITLES)
+
+
+def check_names(names: tuple[str, ...]) -> None:
+    """Refuse names that are none of the modules.
+
+    Raises
+    ------
+    TrawlError
+        If there is no such module.
+    """
+    for name in names:
+        if name not in TITLES:
+            raise TrawlError(f'{name}: no such benchmark; expected one of {", ".join(NAMES)}')
+
+
+def measure(name: str, *, small: bool) -> Findings:
+    """Run one module; ``small`` is for the test suite: on less, in seconds.
+
+    A module that breaks off is a row that is missed, not the end of the report.
+    """
+    module = import_module(f'trawl_ros.lab.benchmark.{name}')
+    try:
+        found = module.measure(small)
+    except TrawlError as error:
+        return Findings((Row(f'{name}: runs to its end', 0.0, '', 1.0, 'at_least', str(error)),))
+    assert isinstance(found, Findings)
+    return found

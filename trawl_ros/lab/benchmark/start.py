@@ -1,0 +1,175 @@
+"""Start-up time of the nodes to their first message, and its share by imports."""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from statistics import median
+
+from trawl_ros.core.resources import share_path
+from trawl_ros.lab.benchmark.findings import Findings, without_ros
+from trawl_ros.lab.benchmark.gears import default_gear
+from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.timing import median_s
+from trawl_ros.lab.running.processes import Processes, Value
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.equilibrium import steady_state
+
+LIMIT_S = 3.0
+DOMAIN = 95
+PATIENCE_S = 15.0
+LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+REPEATS = 5
+HEAVIEST = 4
+"""Number of packages named that take longest to import."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Start of a node: the topic of its first message, its parameters, and its need of a running
+    simulation for that message.
+    """
+
+    node: str
+    topic: str
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    needs_truth: bool = False
+
+
+TOW = Start('sim_node', 'truth/winch')
+
+
+def starts(folder: Path) -> tuple[Start, ...]:
+    """All nodes' starts; those without a stream of their own report on /diagnostics."""
+    return (
+        Start('bag_recorder', '/diagnostics', {'output': str(folder / 'bag')}),
+        Start('identification_node', '/diagnostics'),
+        Start('bag_player', 'winch/joint_states', {'bag': str(share_path('bags', 'sea_trial'))}),
+        TOW,
+        Start('winch_node', 'winch/joint_states', needs_truth=True),
+        Start('door_sensor_node', 'door/port/pressure', needs_truth=True),
+        Start('trawl_sonar_node', 'sonar/pressure', needs_truth=True),
+        Start('vessel_node', 'vessel/heading', needs_truth=True),
+    )
+
+
+def measure(small: bool) -> Findings:
+    """Start one node after another and wait for its first message."""
+    what = 'cold start of a node to its first message, wall, the slowest node'
+    asked = Row(what, math.nan, 's', LIMIT_S, 'at_most')
+    if (nothing := without_ros(asked)) is not None:
+        return nothing
+    with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST):
+        folder = Path(name)
+        chosen = starts(folder)[:1] if small else starts(folder)
+        times = {start.node: _times(start, folder, 1 if small else REPEATS) for start in chosen}
+    slowest = max(times, key=lambda node: median(times[node]))
+    imports = import_s('trawl_ros.nodes.bag_recorder' if small else 'trawl_ros.nodes.sim_node')
+    total = sum(imports.values())
+    heaviest = ', '.join(
+        f'{name} {imports[name]:.2f} s'
+        for name in sorted(imports, key=imports.__getitem__, reverse=True)[:HEAVIEST]
+    )
+    note = (
+        f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s '
+        f'in {len(times[slowest])} starts; why they differ so was not established'
+    )
+    rows = [replace(asked, value=median(times[slowest]), note=note)]
+    for node, found in times.items():
+        note = f'{min(found):.2f} to {max(found):.2f} s in {len(found)} starts'
+        rows.append(Row(f'{node}, wall', median(found), 's', note=note))
+    rows.append(Row('of it, imports, wall', total, 's', note=heaviest))
+    if not small:
+        model = build_model(default_gear(small=False))
+        seconds = median_s(lambda: steady_state(model, 500.0, 2.0), 3)
+        rows.append(
+            Row(
+                'of it, in sim_node, the first steady state', seconds, 's', note='stability checked'
+            )
+        )
+    return Findings(
+        tuple(rows),
+        text='A process is started as a user does it, and its first message arrives at a '
+        'subscriber that runs already: sim_node its truth, instruments a sample while a '
+        'simulation runs, bag_player what it replays, and the others, which wait for data, '
+        'their diagnostics, which come once a second. Discovery by the middleware is part of it. '
+        "Files are in the system's cache, and so is compiled code.",
+    )
+
+
+def _times(start: Start, folder: Path, repeats: int) -> list[float]:
+    environment = {
+        'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(folder / 'log'), **LOCALHOST,
+    }  # fmt: skip
+    found = []
+    for _ in range(repeats):
+        with Processes(folder / 'output', environment) as processes:
+            if start.needs_truth:
+                _start_s(processes, TOW)
+            found.append(_start_s(processes, start))
+        _forget(folder)
+    return found
+
+
+def _forget(folder: Path) -> None:
+    """Move the bag of a recorder away, for the next one needs an empty place."""
+    bag = folder / 'bag'
+    if bag.exists():
+        bag.rename(folder / f'bag_{time.monotonic_ns()}')
+
+
+def _start_s(processes: Processes, start: Start) -> float:
+    """Wall-clock time (s) from the start of the process to the first message; infinite when it
+    does not come in `PATIENCE_S`.
+
+    Raises
+    ------
+    NodeFailed
+        If the node ends.
+    """
+    # Imported here, for it needs ROS 2, which reads the environment when it starts.
+    from trawl_ros.lab.running.first_message import FirstMessage
+
+    with FirstMessage(DOMAIN, start.node, start.topic) as first:
+        began = time.perf_counter()
+        processes.start(start.node, **start.parameters)
+        while (at := first.spin(0.01)) is None:
+            processes.check()
+            if time.perf_counter() - began > PATIENCE_S:
+                return math.inf
+        return at - began
+
+
+def import_s(module: str) -> dict[str, float]:
+    """Wall-clock time (s) that the import of a module takes in a new process, by package."""
+    command = [sys.executable, '-X', 'importtime', '-c', f'import {module}']
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    found: defaultdict[str, float] = defaultdict(float)
+    for line in said.splitlines():
+        own, _, rest = line.removeprefix('import time:').partition('|')
+        if own.strip().isdigit():
+            package = rest.partition('|')[2].strip().partition('.')[0]
+            found[package] += int(own) / 1e6
+    return found
+
+
+@contextmanager
+def _environment(wanted: Mapping[str, str]) -> Iterator[None]:
+    """Set variables of this process's environment, and restore them afterwards."""
+    before = {key: os.environ.get(key) for key in wanted}
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for key, value in before.items():
+            if value is None:
+                del os.environ[key]
+            else:
+                os.environ[key] = value

@@ -1,0 +1,178 @@
+"""Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of like error."""
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from statistics import median
+
+from trawl_ros.lab.benchmark.findings import Findings
+from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
+from trawl_ros.lab.reference_codes.history import History, apart
+from trawl_ros.lab.reference_codes.manoeuvre import Manoeuvre, haul_and_turn, short_manoeuvre
+from trawl_ros.lab.reference_codes.moordyn_wire import MoorDynWire
+from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
+from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, TowedWire
+from trawl_ros.solver.stepper import StepFailed
+
+SEGMENTS = 20
+
+LIMIT = 0.01
+"""Largest error against a program's own converged run, of depth and tension at any time."""
+
+OWN_CONVERGED = 0.1
+OWN_STEPS = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5)
+"""Steps (s) to try, from long to short."""
+
+CONVERGED = ('RK4', 0.002)
+
+COUPLING = 0.2
+"""Time (s) of uniform motion of the block in MoorDyn: few calls of it, and still exact."""
+
+SETTLING = 200.0
+
+
+@dataclass(frozen=True)
+class Choice:
+    """MoorDyn's scheme with the inner damping of the wire (s) that lets it take its longest
+    steps, and steps to try (s), from long to short.
+    """
+
+    scheme: str
+    damping_time: float
+    steps: tuple[float, ...]
+
+
+CHOICES = (
+    Choice('Euler', 0.006, (0.008, 0.007, 0.006, 0.005, 0.004)),
+    Choice('RK2', 0.004, (0.008, 0.007, 0.006, 0.005, 0.004)),
+    Choice('RK4', 0.002, (0.010, 0.009, 0.008, 0.007, 0.006)),
+)
+"""Of its other schemes, Heun's is unstable from 3 ms on, the implicit ones converge only at
+steps that leave them slower, and the multistep ones break down."""
+
+
+@dataclass(frozen=True)
+class Fastest:
+    """The longest step (s) within the limit, its error, and how many times faster than real time
+    it is.
+    """
+
+    step: float
+    error: float
+    factor: float
+
+
+Run = Callable[[float], History]
+"""The manoeuvre in steps of that many seconds."""
+
+
+def measure(small: bool) -> Findings:
+    """Find the longest step within the limit, here and for each scheme of MoorDyn."""
+    manoeuvre = short_manoeuvre() if small else haul_and_turn()
+    ours = fastest(*_own(manoeuvre), small=small)
+    rows = [_own_row(ours)]
+    try:
+        theirs = [(choice, _peer(choice, manoeuvre, small=small)) for choice in _choices(small)]
+    except PeerAbsent as absent:
+        return Findings(
+            (*rows, Row('the same in MoorDyn', math.nan, '× real time', note=str(absent)))
+        )
+    found = [(choice, one) for choice, one in theirs if one is not None]
+    for choice, one in found:
+        note = (
+            f'steps of {1e3 * one.step:g} ms, error {one.error:.2%}; inner damping EA · '
+            f'{choice.damping_time:g} s'
+        )
+        rows.append(
+            Row(f'the same in MoorDyn by {choice.scheme}', one.factor, '× real time', note=note)
+        )
+    rows.append(_ratio(ours, [one for _, one in found]))
+    return Findings(
+        tuple(rows),
+        text=f'{WIRE.length:g} m of wire with a lump, {SEGMENTS} segments, for '
+        f'{manoeuvre.duration:g} s: hauling at 0.5 m/s, then a turn at 0.5°/s and '
+        f'{WIRE.speed:g} m/s. Each program at the longest step at which depth and tension stay '
+        f'within {LIMIT:.0%} of its own converged run at any time; CPU time, median of repeats. '
+        'MoorDyn may damp the wire as each of its schemes likes it best; the implicit method '
+        'here has no use for that.',
+    )
+
+
+def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool) -> Fastest | None:
+    """The longest of steps from long to short within the limit; None when there is none."""
+    for step in steps:
+        try:
+            first = run(step)
+        except (PeerFailed, StepFailed):
+            continue
+        error = apart(first, converged).largest
+        if error < LIMIT:
+            again = [run(step) for _ in range(0 if small else 4)]
+            return Fastest(step, error, median(one.factor for one in (first, *again)))
+    return None
+
+
+def _own(manoeuvre: Manoeuvre) -> tuple[Run, Sequence[float], History]:
+    model = own_model(WIRE, SEGMENTS)
+    start, _ = own_steady(WIRE, model)
+
+    def run(step: float) -> History:
+        return own_history(model, start, manoeuvre, step)
+
+    return run, OWN_STEPS, run(OWN_CONVERGED)
+
+
+def _choices(small: bool) -> tuple[Choice, ...]:
+    return CHOICES[:1] if small else CHOICES
+
+
+def _peer(choice: Choice, manoeuvre: Manoeuvre, *, small: bool) -> Fastest | None:
+    wire = replace(WIRE, damping_time=choice.damping_time)
+
+    def run(step: float) -> History:
+        return moordyn_history(wire, choice.scheme, step, manoeuvre)
+
+    converged = moordyn_history(wire, *CONVERGED, manoeuvre)
+    return fastest(run, choice.steps, converged, small=small)
+
+
+def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: Manoeuvre) -> History:
+    """The manoeuvre in MoorDyn after a straight tow.
+
+    Raises
+    ------
+    PeerAbsent
+        If MoorDyn is not installed.
+    PeerFailed
+        If MoorDyn breaks down.
+    """
+    lump = (INTEGRATED.lag, INTEGRATED.depth)
+    with closing(MoorDynWire(wire, SEGMENTS, scheme, step, lump, coupling=COUPLING)) as system:
+        system.settle(SETTLING)
+        return system.follow(manoeuvre)
+
+
+def _own_row(ours: Fastest | None) -> Row:
+    what = 'one wire of 600 m in 20 segments, hauling and turning'
+    if ours is None:
+        note = f'no step of those tried keeps the error below {LIMIT:.0%}'
+        return Row(what, math.nan, '× real time', note=note)
+    each = 1e3 * ours.step / ours.factor
+    note = f'steps of {ours.step:g} s, error {ours.error:.2%}; {each:.2f} ms per step'
+    return Row(what, ours.factor, '× real time', note=note)
+
+
+def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> Row:
+    what = "the same beside MoorDyn's best stable scheme"
+    if ours is None or not theirs:
+        return Row(what, math.nan, '×', 1.0, 'at_least', 'one of the two has no step that is good')
+    ratio = ours.factor / max(one.factor for one in theirs)
+    note = ''
+    if ratio < 1.0:
+        note = (
+            f'a step takes {1e3 * ours.step / ours.factor:.2f} ms here, for a wire as for a gear '
+            'that has boards and a kite besides; MoorDyn has the wire alone'
+        )
+    return Row(what, ratio, '×', 1.0, 'at_least', note)

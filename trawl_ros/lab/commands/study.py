@@ -1,0 +1,345 @@
+"""``trawl study``: what takes long to find out, measured and reported."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+from trawl_ros.cli.files import FILE, FOLDER
+from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.core.errors import RosMissing
+from trawl_ros.core.files import empty_folder
+from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.studies.chaos.plan import Plan as ChaosPlan
+from trawl_ros.lab.studies.chaos.report import REPORT as CHAOS_REPORT
+from trawl_ros.lab.studies.chaos.report import write_chaos
+from trawl_ros.lab.studies.chaos.study import run_chaos
+from trawl_ros.lab.studies.counters.study import REPORT as COUNTERS_REPORT
+from trawl_ros.lab.studies.counters.study import SEED as COUNTERS_SEED
+from trawl_ros.lab.studies.counters.study import read_table, run_counters
+from trawl_ros.lab.studies.discrepancy.scoring.report import REPORT as DISCREPANCY_REPORT
+from trawl_ros.lab.studies.discrepancy.scoring.report import write_discrepancy
+from trawl_ros.lab.studies.discrepancy.stages import read_classes, run_blind
+from trawl_ros.lab.studies.discrepancy.trials.plan import Plan as DiscrepancyPlan
+from trawl_ros.lab.studies.identification.report import REPORT as IDENTIFICATION_REPORT
+from trawl_ros.lab.studies.identification.report import write_identification
+from trawl_ros.lab.studies.identification.study import Plan as IdentificationPlan
+from trawl_ros.lab.studies.identification.study import Shown, run_study
+from trawl_ros.lab.studies.soak.report import REPORT, write_soak
+from trawl_ros.lab.studies.soak.study import Plan, run_soak
+from trawl_ros.lab.studies.sonar.report import REPORT as SONAR_REPORT
+from trawl_ros.lab.studies.sonar.report import write_sonar
+from trawl_ros.lab.studies.sonar.study import CASES, SonarStudy
+from trawl_ros.report.rendering import number
+
+
+@click.group('study')
+def command() -> None:
+    """Measure what takes long to find out, and report it."""
+
+
+@command.command('soak')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@click.option(
+    '--hours',
+    default=24.0,
+    show_default=True,
+    type=click.FloatRange(0.005, 48.0),
+    help='Time at sea, towed as fast as it goes.',
+)
+@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@click.option('--real-time-s', default=60.0, show_default=True, type=click.FloatRange(0.0, 3600.0),
+              help='Wall time in real time, for the share of a core; 0 leaves it out.')  # fmt: skip
+@click.option('--coarse', is_flag=True, help='Tow at sea with a coarse net, which is quicker.')
+def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, coarse: bool) -> None:
+    """Tow for a day through the ROS graph, and watch memory, delay and processor time.
+
+    Every node is a process of its own. Writes soak.json, soak.md and soak.png; a target that
+    is missed is part of the report. Ctrl-C ends the tow early, and the report says so.
+    """
+    load_gear(gear)
+    empty_folder(out, force=force)
+    console = error_console()
+    with Interruption() as interruption:
+        seen = run_soak(
+            Plan(hours, gear, real_time_s, coarse=coarse),
+            out,
+            lambda title, total_s: TimeProgress(title, total_s, console),
+            lambda: interruption.requested,
+        )
+        rows = write_soak(out, seen)
+    _say(rows, out / REPORT, console)
+    if interruption.requested:
+        raise SystemExit(INTERRUPTED)
+
+
+@command.command('chaos')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@click.option('--hours', default=ChaosPlan.hours, show_default=True,
+              type=click.FloatRange(0.02, 24.0), help='Time at sea, towed twice.')  # fmt: skip
+@click.option('--kills', default=ChaosPlan.kills, show_default=True,
+              type=click.IntRange(0, 1000), help='Of the recorder at full load.')  # fmt: skip
+@click.option('--seed', default=ChaosPlan.seed, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of what happens when.')  # fmt: skip
+@click.option('--gear', default=ChaosPlan.gear, show_default=True, help='Gear file or name.')
+def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str) -> None:
+    """Stop and kill nodes, crowd their topics, fill the disk, and see what is left of a tow.
+
+    Every node is a process of its own. Writes chaos.json, .md, .html and .png; a target that is
+    missed is part of the report. Ctrl-C ends it early, and the report says so.
+    """
+    load_gear(gear)
+    empty_folder(out, force=force)
+    console = error_console()
+    with Interruption() as interruption:
+        seen = run_chaos(
+            ChaosPlan(hours, kills, seed, gear),
+            out,
+            lambda title, total_s: TimeProgress(title, total_s, console),
+            lambda title, number: _counted(title, number, console),
+            lambda: interruption.requested,
+        )
+        rows = write_chaos(out, seen)
+    _say(rows, out / CHAOS_REPORT, console)
+    if interruption.requested:
+        raise SystemExit(INTERRUPTED)
+
+
+@command.command('sonar')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@click.option('--sweeps', default=130, show_default=True, type=click.IntRange(2, 10_000),
+              help='Sweeps of each case.')  # fmt: skip
+@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@click.option('--instruments', default='default', show_default=True,
+              help='File or name of instrument parameters.')  # fmt: skip
+def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> None:
+    """Set the openings that are read off the trawl sonar's image beside the truth.
+
+    Over several states of the gear, and with fish and the seabed in view. Writes sonar.json,
+    sonar.md and sonar.png.
+    """
+    study = SonarStudy(sweeps, gear=gear, instruments=instruments)
+    empty_folder(out, force=force)
+    console = error_console()
+    columns = TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn()
+    measured = []
+    try:
+        with Progress(*columns, console=console) as progress:
+            task = progress.add_task('', total=len(CASES))
+            for case in CASES:
+                progress.update(task, description=case.name)
+                measured.append(study.measure(case))
+                progress.advance(task)
+    except KeyboardInterrupt:
+        console.print('stopped; no report is written')
+        raise SystemExit(INTERRUPTED) from None
+    write_sonar(out, measured, sweeps)
+    click.echo(f'{sweeps} sweeps of each of {len(CASES)} cases: {out / SONAR_REPORT}')
+
+
+@command.command('identification')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
+@click.option('--force', is_flag=True, help='Begin anew, whatever is there.')
+@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@click.option('--seed', default=IdentificationPlan.seed, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
+@click.option('--coverage', default=IdentificationPlan.coverage, show_default=True,
+              type=click.IntRange(1, 10_000), help='Trials with a finer plant.')  # fmt: skip
+@click.option('--bound', default=IdentificationPlan.bound, show_default=True,
+              type=click.IntRange(0, 10_000), help='Trials with the model as plant.')  # fmt: skip
+@click.option('--mouth', default=IdentificationPlan.mouth, show_default=True,
+              type=click.IntRange(0, 10_000), help='Trials with a finer mouth.')  # fmt: skip
+@click.option('--around', default=IdentificationPlan.around, show_default=True,
+              type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--tows', default=IdentificationPlan.tows, show_default=True,
+              type=click.IntRange(1, IdentificationPlan.tows), help='In a trial.')  # fmt: skip
+@click.option(
+    '--scheduler',
+    help='Address of a Dask cluster that makes the trials. It runs code '
+    "and must be trusted; tls:// takes the keys of Dask's configuration.",
+)
+@click.option('--small', is_flag=True, help='Trials only: neither a planned trial, nor a replay, '
+              'nor the node in real time.')  # fmt: skip
+@click.option('--live-s', default=IdentificationPlan.live_s, show_default=True,
+              type=click.FloatRange(0.0, 3600.0),
+              help='Wall time of the node in real time; 0 leaves it out.')  # fmt: skip
+def identification(
+    out: Path,
+    force: bool,
+    gear: str,
+    seed: int,
+    coverage: int,
+    bound: int,
+    mouth: int,
+    around: int,
+    tows: int,
+    scheduler: str | None,
+    small: bool,
+    live_s: float,
+) -> None:
+    """Ask of many trials what the intervals and predictions of identification are worth.
+
+    Writes identification.json, .md, .html and .png; a target that is missed is part of the
+    report. Trials that are in the folder already are not made again: after
+    Ctrl-C the same command goes on where it was.
+    """
+    plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around, tows, live_s)
+    console = error_console()
+    try:
+        found = run_study(
+            plan,
+            out,
+            Shown(lambda title, number: _counted(title, number, console),
+                  lambda title, total_s: TimeProgress(title, total_s, console)),
+            scheduler=scheduler,
+            force=force,
+            small=small,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        console.print(f'stopped; the trials made so far are kept in {out}')
+        raise SystemExit(INTERRUPTED) from None
+    write_identification(out, plan, found.sections, found.figure)
+    rows = [row for _, section in found.sections for row in section]
+    _say(rows, out / IDENTIFICATION_REPORT, console)
+
+
+@command.command('counters')
+@click.option('--table', required=True, type=FILE, help='CSV of true wire and what both counters '
+              'showed, in fathoms: wire_out_fm, winch_stbd_fm, winch_port_fm.')  # fmt: skip
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--seed', default=COUNTERS_SEED, show_default=True, type=click.IntRange(0, 2**31),
+              help='Of plant, noise and biases.')  # fmt: skip
+@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+def counters(table: Path, out: Path, seed: int, force: bool) -> None:
+    """Diagnose a simulated trial whose winch counters err as measured ones did.
+
+    With tows of a baseline and without. Writes counters.json, .md, .html and .png.
+    """
+    known = read_table(table)
+    empty_folder(out, force=force).mkdir(parents=True, exist_ok=True)
+    console = error_console()
+    try:
+        rows = run_counters(
+            known, out, lambda title, number: _counted(title, number, console), seed
+        )
+    except KeyboardInterrupt:
+        console.print('stopped; no report is written')
+        raise SystemExit(INTERRUPTED) from None
+    _say(rows, out / COUNTERS_REPORT, console)
+
+
+@command.command('hostile')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@click.option('--force', is_flag=True, help='Write over the file of an earlier report.')
+@click.option('--messages', default=100_000, show_default=True,
+              type=click.IntRange(100, 100_000_000), help='Hostile messages.')  # fmt: skip
+@click.option('--seed', default=1, show_default=True, type=click.IntRange(0, 2**31),
+              help='Of all draws.')  # fmt: skip
+def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
+    """Send messages that make no sense to each subscription of each node.
+
+    Nodes run in this process and get the bytes as from the middleware. Writes
+    hostile_messages.json.
+    """
+    try:
+        from trawl_ros.lab.studies.hostile.report import REPORT as HOSTILE_REPORT
+        from trawl_ros.lab.studies.hostile.report import write_hostile
+        from trawl_ros.lab.studies.hostile.study import STEPS, run_hostile
+    except ImportError as reason:
+        raise RosMissing('the study of hostile messages', reason) from reason
+    empty_folder(out, force=force)
+    console = error_console()
+    with _counted('attacking', STEPS, console) as step:
+        found = run_hostile(messages, seed, step)
+    _say(write_hostile(out, found, seed), out / HOSTILE_REPORT, console)
+
+
+@command.command('discrepancy')
+@click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
+@click.option('--force', is_flag=True, help='Begin anew, whatever is there.')
+@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@click.option('--seed', default=DiscrepancyPlan.seed, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
+@click.option('--clean', default=DiscrepancyPlan.clean, show_default=True,
+              type=click.IntRange(0, 10_000), help='Trials with nothing hidden.')  # fmt: skip
+@click.option('--inside', default=DiscrepancyPlan.inside, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each effect of the catalogue '
+              'and strength.')  # fmt: skip
+@click.option('--outside', default=DiscrepancyPlan.outside, show_default=True,
+              type=click.IntRange(0, 1000),
+              help='Trials of each other effect and strength.')  # fmt: skip
+@click.option('--pairs', default=DiscrepancyPlan.pairs, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each pair of effects.')  # fmt: skip
+@click.option('--poor', default=DiscrepancyPlan.poor, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of a few states, of each effect '
+              'that they cannot tell.')  # fmt: skip
+@click.option('--dynamic', default=DiscrepancyPlan.dynamic, show_default=True,
+              type=click.IntRange(0, 100), help='Trials, of all, that are towed in time '
+              'too.')  # fmt: skip
+@click.option('--around', default=DiscrepancyPlan.around, show_default=True,
+              type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--scheduler', help='Address of a Dask cluster, which must see --out under the '
+              'same path. It runs code and must be trusted.')  # fmt: skip
+def discrepancy(
+    out: Path,
+    force: bool,
+    gear: str,
+    seed: int,
+    clean: int,
+    inside: int,
+    outside: int,
+    pairs: int,
+    poor: int,
+    dynamic: int,
+    around: int,
+    scheduler: str | None,
+) -> None:
+    """Hide effects in trials of another plant, and count how often they are found and named.
+
+    Writes discrepancy.json, .md, .html and .png; a target that is missed is part of the report.
+    Trials that are in the folder already are not made again: after Ctrl-C the same command goes
+    on where it was.
+    """
+    load_gear(gear)
+    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, around)
+    console = error_console()
+    try:
+        trials = run_blind(
+            plan,
+            out,
+            lambda title, number: _counted(title, number, console),
+            scheduler=scheduler,
+            force=force,
+        )
+    except KeyboardInterrupt:
+        console.print(f'stopped; the trials made so far are kept in {out}')
+        raise SystemExit(INTERRUPTED) from None
+    rows = write_discrepancy(out, plan, trials, read_classes(out))
+    _say(rows, out / DISCREPANCY_REPORT, console)
+
+
+@contextmanager
+def _counted(title: str, number: int, console: Console) -> Iterator[Callable[[], None]]:
+    """Show how many of a number of steps are done."""
+    columns = TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn()
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task(title, total=number)
+        yield lambda: progress.advance(task)
+
+
+def _say(rows: Sequence[Row], report: Path, console: Console) -> None:
+    """Say which targets are missed, and how many are reached."""
+    asked = [row for row in rows if row.asked]
+    for row in asked:
+        if not row.ok:
+            console.print(f'missed: {row.what}: {number(row.value)} {row.unit}', markup=False)
+    reached = sum(row.ok for row in asked)
+    click.echo(f'{reached} of {len(asked)} targets are reached: {report}')

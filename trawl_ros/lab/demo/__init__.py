@@ -1,0 +1,1 @@
+"""`trawl demo`: the whole chain, towed, recorded, replayed, refitted and diagnosed."""

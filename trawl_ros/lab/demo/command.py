@@ -1,0 +1,236 @@
+"""``trawl demo``: the whole chain through the real ROS graph, one process per node."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich.console import Console
+
+from trawl_ros.bags.reader import summarise
+from trawl_ros.cli.files import FOLDER, SCENARIO
+from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.core.files import packaged, write_figure
+from trawl_ros.lab.demo.folder import DemoFolder
+from trawl_ros.lab.demo.hidden import hidden_effect
+from trawl_ros.lab.demo.report import load_result, print_result
+from trawl_ros.lab.running.own_graph import own_graph
+from trawl_ros.lab.running.processes import Processes
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import build_water
+from trawl_ros.plots.gear import gear_figure
+from trawl_ros.plots.histories import history_figure
+from trawl_ros.plots.moments import GEAR, read_moments
+from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.shapes import gear_shape
+from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
+from trawl_ros.report.style import DPI
+from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients
+
+if TYPE_CHECKING:
+    from trawl_ros.lab.running.monitor import Monitor
+
+INSTRUMENT_NODES = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
+LOOK_S = 0.2
+
+
+@dataclass(frozen=True)
+class Traffic:
+    """Traffic: messages by full topic name, as counted by publishers, and as in the bag."""
+
+    published: Mapping[str, int]
+    recorded: Mapping[str, int]
+
+    @property
+    def lost(self) -> dict[str, tuple[int, int]]:
+        """Topics on which the two numbers differ, with both."""
+        return {
+            topic: (self.published.get(topic, 0), self.recorded.get(topic, 0))
+            for topic in sorted(self.published.keys() | self.recorded.keys())
+            if self.published.get(topic, 0) != self.recorded.get(topic, 0)
+        }
+
+
+@click.command('demo')
+@click.option('--out', required=True, type=FOLDER, help='Folder for the results.')
+@click.option('--scenario', default='demo', show_default=True, type=SCENARIO, help='What is towed.')
+@click.option(
+    '--diagnosis/--no-diagnosis', default=True, show_default=True, help='At the end, tow in a '
+    'current that the model does not know, and find it.',
+)  # fmt: skip
+def command(out: Path, scenario: Path, diagnosis: bool) -> None:
+    """Tow a sea trial through the ROS graph, record it, replay it, and refit the boards.
+
+    Every node is a process of its own; they talk by DDS on this machine only. The folder
+    takes the bag, identification.json, figures, and summary.json. At the end four tows of the
+    default gear are diagnosed, three of them in a current that the model does not know; it is
+    found, and repaired: the folder's part 'hidden' has bags and reports.
+    """
+    path = packaged(scenario, 'scenarios').absolute()
+    loaded = load_scenario(path)
+    truth = dict(zip(COEFFICIENTS, true_coefficients(path).tolist(), strict=True))
+    folder = DemoFolder(out)
+    console = error_console()
+    began = time.monotonic()
+    with (
+        own_graph(folder.logs) as environment,
+        Processes(folder.logs, environment) as processes,
+        _monitor(environment) as monitor,
+    ):
+        tow_s = _tow(processes, monitor, loaded, folder, console)
+        traffic = _traffic(monitor, folder)
+        _replay(processes, monitor, loaded, folder, console)
+    result = load_result(folder.path)
+    figures = _draw(loaded, folder)
+    folder.write_summary(
+        {
+            'finished': True,
+            'scenario': path.stem,
+            'minutes_at_sea': loaded.duration_s / 60.0,
+            'times_real_time': loaded.duration_s / tow_s,
+            'seconds': {'tow': tow_s, 'all': time.monotonic() - began},
+            'messages': {
+                topic: {'published': count, 'recorded': traffic.recorded.get(topic, 0)}
+                for topic, count in sorted(traffic.published.items())
+            },
+            'messages_lost': sum(abs(a - b) for a, b in traffic.lost.values()),
+            'windows': result['windows'],
+            'objective': result['objective'],
+            'channels': result['channels'],
+            'coefficients': {
+                name: {**values, 'truth': truth[name]}
+                for name, values in result['coefficients'].items()
+            },
+            'bag': folder.bag.name,
+            'figures': figures,
+        }
+    )
+    print_result(result, truth)
+    _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
+    if diagnosis:
+        hidden_effect(folder.hidden, console)
+
+
+def _monitor(environment: Mapping[str, str]) -> 'Monitor':
+    try:
+        from trawl_ros.lab.running.monitor import Monitor
+    except ImportError as reason:
+        raise RosMissing('the demo', reason) from reason
+    return Monitor(environment)
+
+
+def _tow(
+    processes: Processes,
+    monitor: 'Monitor',
+    scenario: Scenario,
+    folder: DemoFolder,
+    console: Console,
+) -> float:
+    """Tow and record; return the wall time (s)."""
+    path = str(scenario.path)
+    consumers = ['bag_recorder', *INSTRUMENT_NODES]
+    processes.start('bag_recorder', use_sim_time=True, output=str(folder.bag))
+    for node in INSTRUMENT_NODES:
+        processes.start(node, use_sim_time=True, scenario=path, wait_for=['bag_recorder'])
+    processes.start('sim_node', scenario=path, time_scale=0.0, exit_at_end=True, wait_for=consumers)
+    with TimeProgress('towing', scenario.duration_s, console) as progress:
+        while not processes.finished('sim_node'):
+            done = float(monitor.value('sim_node', 'tow', 'simulated time') or 0.0)
+            progress.update(done, monitor.value('sim_node', 'tow', 'step') or 'starting nodes')
+            time.sleep(LOOK_S)
+        progress.update(scenario.duration_s)
+        took = progress.elapsed_s
+    # Sources before the recorder, so that it gets their last messages.
+    processes.stop(*INSTRUMENT_NODES)
+    processes.stop('bag_recorder')
+    return took
+
+
+def _traffic(monitor: 'Monitor', folder: DemoFolder) -> Traffic:
+    summary = summarise(folder.bag)
+    if summary.problems:
+        raise TrawlError('; '.join(summary.problems))
+    watched = {absolute(topic.name) for topic in (*TRUTH, *INSTRUMENTS)}
+    return Traffic(
+        {topic: count for topic, count in monitor.published().items() if topic in watched},
+        {entry.topic: entry.count for entry in summary.topics if entry.topic in watched},
+    )
+
+
+def _replay(
+    processes: Processes,
+    monitor: 'Monitor',
+    scenario: Scenario,
+    folder: DemoFolder,
+    console: Console,
+) -> None:
+    """Replay the instruments' part of the bag to the identification, and let it finish."""
+    path = str(scenario.path)
+    topics = list(dict.fromkeys(absolute(channel.topic) for channel in CHANNELS.values()))
+    processes.start(
+        'identification_node',
+        use_sim_time=True,
+        gear=_gear_file(scenario),
+        truth=path,
+        output=str(folder.results),
+    )
+    processes.start(
+        'bag_player',
+        bag=str(folder.bag),
+        rate=0.0,
+        topics=topics,
+        wait_for=['identification_node'],
+    )
+    with TimeProgress('replaying', scenario.duration_s, console) as progress:
+        while not processes.finished('bag_player'):
+            done = float(monitor.value('bag_player', 'bag', 'played until') or 0.0)
+            windows = monitor.value('identification_node', 'estimate', 'windows') or '0'
+            progress.update(done, f'{windows} steady windows')
+            time.sleep(LOOK_S)
+        progress.update(scenario.duration_s)
+    console.print('identification: all windows together, and those left out of the fit')
+    success, message = monitor.finish_identification(processes.check)
+    if not success:
+        raise TrawlError(f'{folder.bag}: {message}')
+    processes.stop('identification_node')
+    folder.gather_results()
+
+
+def _gear_file(scenario: Scenario) -> str:
+    """Path of the scenario's gear file for a process in another folder."""
+    name = scenario.record.gear
+    beside = scenario.path.parent / name
+    return str(beside) if name.endswith(('.yaml', '.yml')) else name
+
+
+def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
+    read = read_tow(folder.bag, build_water(scenario.plant).depth, NAMESPACE)
+    tow = replace(read, name=scenario.path.stem)
+    write_figure(folder.path / 'history.png', history_figure(tow), DPI)
+    (end,) = read_moments(folder.bag, tow, [tow.duration_s], NAMESPACE, [GEAR])
+    shape = gear_shape(end, tow, scenario.plant)
+    if shape is not None:
+        write_figure(folder.path / 'gear.png', gear_figure(shape, tow.name), DPI)
+    return sorted(file.name for file in folder.path.glob('*.png'))
+
+
+def _close(
+    scenario: Scenario, folder: DemoFolder, traffic: Traffic, tow_s: float, all_s: float
+) -> None:
+    recorded = sum(traffic.recorded.values())
+    click.echo(
+        f'{scenario.duration_s / 60:.1f} min at sea in {tow_s:.1f} s, '
+        f'{scenario.duration_s / tow_s:.1f} × real time; {all_s:.0f} s in all'
+    )
+    if traffic.lost:
+        listed = '; '.join(
+            f'{topic}: {published} published, {recorded} recorded'
+            for topic, (published, recorded) in traffic.lost.items()
+        )
+        raise TrawlError(f'{folder.bag}: messages are missing, expected all: {listed}')
+    click.echo(f'{folder.bag}: {recorded} messages, as many as were published')
+    click.echo(f'{folder.path}: summary.json, identification.json and figures')

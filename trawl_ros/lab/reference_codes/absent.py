@@ -1,0 +1,33 @@
+"""Import of reference codes, with a clear sentence where one is not installed."""
+
+from importlib import import_module
+from types import ModuleType
+
+from trawl_ros.core.errors import TrawlError
+
+
+class PeerAbsent(TrawlError):
+    """Reference code that is not installed."""
+
+
+class PeerFailed(TrawlError):
+    """Reference code that gave up."""
+
+
+def peer(name: str) -> ModuleType:
+    """Import the module of a reference code.
+
+    Raises
+    ------
+    PeerAbsent
+        If it is not installed.
+    """
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name != name:
+            raise
+        raise PeerAbsent(
+            f'{name} is not installed; `pip install trawl_ros[peers]` brings all programs '
+            'to compare with'
+        ) from None

@@ -1,0 +1,1 @@
+"""Records and pages that validation, benchmark and studies share."""

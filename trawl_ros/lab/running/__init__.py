@@ -1,0 +1,1 @@
+"""Nodes as processes, and monitors of a running graph."""

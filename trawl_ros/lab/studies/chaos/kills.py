@@ -1,0 +1,91 @@
+"""Recorder killed again and again at full load."""
+
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from trawl_ros.core.errors import RosMissing
+from trawl_ros.lab.running.own_graph import own_graph
+from trawl_ros.lab.running.processes import NodeFailed, Processes
+from trawl_ros.lab.studies.chaos.crew import Crew, Recording, looked_into
+from trawl_ros.lab.studies.chaos.plan import RECORDER, Plan, write_tow
+from trawl_ros.lab.studies.chaos.tow import LOOK_S
+from trawl_ros.lab.studies.soak.long_tow import write_coarse_gear
+from trawl_ros.scenario.records import MAX_TRUTH_HZ
+
+Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
+
+HOURS = 24.0
+"""More than is towed."""
+
+RECORDS_S = (1.0, 3.0)
+"""Wall time that a recorder records before it is killed; least and most."""
+
+START_S = 60.0
+"""Wall time in which a recorder must have begun."""
+
+
+@dataclass(frozen=True)
+class Kills:
+    """Bags of the recorders that were killed, and how long they recorded (wall time, s)."""
+
+    recordings: tuple[Recording, ...]
+    recorded_s: float
+
+
+def run_kills(plan: Plan, folder: Path, steps: Steps, stop: Callable[[], bool]) -> Kills:
+    """Kill the recorder as often as planned, each time at another moment.
+
+    Parameters
+    ----------
+    plan
+        How often.
+    folder
+        Takes what the nodes say; bags lie there for a while.
+    steps, stop
+        Shows how many are done, and is asked whether to end early.
+
+    Raises
+    ------
+    NodeFailed
+        If a node ends by itself, or does not begin.
+    """
+    try:
+        from trawl_ros.lab.running.journal_monitor import JournalMonitor
+    except ImportError as reason:
+        raise RosMissing('the study', reason) from reason
+    chance = np.random.default_rng(plan.seed)
+    logs = folder / 'log' / 'kills'
+    recorded_s = 0.0
+    with (
+        TemporaryDirectory(dir=folder) as name,
+        own_graph(logs) as environment,
+        Processes(logs, environment) as processes,
+        JournalMonitor(environment) as monitor,
+        steps('recorder killed', plan.kills) as done,
+    ):
+        scratch = Path(name)
+        gear = write_coarse_gear(scratch, plan.gear)
+        scenario = write_tow(scratch, gear, HOURS, MAX_TRUTH_HZ)
+        crew = Crew(processes, scenario, gear, scratch, identify=False)
+        for _ in range(plan.kills):
+            reached, patience = monitor.truth_s or 0.0, time.monotonic() + START_S
+            while monitor.done_s(RECORDER) <= reached and not stop():
+                processes.check()
+                time.sleep(LOOK_S)
+                if time.monotonic() > patience:
+                    raise NodeFailed(f'{RECORDER}: records nothing within {START_S:g} s')
+            if stop():
+                break
+            began = time.monotonic()
+            time.sleep(chance.uniform(*RECORDS_S))
+            recorded_s += time.monotonic() - began
+            crew.kill(RECORDER)
+            done()
+        recordings = [looked_into(each, monitor) for each in crew.recordings if each.ended]
+    return Kills(tuple(recordings), recorded_s)

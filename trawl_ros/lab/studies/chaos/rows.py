@@ -1,0 +1,124 @@
+"""Rows of the fault injection's report."""
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.running.chain import CHAIN
+from trawl_ros.lab.studies.chaos.crew import Recording
+from trawl_ros.lab.studies.chaos.kills import Kills
+from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION
+from trawl_ros.lab.studies.chaos.study import Chaos
+from trawl_ros.lab.studies.chaos.tow import Tow
+from trawl_ros.messages.estimates import COEFFICIENTS
+
+MOST_LOST_S = 1.0
+MOST_GROWTH = 10.0
+"""Memory at the end, per cent above that of the undisturbed tow at its end."""
+
+Sections = list[tuple[str, list[Row]]]
+
+
+def chaos_rows(chaos: Chaos) -> Sections:
+    """Return the rows by their section."""
+    wild = chaos.wild
+    missing = max(0.0, chaos.plan.end_s - wild.towed_s) / 3600.0
+    done = Counter(fault.kind for fault in wild.done)
+    listed = ', '.join(f'{kind} {count}' for kind, count in sorted(done.items()))
+    cut = [recording for recording in wild.recordings if recording.ended]
+    tow = [
+        Row('tow that is missing to the whole', missing, unit='h', target=0.01 * chaos.plan.hours,
+            note=f'{wild.towed_s / 3600.0:.3g} of {chaos.plan.hours:g} h at sea were towed'),
+        Row('faults', float(len(wild.done)), note=listed),
+        Row('nodes ended by themselves', float(len(wild.died)), target=0.0,
+            note='; '.join(_short(words) for _, words in wild.died)),
+        Row('full disks that were not told in a sentence', float(len(wild.mute)), target=0.0,
+            note='; '.join(_short(words) for words in wild.mute)),
+        Row('longest time without truth', wild.silence_s, unit='s',
+            note='wall time; the undisturbed tow: ' f'{chaos.calm.silence_s:.1f} s'),
+    ]  # fmt: skip
+    return [
+        ('The tow', tow),
+        ('Bags', [*_bags(wild.recordings), *_lost(cut, 'before kills and full disks')]),
+        ('Estimate', _estimate(chaos.calm, wild)),
+        ('Memory', _memory(chaos.calm, wild)),
+        ('The recorder killed at full load', _kills(chaos.kills)),
+    ]
+
+
+def _bags(recordings: Sequence[Recording]) -> list[Row]:
+    problems = [recording.problem for recording in recordings if recording.problem]
+    messages = sum(recording.messages for recording in recordings)
+    note = '; '.join(problems) or f'{messages} messages in {len(recordings)} bags'
+    return [Row('bags that cannot be read, repaired', float(len(problems)), target=0.0, note=note)]
+
+
+def _lost(cut: Sequence[Recording], what: str) -> list[Row]:
+    if not cut:
+        return []
+    lost = [recording.lost_s for recording in cut if not recording.problem]
+    note = (
+        f'wall time by which the first truth that is not in the bag was heard before, the worst of '
+        f'{len(lost)}'
+    )
+    worst, least = (max(lost), min(lost)) if lost else (math.nan, math.nan)
+    return [Row(f'lost {what}', worst, least, worst, 's', MOST_LOST_S, note)]
+
+
+def _estimate(calm: Tow, wild: Tow) -> list[Row]:
+    windows = [
+        Row(f'windows of the {title} tow', float(tow.estimate.get('windows', 'nan')),
+            note=tow.finish)
+        for title, tow in (('undisturbed', calm), ('disturbed', wild))
+    ]  # fmt: skip
+    if any(tow.estimate.get('windows', '0') == '0' for tow in (calm, wild)):
+        reason = wild.estimate.get('reason', '')
+        there = Row('estimates without a reason why there is none', float(not reason), target=0.0,
+                    note=reason)  # fmt: skip
+        return [*windows, there]
+    off = {}
+    for name in COEFFICIENTS:
+        value = float(calm.estimate[name])
+        middle, low, high = (float(wild.estimate[f'{name}{end}']) for end in ('', ' low', ' high'))
+        half = high - middle if value > middle else middle - low
+        off[name] = abs(value - middle) / half if half > 0.0 else math.inf * (value != middle)
+    worst = max(off, key=lambda name: off[name])
+    return [
+        *windows,
+        Row('estimate off the undisturbed one', off[worst], min(off.values()), off[worst],
+            'half widths of its 95 % interval', 1.0, f'the worst of twelve coefficients, {worst}'),
+    ]  # fmt: skip
+
+
+def _memory(calm: Tow, wild: Tow) -> list[Row]:
+    if not calm.glances or not wild.glances:
+        return []
+    rows = []
+    for node in (*CHAIN, IDENTIFICATION):
+        before, after = (tow.glances[-1].memory_mb.get(node, math.nan) for tow in (calm, wild))
+        note = f'at the end; {before:.0f} MB undisturbed, {after:.0f} MB after chaos'
+        growth = 100.0 * (after / before - 1.0)
+        rows.append(Row(f'{node}: memory above undisturbed', growth, unit='%', target=MOST_GROWTH,
+                        note=note))  # fmt: skip
+    return rows
+
+
+def _kills(kills: Kills) -> list[Row]:
+    if not kills.recordings:
+        return []
+    messages = sum(recording.messages for recording in kills.recordings)
+    images = sum(recording.images for recording in kills.recordings)
+    return [
+        Row('kills', float(len(kills.recordings))),
+        *_bags(kills.recordings),
+        *_lost(kills.recordings, 'before the kill'),
+        Row('load', messages / kills.recorded_s, unit='messages/s',
+            note=f'of all topics of the chain, {images} images of the sonar among them'),
+    ]  # fmt: skip
+
+
+def _short(words: str) -> str:
+    """Shorten the last words of a process."""
+    lines = [line.strip() for line in words.splitlines()]
+    return f'{lines[0].split(";")[0]}: {lines[-1]}'

@@ -1,0 +1,49 @@
+"""Study of fault injection: a tow undisturbed, the same with faults, and the recorder killed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from trawl_ros.lab.studies.chaos.kills import Kills, Steps, run_kills
+from trawl_ros.lab.studies.chaos.plan import Plan, faults_of
+from trawl_ros.lab.studies.chaos.tow import Shown, Tow, run_tow
+
+
+@dataclass(frozen=True)
+class Chaos:
+    """Results of the tow without faults and with them, and of the killed recorders."""
+
+    plan: Plan
+    calm: Tow
+    wild: Tow
+    kills: Kills
+
+
+def run_chaos(
+    plan: Plan, folder: Path, shown: Shown, steps: Steps, stop: Callable[[], bool]
+) -> Chaos:
+    """Run all three, each node as a process of its own.
+
+    Parameters
+    ----------
+    plan
+        How long and how often.
+    folder
+        Takes what the nodes say; bags lie there for a while.
+    shown
+        Makes a progress bar from a title and its length (s).
+    steps
+        Shows how many of a number of steps are done.
+    stop
+        Asked now and then whether to end early; what was seen until then counts.
+
+    Raises
+    ------
+    TrawlError
+        If there is no ROS 2, or nodes cannot be started.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    calm = run_tow(plan, [], 'undisturbed', folder, shown, stop)
+    wild = Tow() if stop() else run_tow(plan, faults_of(plan), 'chaos', folder, shown, stop)
+    kills = Kills((), 0.0) if stop() else run_kills(plan, folder, steps, stop)
+    return Chaos(plan, calm, wild, kills)

@@ -1,0 +1,1 @@
+"""The study of counters that err as measured ones did."""

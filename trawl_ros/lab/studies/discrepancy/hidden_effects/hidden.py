@@ -1,0 +1,64 @@
+"""Hidden effect of a trial: physics or an error of an instrument, of a size and a random shape.
+
+Hidden effects are written apart from the catalogue that looks for them. They act through the
+general hooks of the model: water, properties of ropes, forces on nodes, the law of the boards, and
+what instruments show.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.model.gear_model import GearModel
+
+Readings = dict[str, float]
+
+
+def ahead(at: Situation) -> np.ndarray:
+    """Unit vector (2,), east and north, of the heading."""
+    return np.array([np.cos(at.heading), np.sin(at.heading)])
+
+
+def _towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    return inputs
+
+
+def _gear(size: float, model: GearModel, at: Situation) -> GearModel:
+    return model
+
+
+def _shown(size: float, readings: Readings, at: Situation) -> Readings:
+    return readings
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Hidden effect with a shape; a size of 0 is none.
+
+    Attributes
+    ----------
+    name
+        That of the effect of the catalogue that should be named, or of something not in it.
+    unit, probe
+        Of the size, and one by which it is seen how much it shows.
+    most
+        Largest size that is possible, to both sides; 0 where a side is none.
+    towed, gear, shown
+        What the gear is towed with where instruments show other inputs; the gear with the effect;
+        what sensors show.
+    """
+
+    name: str
+    unit: str
+    probe: float
+    most: tuple[float, float]
+    towed: Callable[[float, np.ndarray, Situation], np.ndarray] = _towed
+    gear: Callable[[float, GearModel, Situation], GearModel] = _gear
+    shown: Callable[[float, Readings, Situation], Readings] = _shown
+
+    @property
+    def signs(self) -> tuple[float, ...]:
+        """Possible signs of its size."""
+        return tuple(sign for sign, most in zip((-1.0, 1.0), self.most, strict=True) if most > 0.0)

@@ -1,0 +1,181 @@
+"""Hidden effects that the catalogue does not have."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
+from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import CABLES, Draw
+from trawl_ros.model.gear_model import GearModel
+
+AHEAD, LIFT, UP = 0, 1, 2
+USUAL_ATTACK = 0.3
+
+
+@dataclass(frozen=True)
+class MoreLoad:
+    """Coefficient modifier of both boards (``side`` None) or one, by a power of attack."""
+
+    size: float
+    place: int
+    power: float
+    side: int | None = None
+
+    def __call__(
+        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
+    ) -> np.ndarray:
+        """Add to the coefficient."""
+        bent = coefficients + 0.0 * attack[..., None]
+        more = self.size * (attack / USUAL_ATTACK) ** self.power
+        if self.side is None:
+            bent[..., self.place] += more
+        else:
+            bent[..., self.side, self.place] += more[..., self.side]
+        return bent
+
+
+def port_board_lift(chance: np.random.Generator) -> Hidden:
+    """A port board that is bent or has lost a slat."""
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        return model.with_board(bend=MoreLoad(size, LIFT, 1.0, side=0))
+
+    return Hidden('port_board_lift', '', 0.1, (0.6, 0.6), gear=gear)
+
+
+def starboard_board_drag(chance: np.random.Generator) -> Hidden:
+    """A starboard board that drags something along."""
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        return model.with_board(bend=MoreLoad(-size, AHEAD, 0.0, side=1))
+
+    return Hidden('starboard_board_drag', '', 0.1, (0.0, 1.0), gear=gear)
+
+
+def kite_lift(chance: np.random.Generator) -> Hidden:
+    """A kite that is torn, or larger than drawn."""
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        return replace(model, kite=replace(model.kite, area=model.kite.area * (1.0 + size)))
+
+    return Hidden('kite_lift', '', 0.3, (0.9, 2.0), gear=gear)
+
+
+def net_weight(chance: np.random.Generator) -> Hidden:
+    """Sand, mud or water-logged floats in the net."""
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        return model.with_net(1.0, 1.0 + size)
+
+    return Hidden('net_weight', '', 0.3, (0.8, 4.0), gear=gear)
+
+
+def jet(chance: np.random.Generator) -> Hidden:
+    """A layer of the sea that moves along the track."""
+    middle, width = chance.uniform(90.0, 150.0), chance.uniform(25.0, 40.0)
+    depths = np.linspace(0.0, 400.0, 41)
+    profile = np.exp(-0.5 * ((depths - middle) / width) ** 2)
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        currents = size * profile[:, None] * at.along
+        return replace(model, water=model.water.with_more_current(depths, currents))
+
+    return Hidden('jet', 'm/s', 0.1, (0.8, 0.8), gear=gear)
+
+
+def bridle_weed(chance: np.random.Generator) -> Hidden:
+    """Weed on the bridles of one side."""
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        nodes = np.concatenate(model.layout.bridles[2:])
+        on = np.isin(model.ends, nodes).any(axis=1)
+        drag = model.bars.normal_drag * np.where(on, 1.0 + size, 1.0)
+        friction = model.bars.friction * np.where(on, 1.0 + 10.0 * size, 1.0)
+        bars = replace(model.bars, normal_drag=drag, friction=friction)
+        return replace(model, bars=bars)
+
+    return Hidden('bridle_weed', '', 1.0, (0.0, 20.0), gear=gear)
+
+
+def tide(chance: np.random.Generator) -> Hidden:
+    """A current along the track that sets in during the tow, at all depths below the log."""
+    depths = np.array([0.0, 5.0, 30.0, 600.0])
+
+    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
+        profile = np.array([0.0, 0.0, 1.0, 1.0]) * (at.hours - 1.4)
+        currents = size * profile[:, None] * ahead(at)
+        return replace(model, water=model.water.with_more_current(depths, currents))
+
+    return Hidden('tide', 'm/s per h', 0.05, (0.6, 0.6), gear=gear)
+
+
+def counter_drift(chance: np.random.Generator) -> Hidden:
+    """Counters that lose a little at each haul, so that they drift through the tow."""
+
+    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        return np.array([*(inputs[:2] - size * (at.hours - 1.4)), inputs[2]])
+
+    return Hidden('counter_drift', 'm per h', 10.0, (60.0, 60.0), towed=towed)
+
+
+def port_depth_sensor(chance: np.random.Generator) -> Hidden:
+    """A depth sensor of one board that shows too much, the deeper it is."""
+
+    def shown(size: float, readings: Readings, at: Situation) -> Readings:
+        depth = readings['port_door_depth']
+        return readings | {'port_door_depth': depth * (1.0 + size)}
+
+    return Hidden('port_depth_sensor', '', 0.03, (0.3, 0.3), shown=shown)
+
+
+def starboard_cell(chance: np.random.Generator) -> Hidden:
+    """A tension cell of one side alone."""
+
+    def shown(size: float, readings: Readings, at: Situation) -> Readings:
+        return readings | {CABLES[1]: readings[CABLES[1]] * (1.0 + size)}
+
+    return Hidden('starboard_cell', '', 0.1, (0.5, 0.5), shown=shown)
+
+
+def pitch_mount(chance: np.random.Generator) -> Hidden:
+    """Attitude sensors that were mounted askew, and turn in their clamps."""
+
+    def shown(size: float, readings: Readings, at: Situation) -> Readings:
+        error = size * at.hours
+        names = ('port_pitch', 'starboard_pitch')
+        return readings | {name: readings[name] + error for name in names}
+
+    return Hidden('pitch_mount', 'rad per h', 0.02, (0.3, 0.3), shown=shown)
+
+
+def opening_by_depth(chance: np.random.Generator) -> Hidden:
+    """A sonar whose picture of the opening is stretched with depth."""
+
+    def shown(size: float, readings: Readings, at: Situation) -> Readings:
+        opening = readings['vertical_opening']
+        stretched = opening * (1.0 + size * (readings['net_depth'] / 100.0 - 1.5))
+        return readings | {'vertical_opening': stretched}
+
+    return Hidden('opening_by_depth', 'per 100 m', 0.1, (0.6, 0.6), shown=shown)
+
+
+def spread_by_hours(chance: np.random.Generator) -> Hidden:
+    """A spread sensor whose clock drifts."""
+
+    def shown(size: float, readings: Readings, at: Situation) -> Readings:
+        return readings | {'door_spread': readings['door_spread'] + size * (at.hours - 0.9)}
+
+    return Hidden('spread_by_hours', 'm per h', 2.0, (30.0, 30.0), shown=shown)
+
+
+OUTSIDE: Mapping[str, Draw] = {
+    draw.__name__: draw
+    for draw in (
+        bridle_weed, counter_drift, jet, kite_lift, net_weight, opening_by_depth, pitch_mount,
+        port_board_lift, port_depth_sensor, spread_by_hours, starboard_board_drag, starboard_cell,
+        tide,
+    )
+}  # fmt: skip
+"""Thirteen kinds."""

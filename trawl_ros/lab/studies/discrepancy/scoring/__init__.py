@@ -1,0 +1,1 @@
+"""Scores of the verdicts on blind trials, and their report."""

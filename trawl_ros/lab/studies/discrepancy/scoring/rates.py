@@ -1,0 +1,49 @@
+"""Rows of the blind tests: rates and medians with their intervals."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import binomtest
+
+from trawl_ros.lab.report.row import Row
+
+EXACT = 'binomial 95 % interval (Clopper and Pearson)'
+AGAIN = 'median; 95 % interval by drawing trials again'
+DRAWS = 1000
+
+
+def rate(
+    what: str,
+    outcomes: Sequence[bool],
+    *,
+    least: float | None = None,
+    most: float | None = None,
+    note: str = '',
+) -> Row:
+    """Rate of an outcome, %, with its interval."""
+    if not outcomes:
+        return Row(what, np.nan, unit='%', least=least, target=most, note='no trials')
+    count, number = sum(outcomes), len(outcomes)
+    ends = binomtest(count, number).proportion_ci(method='exact')
+    said = f'{count} of {number}; {note or EXACT}'
+    return Row(what, 100.0 * count / number, 100.0 * ends.low, 100.0 * ends.high, '%', most, said,
+               least)  # fmt: skip
+
+
+def median(
+    what: str,
+    values: Sequence[float],
+    unit: str,
+    *,
+    least: float | None = None,
+    most: float | None = None,
+) -> Row:
+    """The median, of trials whose effect was named rightly."""
+    if not values:
+        return Row(what, np.nan, unit=unit, least=least, target=most, note='no trials')
+    known = np.array(values)
+    chance = np.random.default_rng(0)
+    drawn = np.median(known[chance.integers(len(known), size=(DRAWS, len(known)))], axis=1)
+    low, high = np.percentile(drawn, (2.5, 97.5))
+    note = f'{len(known)} trials named rightly at 3 and 6 times; {AGAIN}'
+    return Row(what, float(np.median(known)), float(low), float(high), unit, most, note, least)

@@ -1,0 +1,237 @@
+"""Figures of the blind tests: how often verdicts are right, and what a repair is worth.
+
+Of a trial only its key and ``diagnosis.json`` are known here.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.studies.discrepancy.scoring.rates import rate
+from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
+    Classes,
+    both_named,
+    chosen,
+    effects_of,
+    named_right,
+    names_of,
+    one_named,
+    parted,
+    reported,
+    right,
+    same_said,
+    verdict,
+)
+from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
+from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
+
+
+def all_rows(trials: Sequence[Scored], classes: Classes) -> list[tuple[str, tuple[Row, ...]]]:
+    """All sections with their rows."""
+    return [
+        ('Clean trials', tuple(clean_rows(trials))),
+        ('Effects of the catalogue', tuple(inside_rows(trials, classes))),
+        ('Effects outside the catalogue', tuple(outside_rows(trials))),
+        ('Two effects at once', tuple(pair_rows(trials, classes))),
+        ('Trials that cannot tell', tuple(poor_rows(trials, classes))),
+        ('Full bags', tuple(bag_rows(trials))),
+        ('The repair', tuple(repair_rows(trials, classes))),
+        ('Each effect', tuple(effect_rows(trials, classes))),
+        ('Shuffled keys', tuple(shuffled_rows(trials, classes))),
+    ]
+
+
+def clean_rows(trials: Sequence[Scored]) -> list[Row]:
+    """Rate of false alarms."""
+    clean = chosen(trials, 'clean')
+    return [
+        rate('clean trials with an alarm', [verdict(t) != 'NO_DISCREPANCY' for t in clean],
+              most=2.0),
+        rate('clean trials with a single name', [verdict(t) == 'NAMED' for t in clean],
+              most=0.5),
+    ]  # fmt: skip
+
+
+def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """Detection and naming of effects in the catalogue."""
+    inside = chosen(trials, 'inside')
+    said = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
+    third = chosen(trials, 'inside', 3.0)
+    sizes = [
+        1
+        + len(
+            reported(trial) - {name for own in names_of(trial) for name in classes.get(own, (own,))}
+        )
+        for trial in third
+        if verdict(trial) in ('NAMED', 'AMBIGUOUS')
+    ]
+    testable = {effects_of(trial)[0] for trial in third}
+    rows = [
+        Row(
+            'effects that can be tested at 3 times the smallest detectable size',
+            float(len(testable)),
+            least=12.0,
+            note=', '.join(sorted(testable)),
+        ),
+        *(
+            rate(
+                f'detected at {strength:g} times',
+                [verdict(t) not in ('NO_DISCREPANCY', 'NOT_TESTABLE')
+                 for t in chosen(trials, 'inside', strength)],
+                least=95.0 if strength < 2.0 else None,
+            )
+            for strength in (1.5, 3.0, 6.0)
+        ),
+        rate('truth within the set that is reported',
+             [right(t, reported(t), classes) for t in said], least=98.0,
+             note='of trials NAMED or AMBIGUOUS'),
+        *(
+            rate(
+                f'right single name, or class, at {strength:g} times',
+                [named_right(t, classes) for t in chosen(trials, 'inside', strength)],
+                least=least,
+            )
+            for strength, least in ((1.5, None), (3.0, 90.0), (6.0, 97.0))
+        ),
+        Row('mean size of the set at 3 times', float(np.mean(sizes)) if sizes else np.nan,
+            target=1.5, note='classes not excluded, of trials NAMED or AMBIGUOUS'),
+        rate('wrong single name', [verdict(t) == 'NAMED' and not right(t, names_of(t), classes)
+                                    for t in inside], most=2.0),
+        *(
+            rate(
+                f'UNKNOWN at {strength:g} times',
+                [verdict(t) == 'UNKNOWN' for t in chosen(trials, 'inside', strength)],
+            )
+            for strength in (3.0, 6.0)
+        ),
+    ]  # fmt: skip
+    return rows
+
+
+def _one_class(names: set[str], classes: Classes) -> set[str]:
+    return names | {other for name in names for other in classes.get(name, ())}
+
+
+def outside_rows(trials: Sequence[Scored]) -> list[Row]:
+    """Verdicts on effects outside the catalogue."""
+    outside = chosen(trials, 'outside')
+    kinds = {effects_of(trial)[0] for trial in outside}
+    return [
+        Row('kinds of effects outside the catalogue', float(len(kinds)), least=10.0,
+            note=', '.join(sorted(kinds))),
+        *(
+            rate(
+                f'UNKNOWN at {strength:g} times',
+                [verdict(t) == 'UNKNOWN' for t in chosen(trials, 'outside', strength)],
+                least=least,
+            )
+            for strength, least in ((6.0, 80.0), (10.0, 95.0))
+        ),
+        rate('wrong name', [verdict(t) == 'NAMED' for t in outside], most=10.0),
+        rate('several names', [verdict(t) == 'AMBIGUOUS' for t in outside]),
+    ]  # fmt: skip
+
+
+def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """Verdicts on two effects at once."""
+    pairs = chosen(trials, 'pair')
+    return [
+        rate(
+            'both of two effects at 3 times',
+            [both_named(trial, classes) for trial in pairs],
+            least=50.0,
+        ),
+        rate('one of two effects named alone', [one_named(trial, classes) for trial in pairs]),
+    ]
+
+
+def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """Tows so much alike that effects are too, and the proposed next tow."""
+    poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
+    alone = [trial for trial in poor if verdict(trial) == 'NAMED' and len(reported(trial)) == 1]
+    said = [trial for trial in poor if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
+    return [
+        rate('too poor a trial: a single name, and a wrong one',
+             [trial in alone and not right(trial, names_of(trial), classes) for trial in poor]),
+        rate('too poor a trial: truth within the set that is reported',
+             [right(trial, reported(trial), classes) for trial in said]),
+        rate('the proposed tow parts what could not be told apart', [parted(t) for t in followed],
+             least=80.0, note='of poor trials with several names, or a class, and a proposal'),
+    ]  # fmt: skip
+
+
+def bag_rows(trials: Sequence[Scored]) -> list[Row]:
+    """Agreement of verdicts from full bags with those from simulated windows."""
+    by_number: Mapping[int, Scored] = {
+        trial.key['spec']['number']: trial
+        for trial in trials
+        if trial.key['spec']['form'] == 'windows'
+        and trial.key['spec']['series'] != 'followed'
+        and trial.diagnosis is not None
+    }
+    rows = []
+    for form, words in (('bags', 'one state after the other'), ('dynamic', 'towed in time')):
+        own = [t for t in trials if t.key['spec']['form'] == form and t.diagnosis is not None]
+        pairs = [
+            (trial, by_number[like])
+            for trial in own
+            if (like := trial.key['spec']['like']) in by_number
+        ]
+        listed = ', '.join(
+            f'{"+".join(effects_of(trial)) or "clean"} {verdict(other)} {verdict(trial)}'
+            for trial, other in pairs
+            if not same_said(trial, other)
+        )
+        note = f'; others: {listed}' if listed else ''
+        rows.append(
+            rate(
+                f'full bags, {words}: verdict and name as of its windows',
+                [same_said(trial, other) for trial, other in pairs],
+                note=f'same effect, size and plant, other noise{note}',
+            )
+        )
+    return rows
+
+
+def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """Right names of each effect at 3 and 6 times together."""
+    rows = []
+    for name in sorted({effects_of(trial)[0] for trial in chosen(trials, 'inside')}):
+        own = [
+            trial
+            for trial in chosen(trials, 'inside')
+            if effects_of(trial)[0] == name and trial.key['spec']['strength'] >= 3.0
+        ]
+        if own:
+            verdicts = [verdict(trial) for trial in own]
+            counted = ', '.join(
+                f'{kind} {verdicts.count(kind)}' for kind in dict.fromkeys(verdicts)
+            )
+            words = name.replace('_', ' ')
+            rows.append(
+                rate(
+                    f'{words}: right name',
+                    [named_right(trial, classes) for trial in own],
+                    note=counted,
+                )
+            )
+    return rows
+
+
+def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """Score by chance: the same with keys that belong to other trials."""
+    inside = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
+    if len(inside) < 2:
+        return []
+    order = np.random.default_rng(0).permutation(len(inside))
+    mixed = [
+        Scored(inside[other].key, trial.diagnosis)
+        for trial, other in zip(inside, order, strict=True)
+    ]
+    kinds = len({effects_of(trial)[0] for trial in inside})
+    return [
+        rate('right single name at 3 and 6 times, keys shuffled',
+              [named_right(trial, classes) for trial in mixed],
+              note=f'one in {kinds} by chance, more where classes are wide'),
+    ]  # fmt: skip

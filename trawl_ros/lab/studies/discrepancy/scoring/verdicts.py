@@ -1,0 +1,108 @@
+"""Verdicts on a trial against its hidden effects.
+
+Of a trial only its key and ``diagnosis.json`` are known here.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.diagnosis.candidates import blocks_of_candidates
+from trawl_ros.diagnosis.rules import ALIKE
+from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood
+from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
+
+Classes = Mapping[str, tuple[str, ...]]
+"""Names as good as each effect's own, fixed before any trial is made."""
+
+
+def names_of(trial: Scored) -> set[str]:
+    """Named effects."""
+    return {effect['name'] for effect in said_of(trial)['effects']}
+
+
+def reported(trial: Scored) -> set[str]:
+    """All effects that are not excluded."""
+    alike = {name for effect in said_of(trial)['effects'] for name in effect['class']}
+    return names_of(trial) | alike | set(said_of(trial)['ambiguous_with'])
+
+
+def effects_of(trial: Scored) -> tuple[str, ...]:
+    """Hidden effects."""
+    return tuple(trial.key['spec']['effects'])
+
+
+def chosen(trials: Iterable[Scored], series: str, strength: float | None = None) -> list[Scored]:
+    """Testable trials of a series and a strength."""
+    return [
+        trial
+        for trial in trials
+        if trial.key['spec']['series'] == series
+        and trial.key['spec']['form'] == 'windows'
+        and trial.diagnosis is not None
+        and (strength is None or trial.key['spec']['strength'] == strength)
+    ]
+
+
+def verdict(trial: Scored) -> str:
+    """The first word of a diagnosis."""
+    return str(said_of(trial)['verdict'])
+
+
+def right(trial: Scored, names: set[str], classes: Classes) -> bool:
+    """True if all hidden effects are among names, by their own or that of their class."""
+    return all(names & {name, *classes.get(name, ())} for name in effects_of(trial))
+
+
+def named_right(trial: Scored, classes: Classes) -> bool:
+    """True if there is one name, and the right one."""
+    alone = len(said_of(trial)['effects']) == 1
+    return verdict(trial) == 'NAMED' and alone and right(trial, names_of(trial), classes)
+
+
+def both_named(trial: Scored, classes: Classes) -> bool:
+    """True if two effects are hidden and both are named."""
+    pair = trial.key['spec']['series'] == 'pair'
+    return pair and verdict(trial) == 'NAMED' and right(trial, names_of(trial), classes)
+
+
+def one_named(trial: Scored, classes: Classes) -> bool:
+    """True if two effects are hidden and one of them is named, without any that is not there."""
+    names = names_of(trial)
+    pair = trial.key['spec']['series'] == 'pair' and not both_named(trial, classes)
+    return pair and verdict(trial) == 'NAMED' and bool(names) and names <= set(effects_of(trial))
+
+
+def said_of(trial: Scored) -> dict[str, Any]:
+    """Diagnosis of the trial."""
+    assert trial.diagnosis is not None
+    return trial.diagnosis
+
+
+def same_said(trial: Scored, other: Scored) -> bool:
+    """True if verdict and names are the same."""
+    return verdict(trial) == verdict(other) and names_of(trial) == names_of(other)
+
+
+def parted(trial: Scored) -> bool:
+    """True if one effect alone is left, and the right one."""
+    return verdict(trial) == 'NAMED' and reported(trial) == set(effects_of(trial))
+
+
+def classes(likely: Likelihood) -> Mapping[str, tuple[str, ...]]:
+    """Each effect of the catalogue with all that can do what any of its parameters does alone.
+
+    To first order, by cosines above `ALIKE` for the plan of the trial.
+    """
+    found = likely.mimicry
+    blocks = list(zip(likely.wanted, blocks_of_candidates(likely.wanted), strict=True))
+    alike: dict[str, set[str]] = {one.name: {one.name} for one, _ in blocks}
+    for one, block in blocks:
+        for row in np.eye(len(block)):
+            alike[one.name] |= {
+                other.name
+                for other, rows in blocks
+                if other.name != one.name and found.covered(block, row, rows) > ALIKE
+            }
+    return {name: tuple(sorted(names)) for name, names in alike.items()}

@@ -1,0 +1,138 @@
+"""Worth of a repair where the effect was named rightly."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.studies.discrepancy.scoring.rates import median, rate
+from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
+    Classes,
+    chosen,
+    effects_of,
+    named_right,
+    said_of,
+)
+from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
+from trawl_ros.model.board import COEFFICIENTS
+
+
+def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+    """Gain by the named effect on held-out tows."""
+    named = [
+        trial
+        for trial in chosen(trials, 'inside')
+        if trial.key['spec']['strength'] >= 3.0 and named_right(trial, classes)
+    ]
+    removed, placebo = (
+        [100.0 * part for trial in named if (part := _removed(trial, by)) is not None]
+        for by in ('after', 'placebo')
+    )
+    truth = [_coefficient_ratio(trial, _truth(trial)) for trial in named]
+    quiet = [trial for trial in named if trial.quiet is not None]
+    nearest = [_coefficient_ratio(trial, _quiet(trial)['coefficients']) for trial in quiet]
+    hidden = [_hidden_covered(trial) for trial in named]
+    best = [covered for trial in quiet for covered in _best_covered(trial)]
+    return [
+        median('held-out excess error removed by the effect that is named', removed, '%',
+               least=80.0),
+        median('held-out excess error removed by the best wrong effect', placebo, '%',
+               most=20.0),
+        median('error of the coefficients with the effect named over that without',
+               _known(truth), '', most=1.0 / 3.0),
+        median('the same from what readings without errors are best fitted with',
+               _known(nearest), ''),
+        rate('amplitude intervals that cover the best fit to readings without errors', best,
+             least=90.0, most=98.0, note='all parameters of effects named rightly at 3 times'),
+        rate('amplitude intervals that cover the hidden size',
+             [value for value in hidden if value is not None],
+             note='effects of one parameter whose unit is that of the size'),
+    ]  # fmt: skip
+
+
+def _known(values: Sequence[float | None]) -> list[float]:
+    return [value for value in values if value is not None]
+
+
+def _quiet(trial: Scored) -> dict[str, Any]:
+    assert trial.quiet is not None
+    return trial.quiet
+
+
+def _truth(trial: Scored) -> Mapping[str, float]:
+    return dict(zip(COEFFICIENTS, trial.key['coefficients'], strict=True))
+
+
+def _removed(trial: Scored, by: str) -> float | None:
+    channels = said_of(trial)['channels']
+    if any(channel[by] is None for channel in channels.values()):
+        return None
+    before, after, expected = (
+        {name: channel[key] for name, channel in channels.items()}
+        for key in ('before', by, 'expected')
+    )
+    return part_removed(before, after, expected, trial.key['floor'])
+
+
+def part_removed(
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    expected: Mapping[str, float],
+    floor: Mapping[str, float],
+) -> float | None:
+    """Share of the mean square error beyond that of the plant itself which a repair removes.
+
+    Parameters
+    ----------
+    before, after, expected, floor
+        Errors by channel: without and with it, those of instruments, in which all are counted, and
+        those of the plant.
+
+    Returns
+    -------
+    float or None
+        None where nothing is beyond, or a channel's floor is not known.
+    """
+    if not set(before) <= set(floor):
+        return None
+    was, left = (
+        sum((errors[name] ** 2 - floor[name] ** 2) / expected[name] ** 2 for name in before)
+        for errors in (before, after)
+    )
+    return 1.0 - left / was if was > 0.0 else None
+
+
+def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | None:
+    """Error of the coefficients with the effect over that without, each in its posterior std."""
+    found = said_of(trial)['coefficients']
+    sums = {'before': 0.0, 'after': 0.0}
+    for name, value in truth.items():
+        own = found[name]
+        if own['after'] is None:
+            return None
+        for when in sums:
+            sums[when] += ((own[when]['value'] - value) / own['after']['std']) ** 2
+    return float(np.sqrt(sums['after'] / sums['before']))
+
+
+def _best_covered(trial: Scored) -> list[bool]:
+    """Coverage of the best fit to readings without errors by each interval."""
+    name = effects_of(trial)[0]
+    own = [effect for effect in said_of(trial)['effects'] if effect['name'] == name]
+    return [
+        bool(interval['low'] <= _quiet(trial)['parameters'][parameter] <= interval['high'])
+        for effect in own
+        for parameter, interval in effect['parameters'].items()
+    ]
+
+
+def _hidden_covered(trial: Scored) -> bool | None:
+    """True if the interval of an effect of one parameter covers the hidden size."""
+    effects, name = said_of(trial)['effects'], effects_of(trial)[0]
+    if len(effects) != 1 or effects[0]['name'] != name or len(effects[0]['parameters']) != 1:
+        return None
+    ((_, parameter),) = effects[0]['parameters'].items()
+    neutral = 1.0 if name == 'warp_strumming' else 0.0
+    size = trial.key['sizes'][0] + neutral
+    return bool(parameter['low'] <= size <= parameter['high'])

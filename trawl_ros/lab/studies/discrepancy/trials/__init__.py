@@ -1,0 +1,1 @@
+"""Blind trials: planned, made from a plant, and recorded."""

@@ -1,0 +1,138 @@
+"""Plan of the blind tests: the trials and their numbers."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from itertools import count, product
+
+import numpy as np
+
+from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.lab.studies.discrepancy.trials.trial import Form, Spec
+from trawl_ros.lab.studies.identification.plant import Cut
+
+SEED = 36
+"""Of the study as it is reported; rules were chosen by looking at trials of 1, 31 to 35 and 51."""
+
+FINER = Cut(around=12, lines=2, unjoined=True)
+"""Plant and model."""
+
+PLANTS = 8
+STRENGTHS = (1.5, 3.0, 6.0)
+OUTSIDE_STRENGTHS = (6.0, 10.0)
+PAIR_STRENGTH = 3.0
+POOR_STRENGTH = 2.0
+
+PAIRS = (
+    ('current_shear', 'tension_cell'),
+    ('catch_build_up', 'counter_offset'),
+    ('warp_asymmetry', 'spread_sensor'),
+    ('speed_log', 'depth_sensor'),
+    ('net_drag', 'cross_current'),
+    ('counter_scale', 'tension_cell'),
+)
+
+
+ALIKE_WHERE_POOR = (
+    'counter_offset', 'counter_scale', 'cross_current', 'current_shear', 'depth_sensor',
+    'gear_weight', 'speed_log', 'warp_asymmetry',
+)  # fmt: skip
+"""Each of these has a rival with a cosine above 0.9 in a poor trial."""
+
+IN_BAGS = 20
+"""One in so many trials is made as bags too."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Plan of the study's size.
+
+    Attributes
+    ----------
+    gear
+        File or name.
+    seed
+        Of all trials.
+    clean
+        Trials without any effect.
+    inside
+        Trials of each effect of the catalogue and strength, to both sides in turn.
+    outside
+        Trials of each effect that is not in it and strength, likewise.
+    pairs
+        Trials of each of `PAIRS`.
+    poor
+        Trials, with a poor plan, of each of `ALIKE_WHERE_POOR`.
+    dynamic
+        So many trials, or all if these are fewer, are towed in time too. Some of them will not be
+        possible; 20 of the default are to be left.
+    around
+        Meshes around the mouth of the model's net.
+    """
+
+    gear: str = 'kaifuha'
+    seed: int = SEED
+    clean: int = 60
+    inside: int = 2
+    outside: int = 1
+    pairs: int = 2
+    poor: int = 2
+    dynamic: int = 23
+    around: int = FINER.around
+
+    @property
+    def cut(self) -> Cut:
+        """Mesh of model and plant."""
+        return Cut(**{**asdict(FINER), 'around': self.around})
+
+    def specs(self) -> tuple[Spec, ...]:
+        """All trials."""
+        alone = tuple(self._in_windows())
+        numbers = count(len(alone))
+        full = [one for one in alone if one.plan == 'full']
+        again = full[IN_BAGS // 2 :: IN_BAGS]
+        apart = max(1, len(full) // max(1, self.dynamic))
+        in_time = full[apart // 2 :: apart][: self.dynamic]
+
+        def same(one: Spec, form: Form) -> Spec:
+            return replace(one, number=next(numbers), form=form, like=one.number)
+
+        bags = [same(one, 'bags') for one in again]
+        return (*alone, *bags, *(same(one, 'dynamic') for one in in_time))
+
+    def _in_windows(self) -> Iterator[Spec]:
+        chance = np.random.default_rng([self.seed, *b'plan'])
+        numbers = count()
+
+        def spec(
+            series: str,
+            effects: tuple[str, ...],
+            strength: float,
+            signs: tuple[float, ...],
+            plan: str = 'full',
+        ) -> Spec:
+            plant = int(chance.integers(PLANTS))
+            return Spec(series, next(numbers), effects, strength, signs, plant, plan)
+
+        for _ in range(self.clean):
+            yield spec('clean', (), 0.0, ())
+        for kind, group, strengths, many, plan in (
+            ('inside', INSIDE, STRENGTHS, self.inside, 'full'),
+            ('outside', OUTSIDE, OUTSIDE_STRENGTHS, self.outside, 'full'),
+            ('poor', {name: INSIDE[name] for name in ALIKE_WHERE_POOR}, (POOR_STRENGTH,),
+             self.poor, 'poor'),
+        ):  # fmt: skip
+            for name, strength in product(group, strengths):
+                signs = group[name](np.random.default_rng(0)).signs
+                first = int(chance.integers(len(signs)))
+                for turn in range(many):
+                    # To both sides in turn, whichever comes first.
+                    side = signs[(first + turn) % len(signs)]
+                    yield spec(kind, (name,), strength, (side,), plan)
+        for names in PAIRS:
+            for _ in range(self.pairs):
+                sides = tuple(
+                    float(chance.choice(INSIDE[name](np.random.default_rng(0)).signs))
+                    for name in names
+                )
+                yield spec('pair', names, PAIR_STRENGTH, sides)

@@ -1,0 +1,157 @@
+"""Plant of a trial: a gear that differs from the model, towed with hidden effects."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.lab.studies.discrepancy.trials.tows import (
+    FULL,
+    STATES,
+    PlannedTow,
+    State,
+    TrialPlan,
+    nearest,
+)
+from trawl_ros.lab.studies.identification.plant import Cut, Look
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.sensitivity import sensitivities
+from trawl_ros.solver.slow_mode import slow_mode
+
+MOST_DRAWS = 100
+
+BOARD_SPREAD = 0.5
+"""Boards are drawn with this part of the prior's std: the gear is known as well as from its drawing
+and an earlier trial."""
+
+NORMAL_DRAG, FRICTION = 0.985, 1.15
+"""The plant's netting and its ropes have another law of drag: less across, more along the twine."""
+
+
+@dataclass(frozen=True)
+class Clean:
+    """Plant without hidden effects in one state; ``slow`` as in `Prediction`."""
+
+    look: Look
+    slow: np.ndarray
+    state: Equilibrium
+
+
+@dataclass(frozen=True)
+class Plant:
+    """Plant with a board of its own, and its states without hidden effects."""
+
+    model: GearModel
+    coefficients: np.ndarray
+    clean: dict[State, Clean]
+
+    def at(self, state: State) -> Clean:
+        """Return the plant in a state without hidden effects.
+
+        Raises
+        ------
+        NoSteadyState
+            If it cannot be towed so.
+        """
+        if state not in self.clean:
+            self.clean[state] = _solved(self.model, state, self.clean)
+        return self.clean[state]
+
+    def towed(
+        self,
+        effects: Sequence[tuple[Hidden, float]],
+        plan: TrialPlan = FULL,
+    ) -> tuple[tuple[Look, ...], ...]:
+        """All tows with effects of some sizes hidden in those that are no baseline.
+
+        Raises
+        ------
+        NoSteadyState
+            If the gear cannot be towed so.
+        """
+        return tuple(
+            tuple(
+                self._look(tow, place, effects if number >= plan.baseline else ())
+                for place in range(len(tow.states))
+            )
+            for number, tow in enumerate(plan.tows)
+        )
+
+    def _look(self, tow: PlannedTow, place: int, effects: Sequence[tuple[Hidden, float]]) -> Look:
+        at, clean = tow.moment(place), self.at(tow.states[place])
+        inputs = np.array(at.inputs)
+        gear, shown = self.model, inputs
+        for hidden, size in effects:
+            shown = hidden.towed(size, shown, at)
+            gear = hidden.gear(size, gear, at)
+        values = clean.look.values
+        if gear is not self.model or not np.array_equal(shown, inputs):
+            port, starboard, speed = map(float, shown)
+            point = OperatingPoint(port, starboard, speed)
+            values = find_equilibrium(gear, point, clean.state).observables.array()
+        readings = dict(zip(OBSERVABLES, map(float, values), strict=True))
+        for hidden, size in effects:
+            readings = hidden.shown(size, readings, at)
+        return replace(clean.look, values=np.array([readings[name] for name in OBSERVABLES]))
+
+
+def _solved(model: GearModel, state: State, known: Mapping[State, Clean]) -> Clean:
+    near = known[nearest(state, tuple(known))].state if known else None
+    found = find_equilibrium(model, OperatingPoint(state[0], *state), near)
+    if found.surfaced or found.outside_law:
+        raise NoSteadyState('the gear surfaces, or a board is outside its law', 'outside law')
+    by = sensitivities(model, found)
+    look = Look(state, found.observables.array(), by[:, 12:], by[:, :12])
+    return Clean(look, slow_mode(model, found).shape, found)
+
+
+def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
+    """Draw a board that can be towed in all states.
+
+    Parameters
+    ----------
+    gear, cut
+        The gear, and how fine model and plant are.
+    seed, number
+        Of the study, and of the plant within it.
+
+    Raises
+    ------
+    TrawlError
+        If none of many boards can be towed.
+    """
+    chance = np.random.default_rng([seed, number, *b'plant'])
+    prior = board_prior(cut.model(gear))
+    model = with_other_law(build_model(cut.plant(gear)))
+    order = sorted(STATES, key=lambda state: (state[1], -state[0]))
+    for _ in range(MOST_DRAWS):
+        drawn = prior.start + BOARD_SPREAD * prior.std * chance.standard_normal(len(prior.start))
+        if not np.all((prior.low <= drawn) & (drawn <= prior.high)):
+            continue
+        board = model.with_coefficients(drawn)
+        clean: dict[State, Clean] = {}
+        try:
+            for state in order:
+                clean[state] = _solved(board, state, clean)
+            require_usable(board, clean[order[0]].state)
+        except NoSteadyState:
+            continue
+        return Plant(board, drawn, clean)
+    raise TrawlError(f'none of {MOST_DRAWS} boards drawn can be towed in all states of the plan')
+
+
+def with_other_law(model: GearModel) -> GearModel:
+    """Gear with another law of drag of netting and its ropes."""
+    net = np.isin(model.ends, model.layout.net).all(axis=1)
+    bars = replace(
+        model.bars,
+        normal_drag=np.where(net, NORMAL_DRAG, 1.0) * model.bars.normal_drag,
+        friction=np.where(net, FRICTION, 1.0) * model.bars.friction,
+    )
+    return replace(model, bars=bars)

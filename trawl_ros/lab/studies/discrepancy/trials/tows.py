@@ -1,0 +1,78 @@
+"""Planned trials: their steady states, courses and times."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.effects.base.effect import Situation
+
+State = tuple[float, float]
+"""Warp length (m) and speed (m/s) as counters and log show them."""
+
+HOURS_APART = 0.5
+FIRST_HOURS = 0.4
+"""Into the tow the first state is reached, and another after each half hour."""
+
+_ONE: tuple[State, ...] = ((300.0, 2.4), (550.0, 2.0), (800.0, 2.2), (450.0, 2.4), (550.0, 2.2))
+_TWO: tuple[State, ...] = ((450.0, 2.0), (300.0, 2.2), (650.0, 2.4), (900.0, 2.2), (450.0, 2.2))
+_THREE: tuple[State, ...] = ((650.0, 2.0), (900.0, 2.4), (300.0, 2.0), (550.0, 2.4), (650.0, 2.2))
+
+
+@dataclass(frozen=True)
+class PlannedTow:
+    """Planned tow: steady states one after another; ``eastward`` or on the reciprocal track."""
+
+    states: tuple[State, ...]
+    eastward: bool
+
+    @property
+    def sense(self) -> float:
+        """1 eastward, -1 on the reciprocal track."""
+        return 1.0 if self.eastward else -1.0
+
+    def moment(self, place: int) -> Situation:
+        """Situation of the state at a place."""
+        length, speed = self.states[place]
+        return Situation(
+            (length, length, speed),
+            sense=self.sense,
+            hours=FIRST_HOURS + HOURS_APART * place,
+        )
+
+
+@dataclass(frozen=True)
+class TrialPlan:
+    """Planned trial: tows, of which the first ``baseline`` are from when the gear was in order."""
+
+    tows: tuple[PlannedTow, ...]
+    baseline: int
+
+
+FULL = TrialPlan(
+    tuple(
+        PlannedTow(states, eastward=number % 2 == 0)
+        for number, states in enumerate((_ONE, _TWO, _THREE, _ONE, _TWO, _THREE, _ONE, _TWO))
+    ),
+    baseline=2,
+)
+"""The states of a tow come early in one and late in another, on both courses."""
+
+_ALIKE: tuple[State, ...] = ((550.0, 2.0), (550.0, 2.2), (550.0, 2.4))
+POOR = TrialPlan(
+    (*FULL.tows[:2], *(PlannedTow(_ALIKE, eastward=True) for _ in range(3))), baseline=2
+)
+"""With the suspect gear nobody turned round or changed the length of the warps, so that there is
+much that such tows cannot tell apart."""
+
+PLANS: Mapping[str, TrialPlan] = {'full': FULL, 'poor': POOR}
+
+STATES = tuple(
+    sorted({state for plan in PLANS.values() for tow in plan.tows for state in tow.states})
+)
+
+
+def nearest(state: State, known: tuple[State, ...]) -> State:
+    """The state most like another."""
+    away = [abs(other[0] / state[0] - 1.0) + abs(other[1] / state[1] - 1.0) for other in known]
+    return known[int(np.argmin(away))]

@@ -1,0 +1,1 @@
+"""The study of hostile messages to every subscription of every node."""

@@ -1,0 +1,218 @@
+"""Study of hostile messages: every subscription of every node, each node in this process."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity
+from rclpy.parameter import Parameter
+
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.lab.studies.hostile.attack import Attack, Stream, Tally, examples_of
+from trawl_ros.lab.studies.soak.long_tow import write_coarse_gear, write_long_tow
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.commands import fault_command, vessel_command, winch_command
+from trawl_ros.messages.diagnostics import OK, Status, diagnostic_array
+from trawl_ros.messages.estimates import (
+    Innovation,
+    covariance_message,
+    estimate_message,
+    innovation_message,
+)
+from trawl_ros.messages.pieces import TopicMessage
+from trawl_ros.messages.stamps import header
+from trawl_ros.messages.truth_to_messages import clock_message
+from trawl_ros.nodes.autopilot_node import AutopilotNode
+from trawl_ros.nodes.autotrawl_node import AutotrawlNode
+from trawl_ros.nodes.bag_recorder import BagRecorder
+from trawl_ros.nodes.discrepancy_node import FINDINGS, DiscrepancyNode
+from trawl_ros.nodes.door_sensor_node import DoorSensorNode
+from trawl_ros.nodes.identification_node import STATUS, IdentificationNode
+from trawl_ros.nodes.runtime.credit import HEADER
+from trawl_ros.nodes.runtime.graph_checks import SYNC
+from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.sim_node import SimNode
+from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
+from trawl_ros.nodes.vessel_node import VesselNode
+from trawl_ros.nodes.winch_node import WinchNode
+from trawl_ros.records.topics import absolute
+from trawl_ros.scenario.recording import recorded
+from trawl_ros.scenario.run import Trial
+from trawl_ros.scenario.scenario import load_scenario
+
+MINUTES = 8.0
+"""Length of the sound tow."""
+
+SHARE = 0.05
+"""Hostile messages per sound one, where an estimate is made."""
+
+MOST_MOVED = 0.3
+"""Standard deviations by which an estimate may move without a word."""
+
+QUICK = {'settle_s': 0.0, 'settle_passages': 0.0, 'window_s': 20.0}
+"""Windows such as a short tow has."""
+
+DOMAIN = 231
+STEPS = 11
+"""Nodes, and the estimate."""
+
+Kind = Callable[..., TrawlNode]
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Shift of an estimate by hostile messages.
+
+    ``shift`` is the largest change of a coefficient in standard deviations of the undisturbed
+    estimate, NaN where one of both is missing; ``told`` is how many messages were refused or
+    readings rejected beyond those of the undisturbed tow, of ``sent`` hostile ones.
+    """
+
+    shift: float
+    told: int
+    sent: int
+    windows: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Found:
+    """Result of all attacks."""
+
+    tallies: tuple[Tally, ...]
+    moved: Moved
+
+
+def run_hostile(
+    count: int, seed: int, step: Callable[[], None] = lambda: None, minutes: float = MINUTES
+) -> Found:
+    """Attack each node with its part of a number of messages.
+
+    Parameters
+    ----------
+    count
+        Hostile messages, over all nodes.
+    seed
+        Of all draws.
+    step
+        Called after each node.
+    minutes
+        Length of the sound tow of which they are made.
+    """
+    with TemporaryDirectory() as name, _context() as context:
+        folder = Path(name)
+        gear = write_coarse_gear(folder, 'kaifuha')
+        stream = sound_stream(folder, gear, minutes)
+        examples = examples_of(stream)
+        tallies = []
+        kinds = _nodes(folder, gear)
+        for number, (kind, parameters) in enumerate(kinds):
+            with _running(context, kind, parameters) as (node, executor):
+                attack = Attack(node, executor, stream, seed + number)
+                attack.feed_sound()
+                attack.feed_hostile(examples, -(-count // len(kinds)))
+                if not attack.tally.ended:
+                    attack.tally.answers = attack.feed_until_answered()
+                tallies.append(attack.tally)
+            step()
+        moved = _moved(context, gear, stream, seed)
+        step()
+    return Found(tuple(tallies), moved)
+
+
+def sound_stream(folder: Path, gear: str, minutes: float) -> Stream:
+    """Tow for a while; give all messages as they would be sent, with clock and commands."""
+    scenario = load_scenario(write_long_tow(folder, gear, minutes / 60.0))
+    found: list[tuple[str, str, bytes]] = []
+    for stamp, messages in recorded(Trial(scenario)):
+        others = [
+            clock_message(stamp),
+            winch_command(stamp, 380.0, 380.0),
+            vessel_command(stamp, 2.0, 0.0),
+            (SYNC, header(stamp, 'bag_recorder')),
+            fault_command('door/spread', 'none'),
+            *_estimates(stamp),
+        ]
+        for topic, message in (*others, *messages):
+            type_name = HEADER if topic == SYNC else message.__msgtype__
+            found.append((absolute(topic), type_name, serialize(message)))
+    return found
+
+
+def _estimates(stamp: int) -> list[TopicMessage]:
+    """Give what the recorder hears besides: estimates and findings."""
+    statuses = diagnostic_array(stamp, [Status('coefficients', OK, 'estimating', {'a1': '1.19'})])
+    return [
+        estimate_message(np.ones(12)),
+        covariance_message(np.eye(12)),
+        innovation_message(stamp, [Innovation('door_spread', 0.1, 0.3, 0.3)]),
+        *((name, statuses) for name in (STATUS, FINDINGS, DIAGNOSTICS)),
+    ]
+
+
+def _nodes(folder: Path, gear: str) -> list[tuple[Kind, dict[str, Any]]]:
+    by_gear = {'gear': gear, 'use_sim_time': True}
+    instruments = (WinchNode, DoorSensorNode, TrawlSonarNode, VesselNode)
+    return [
+        (SimNode, {'gear': gear, 'time_scale': 1.0}),
+        *((kind, by_gear) for kind in instruments),
+        (AutotrawlNode, {'mode': 'tension', 'use_sim_time': True}),
+        (AutopilotNode, {'mode': 'heading', 'use_sim_time': True}),
+        (BagRecorder, {'output': str(folder / 'bag'), 'use_sim_time': True}),
+        (IdentificationNode, by_gear | {'advise': False}),
+        (DiscrepancyNode, by_gear),
+    ]
+
+
+def _moved(context: Context, gear: str, stream: Stream, seed: int) -> Moved:
+    found: list[tuple[Estimate | None, int, int]] = []
+    for share in (0.0, SHARE):
+        parameters = {'gear': gear, 'use_sim_time': True, 'advise': False, **QUICK}
+        with _running(context, IdentificationNode, parameters) as (node, executor):
+            attack = Attack(node, executor, stream, seed)
+            attack.feed_mixed(share)
+            node.finish_work()
+            outcome = node._worker.outcome
+            told = node.traffic.total('refused') + sum(outcome.rejected.values())
+            found.append((outcome.estimate, told, sum(attack.tally.sent.values())))
+    (calm, before, _), (stormy, after, sent) = found
+    windows = (calm.windows if calm else 0, stormy.windows if stormy else 0)
+    shift = float('nan')
+    if calm and stormy:
+        deviations = np.sqrt(np.diag(calm.covariance))
+        shift = float(np.max(np.abs(stormy.values - calm.values) / deviations))
+    return Moved(shift, after - before, sent, windows)
+
+
+@contextmanager
+def _context() -> Iterator[Context]:
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=DOMAIN)
+    try:
+        yield context
+    finally:
+        context.try_shutdown()
+
+
+@contextmanager
+def _running(
+    context: Context, kind: Kind, parameters: dict[str, Any]
+) -> Iterator[tuple[Any, SingleThreadedExecutor]]:
+    overrides = [Parameter(name, value=value) for name, value in parameters.items()]
+    node = kind(context=context, parameter_overrides=overrides)
+    # It says each new reason, and here there are thousands.
+    node.get_logger().set_level(LoggingSeverity.FATAL)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    try:
+        yield node, executor
+    finally:
+        executor.remove_node(node)
+        node.destroy_node()
+        executor.shutdown()

@@ -1,0 +1,1 @@
+"""Trials of the estimator on plants that are not its model."""

@@ -1,0 +1,63 @@
+"""Fisher information in the windows of a trial: the bound of any estimator."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from trawl_ros.lab.studies.identification.plant import Look
+from trawl_ros.lab.studies.identification.readings import Sensors
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+
+ROWS = [OBSERVABLES.index(name) for name in MEASURED]
+
+
+def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> np.ndarray:
+    """Fisher information (12, 12) of the coefficients in the windows of some tows.
+
+    The covariance is the true one: noise of the windows' means, offsets and errors of scale that
+    go through a tow, and all of these of the warp lengths and speed, through the sensitivities.
+
+    Parameters
+    ----------
+    tows
+        What the plant shows at the truth.
+    sensors
+        How good instruments truly are.
+    """
+    total = np.zeros((12, 12))
+    for looks in tows:
+        gain = np.vstack([look.by_coefficients[ROWS] for look in looks])
+        whitened = np.linalg.solve(np.linalg.cholesky(_covariance(looks, sensors)), gain)
+        total += whitened.T @ whitened
+    return total
+
+
+def _covariance(looks: Sequence[Look], sensors: Sensors) -> np.ndarray:
+    """Covariance of measured less predicted at the measured inputs, over all windows of a tow."""
+    own = np.diag([sensors.mean_std(name) ** 2 for name in MEASURED])
+    inputs = np.diag([sensors.mean_std(name) ** 2 for name in INPUTS])
+    blocks = []
+    for look in looks:
+        sensitivity = look.by_inputs[ROWS]
+        blocks.append(own + sensitivity @ inputs @ sensitivity.T)
+    columns = []
+    for name in (*MEASURED, *INPUTS):
+        channel, factor = CHANNELS[name], sensors.factor(name)
+        offset = np.concatenate([_effect(look, name) for look in looks])
+        scale = np.concatenate([_effect(look, name) * _size(look, name) for look in looks])
+        columns += [factor * channel.bias * offset, factor * channel.bias_fraction * scale]
+    shared = np.column_stack(columns)
+    return np.asarray(block_diag(*blocks)) + shared @ shared.T
+
+
+def _effect(look: Look, name: str) -> np.ndarray:
+    """Sensitivity (k,) of the residuals to an offset of a channel or input."""
+    if name in INPUTS:
+        return -look.by_inputs[ROWS, INPUTS.index(name)]
+    return np.array([float(name == other) for other in MEASURED])
+
+
+def _size(look: Look, name: str) -> float:
+    return float(look.inputs[INPUTS.index(name)]) if name in INPUTS else look[name]

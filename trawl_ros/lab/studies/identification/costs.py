@@ -1,0 +1,212 @@
+"""Computing cost of the identification: a bag replayed at once, and the node in real time."""
+
+import math
+import os
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import psutil
+
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.cli.progress import TimeProgress
+from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.core.resources import share_path
+from trawl_ros.core.time import SECOND
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.running.own_graph import own_graph
+from trawl_ros.lab.running.processes import Processes
+from trawl_ros.nodes.playback.excerpt import Excerpt
+
+REPLAY_S = 3600.0
+LEAST_RATIO = 200.0
+"""Times real time of the replay."""
+
+LIVE_S = 990.0
+"""So much of the sample trial is played in real time: its first two steady states."""
+
+LATEST_S = 1.0
+MOST_OF_CORE = 20.0
+
+LOOK_S = 0.5
+NODE = 'identification_node'
+PLAYER = 'bag_player'
+
+IDENTIFY = 'import sys; from trawl_ros.cli.main import main; sys.exit(main())'
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Cost of a replay: recorded time, processor time and wall time, s."""
+
+    recorded_s: float
+    cpu_s: float
+    wall_s: float
+
+
+def replay(seconds: float = REPLAY_S) -> Replay:
+    """Run ``trawl identify`` on the beginning of the sample trial, as one process.
+
+    Raises
+    ------
+    TrawlError
+        If it fails.
+    """
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        recorded_s = _cut(share_path('bags', 'sea_trial'), folder / 'bag', seconds)
+        before, began = _children_s(), time.monotonic()
+        done = subprocess.run(
+            [
+                sys.executable, '-c', IDENTIFY, 'identify', str(folder / 'bag'),
+                '--out', str(folder / 'out'),
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, 'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1'},
+        )  # fmt: skip
+        found = Replay(recorded_s, _children_s() - before, time.monotonic() - began)
+    if done.returncode:
+        raise TrawlError(f'trawl identify ended with code {done.returncode}: {done.stderr}')
+    return found
+
+
+def replay_rows(found: Replay) -> list[Row]:
+    """Speed of a replay over real time on one core."""
+    return [
+        Row(
+            'replay through trawl identify',
+            found.recorded_s / found.cpu_s,
+            unit='times real time',
+            least=LEAST_RATIO,
+            note=f'{found.recorded_s / 60.0:.0f} min of the sample trial by {found.cpu_s:.1f} s of '
+            f'processor time ({found.wall_s:.1f} s of wall time): start, reading, windows, fit, '
+            'tows left out, figures and page',
+        )
+    ]
+
+
+@dataclass(frozen=True)
+class Live:
+    """Live run of the node: delays (s) from a window's end to its estimate, and its share of a
+    core (%), by the processor time of the whole process after its start.
+    """
+
+    delays_s: tuple[float, ...]
+    share: float
+    wall_s: float
+
+
+def live(
+    seconds: float,
+    logs: Path,
+    shown: Callable[[str, float], AbstractContextManager[TimeProgress]],
+    stop: Callable[[], bool] = lambda: False,
+) -> Live:
+    """Play the beginning of the sample trial in real time to the node.
+
+    Parameters
+    ----------
+    seconds
+        How much of it.
+    logs
+        Takes what the nodes say.
+    shown
+        Makes a progress bar from a title and its length (s).
+    stop
+        Asked now and then whether to end early.
+
+    Raises
+    ------
+    TrawlError
+        If there is no ROS 2.
+    NodeFailed
+        If a node ends by itself, or cannot end cleanly.
+    """
+    try:
+        from trawl_ros.lab.running.estimate_monitor import EstimateMonitor
+    except ImportError as reason:
+        raise RosMissing('the node', reason) from reason
+    bag = str(share_path('bags', 'sea_trial'))
+    with (
+        own_graph(logs) as environment,
+        Processes(logs, environment) as processes,
+        EstimateMonitor(environment) as monitor,
+        shown('node in real time', seconds) as progress,
+    ):
+        processes.start(NODE, use_sim_time=True)
+        processes.start(PLAYER, bag=bag, end=seconds, publish_clock=True, wait_for=[NODE])
+        node = psutil.Process(processes.pids()[NODE])
+        began: tuple[float, float] | None = None
+        cpu_s = 0.0
+        while not stop() and not processes.finished(PLAYER):
+            time.sleep(LOOK_S)
+            times = node.cpu_times()
+            now, cpu_s = time.monotonic(), times.user + times.system
+            if monitor.playing:
+                began = began or (now, cpu_s)
+                progress.update(now - began[0], f'{monitor.windows} windows')
+        wall_s = time.monotonic() - began[0] if began else 0.0
+        share = 100.0 * (cpu_s - began[1]) / wall_s if began and wall_s else math.nan
+        delays = monitor.delays_s()
+        processes.stop(*(name for name in (PLAYER, NODE) if name in processes.pids()))
+    return Live(tuple(delays), share, wall_s)
+
+
+def live_rows(found: Live) -> list[Row]:
+    """Delay of estimates, and the node's share of a core."""
+    delays = np.array(found.delays_s)
+    there = len(delays) > 0
+    return [
+        Row(
+            "node in real time: estimate after its window's end",
+            float(delays.max()) if there else math.nan,
+            float(delays.min()) if there else math.nan,
+            float(delays.max()) if there else math.nan,
+            unit='s',
+            target=LATEST_S,
+            note=f'the latest of {len(delays)} windows; least and most',
+        ),
+        Row(
+            'node in real time: share of a core',
+            found.share,
+            unit='%',
+            target=MOST_OF_CORE,
+            note=f'mean over {found.wall_s / 60.0:.1f} min of the sample trial',
+        ),
+    ]
+
+
+def _cut(path: Path, into: Path, seconds: float) -> float:
+    """Write the beginning of a bag; return its length, s."""
+    bag = Bag(path)
+    excerpt = Excerpt(bag, bag.topics, 0.0, seconds)
+    first = last = None
+    with BagWriter(into) as writer:
+        while (message := excerpt.upcoming) is not None:
+            writer.write(
+                message.topic,
+                message.type,
+                message.data,
+                message.log_time,
+                message.publish_time,
+            )
+            first = message.log_time if first is None else first
+            last = message.log_time
+            excerpt.advance()
+    return ((last or 0) - (first or 0)) / SECOND
+
+
+def _children_s() -> float:
+    """Processor time (s) of all processes that were started and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime

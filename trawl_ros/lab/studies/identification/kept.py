@@ -1,0 +1,95 @@
+"""File of finished trials, from which a study resumes."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import appending, empty_folder, write_json, write_text
+from trawl_ros.lab.studies.identification.trial import Trial
+
+FILE = 'trials.jsonl'
+
+
+class KeptTrials:
+    """File with a line per trial, and the common settings of all of them in its first line.
+
+    Parameters
+    ----------
+    folder
+        Where the file lies, or will.
+    asked
+        Settings on which each trial depends; plain values.
+    force
+        Whether a file of other settings is written over, and one of the same begun anew.
+
+    Raises
+    ------
+    TrawlError
+        If the file is of other settings, or is none of trials, or there is none in a folder of
+        other files.
+    """
+
+    def __init__(self, folder: Path, asked: Mapping[str, Any], *, force: bool = False) -> None:
+        self._path = folder / FILE
+        self._asked = json.loads(json.dumps(asked))
+        self._trials: dict[tuple[str, int], Trial] = {}
+        if force or not self._path.is_file():
+            empty_folder(folder, force=force)
+            folder.mkdir(parents=True, exist_ok=True)
+            write_json(self._path, {'asked': self._asked})
+            return
+        self._read()
+
+    def _read(self) -> None:
+        first, *lines = self._path.read_text(encoding='utf-8').split('\n')
+        try:
+            asked = json.loads(first)['asked']
+        except (ValueError, KeyError, TypeError) as reason:
+            raise TrawlError(
+                f'{self._path}: not a file of trials, expected one, none, or --force'
+            ) from reason
+        if asked != self._asked:
+            raise TrawlError(
+                f'{self._path}: has trials made with {_words(asked, self._asked)}, expected '
+                f'{_words(self._asked, asked)}, another folder, or --force'
+            )
+        whole = [line for line in lines[:-1] if line]
+        for number, line in enumerate(whole, 2):
+            try:
+                trial = Trial(**json.loads(line))
+            except (ValueError, TypeError) as reason:
+                raise TrawlError(
+                    f'{self._path}: line {number} is not a trial, expected one, or --force'
+                ) from reason
+            self._trials[trial.series, trial.number] = trial
+        if lines and lines[-1]:
+            # A study that was killed may leave a line without its end.
+            kept = '\n'.join((first, *whole)) + '\n'
+            write_text(self._path, kept)
+
+    def add(self, trial: Trial) -> None:
+        """Append a trial."""
+        with appending(self._path) as file:
+            file.write(json.dumps(asdict(trial), allow_nan=False) + '\n')
+        self._trials[trial.series, trial.number] = trial
+
+    def has(self, series: str, number: int) -> bool:
+        """True if a trial is there already."""
+        return (series, number) in self._trials
+
+    def series(self, series: str) -> tuple[Trial, ...]:
+        """Trials of a series in the order of their numbers."""
+        found = sorted(key for key in self._trials if key[0] == series)
+        return tuple(self._trials[key] for key in found)
+
+
+def _words(asked: Mapping[str, Any], other: Mapping[str, Any]) -> str:
+    different = [key for key in asked if asked[key] != other.get(key)]
+    # Of a gear it is enough to know that it is another one.
+    short = {key: value for key, value in asked.items() if not isinstance(value, Mapping)}
+    return ', '.join(
+        f'{key} {short[key]}' if key in short else f'another {key}' for key in different
+    )

@@ -1,0 +1,228 @@
+"""Figures of the trials: coverage, spread beside its bound, errors on tows left out."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.stats import binomtest
+
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.studies.identification.trial import Trial
+from trawl_ros.model.board import COEFFICIENTS
+
+COVERAGE = (90.0, 98.0)
+"""Allowed coverage of 95 % intervals, %."""
+
+SPREAD = (0.9, 1.2)
+"""Spread of estimates over its bound."""
+
+MOST_ERROR = {'door_spread': 2.4, 'door_depth': 2.2, 'net_depth': 3.7, 'warp_tension': 1.3}
+"""Errors on tows left out, %: half of the paper's."""
+
+OVER_FLOOR = 1.2
+"""Largest allowed ratio to the errors of a perfect model."""
+
+DRAWN_AGAIN = 1000
+AGAIN = 'interval by drawing trials again'
+SEED = 7
+
+
+def coverage_rows(trials: Sequence[Trial], series: str, *, asked: bool) -> list[Row]:
+    """Share of truths inside the intervals, of all coefficients together and of each."""
+    if not trials:
+        return [Row(f'{series}: 95 % intervals that cover the truth', np.nan, note='no trials')]
+    least, most = COVERAGE if asked else (None, None)
+    truth, low, high = (_array(trials, name) for name in ('truth', 'low', 'high'))
+    inside = (low <= truth) & (truth <= high)
+    low_all, high_all = _interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
+    rows = [
+        Row(
+            f'{series}: 95 % intervals that cover the truth',
+            float(100.0 * inside.mean()),
+            low=float(low_all),
+            high=float(high_all),
+            unit='%',
+            least=least,
+            target=most,
+            note=f'all twelve of {len(trials)} trials; {AGAIN}',
+        )
+    ]
+    if not asked:
+        return rows
+    for column, name in enumerate(COEFFICIENTS):
+        count = int(inside[:, column].sum())
+        ends = binomtest(count, len(trials)).proportion_ci(method='exact')
+        rows.append(
+            Row(
+                f'{series}: intervals of {name} that cover the truth',
+                100.0 * count / len(trials),
+                low=100.0 * ends.low,
+                high=100.0 * ends.high,
+                unit='%',
+                least=least,
+                target=most,
+                note='binomial 95 % interval (Clopper and Pearson)',
+            )
+        )
+    return rows
+
+
+OTHER_BOUND = (1, 2, 3)
+"""Places of rows that explain, and of which nothing is asked."""
+
+
+def spread_rows(trials: Sequence[Trial], prior: BoardPrior) -> list[Row]:
+    """Root mean square error over the Bayesian Cramér–Rao bound (Van Trees)."""
+    if not trials:
+        return [Row('spread of estimates over its bound', np.nan, note='no trials')]
+    error = _array(trials, 'values') - _array(trials, 'truth')
+    known = np.array([trial.information for trial in trials])
+    before = np.diag(prior.std**-2)
+
+    def ratio(some: np.ndarray) -> np.ndarray:
+        bound = np.linalg.inv(known[some].mean(axis=0) + before)
+        return np.sqrt((error[some] ** 2).mean(axis=0) / np.diag(bound))
+
+    at_hand = np.sqrt(np.diagonal(np.linalg.inv(known + before), axis1=1, axis2=2))
+
+    def figures(some: np.ndarray) -> np.ndarray:
+        """The figures over all coefficients, and the ratio of each (16,)."""
+        each = ratio(some)
+        by_trial = np.mean((error[some] / at_hand[some]) ** 2, axis=1)
+        bound = np.linalg.inv(known[some].mean(axis=0) + before)
+        beyond = np.mean(at_hand[some] ** 2, axis=0) / np.diag(bound)
+        over_all = (np.mean(each**2), np.mean(by_trial), np.median(by_trial), np.mean(beyond))
+        return np.array([*np.sqrt(over_all), *each])
+
+    values = figures(np.arange(len(trials)))
+    ends = _interval(figures, len(trials))
+    least, most = SPREAD
+    texts = [
+        (
+            'spread of estimates over its bound',
+            f'root mean square of the twelve ratios, {len(trials)} trials; Van Trees: the inverse '
+            'of the mean information of data and prior',
+        ),
+        (
+            'spread of estimates over the bound of each board',
+            'error of each trial over the bound from the information at its own truth, which is '
+            'the larger of the two bounds',
+        ),
+        (
+            'spread of estimates over the bound of each board, the median trial',
+            'root mean square of the twelve in each trial',
+        ),
+        (
+            'bound of each board over that of all',
+            'what spread over the first bound would be if every trial reached its own: boards near '
+            'their stall are seen far worse than the mean of all information says',
+        ),
+        *((f'spread of {name} over its bound', AGAIN) for name in COEFFICIENTS),
+    ]
+    return [
+        Row(
+            what,
+            float(value),
+            float(low),
+            float(high),
+            # Only one of the two bounds is what was asked for.
+            least=None if place in OTHER_BOUND else least,
+            target=None if place in OTHER_BOUND else most,
+            note=note,
+        )
+        for place, ((what, note), value, low, high) in enumerate(
+            zip(texts, values, *ends, strict=True)
+        )
+    ]
+
+
+def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
+    """Errors on tows left out, and how they compare with a perfect model's."""
+    if not trials:
+        return [Row('tows left out: error', np.nan, note='no trials')]
+    channels = len(PAPER_CHANNELS)
+    measured, predicted, perfect = (
+        _array(trials, name).reshape(len(trials), -1, channels)
+        for name in ('measured', 'predicted', 'perfect')
+    )
+    there = np.isfinite(predicted)
+    missing = int(np.sum(~np.all(there, axis=2)))
+    size, wrong, least = (
+        np.where(there, np.abs(part), 0.0).sum(axis=1)
+        for part in (measured, predicted - measured, perfect - measured)
+    )
+
+    def figures(some: np.ndarray) -> np.ndarray:
+        """Per channel the error in %, and that over the one of a perfect model (2, n)."""
+        of, by, floor = wrong[some].sum(axis=0), size[some].sum(axis=0), least[some].sum(axis=0)
+        return np.array([100.0 * of / by, of / floor])
+
+    errors, beyond = figures(np.arange(len(trials)))
+    floors = errors / beyond
+    low, high = _interval(figures, len(trials))
+    rows = []
+    for column, channel in enumerate(PAPER_CHANNELS):
+        name = channel.name.replace('_', ' ')
+        rows += [
+            Row(
+                f'tows left out: error in {name}',
+                float(errors[column]),
+                float(low[0, column]),
+                float(high[0, column]),
+                unit='%',
+                target=MOST_ERROR[channel.name],
+                note='mean error over mean measured value'
+                + (f'; {missing} states have none in the fitted model' if missing else ''),
+            ),
+            Row(
+                f'tows left out: error in {name} over that of a perfect model',
+                float(beyond[column]),
+                float(low[1, column]),
+                float(high[1, column]),
+                target=OVER_FLOOR,
+                note=f'the plant itself, at inputs as measured, is {floors[column]:.2f} % off for '
+                'noise and biases of these tows',
+            ),
+        ]
+    return rows
+
+
+def board_rows(trials: Sequence[Trial]) -> list[Row]:
+    """Convergence of fits, and rate of boards that could not be towed."""
+    rejected = sum((Counter(trial.rejected) for trial in trials), Counter[str]())
+    reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
+    drawn = len(trials) + rejected.total()
+    rest = [trial.converged for trial in trials]
+    return [
+        Row(
+            'fits that came to rest',
+            100.0 * float(np.mean(rest)) if trials else np.nan,
+            unit='%',
+            note=f'{sum(rest)} of {len(rest)}; those that did not count in all figures',
+        ),
+        Row(
+            'boards drawn from the prior that cannot be towed',
+            100.0 * rejected.total() / drawn if drawn else np.nan,
+            unit='%',
+            note=f'of {drawn}; drawn again ({reasons or "none"})',
+        ),
+    ]
+
+
+def _array(trials: Sequence[Trial], name: str) -> np.ndarray:
+    return np.array([getattr(trial, name) for trial in trials], dtype=float)
+
+
+def _interval(
+    figures: Callable[[np.ndarray], np.ndarray], number: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Bootstrap 95 % intervals of figures (n,) over trials."""
+    if number < 2:
+        nothing = np.full(figures(np.arange(number)).shape, np.nan)
+        return nothing, nothing
+    chance = np.random.default_rng(SEED)
+    found = np.array([figures(chance.integers(number, size=number)) for _ in range(DRAWN_AGAIN)])
+    low, high = np.percentile(found, (2.5, 97.5), axis=0)
+    return low, high

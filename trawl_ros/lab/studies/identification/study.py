@@ -1,0 +1,231 @@
+"""Study of the identification: plan of its trials, and their execution."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from trawl_ros.cli.progress import TimeProgress
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.studies.identification.costs import LIVE_S, live, live_rows, replay, replay_rows
+from trawl_ros.lab.studies.identification.figure import trials_figure
+from trawl_ros.lab.studies.identification.kept import KeptTrials
+from trawl_ros.lab.studies.identification.knowledge import model_error_rows, planning_rows
+from trawl_ros.lab.studies.identification.plant import TOWS, Cut
+from trawl_ros.lab.studies.identification.rows import (
+    board_rows,
+    coverage_rows,
+    held_out_rows,
+    spread_rows,
+)
+from trawl_ros.lab.studies.identification.trial import Task, Trial, run_trial
+
+SEED = 22
+"""Of the study as it is reported; what was chosen by looking at trials was chosen with 1."""
+
+FINER = Cut(around=24, lines=2, unjoined=True)
+"""Plant of the coverage; its net has more than twice as many nodes as the model's."""
+
+AS_MODEL = Cut(around=24)
+FAR_FINER = Cut(around=24, lines=2, net=1.5)
+DEFAULT_FINER = Cut(around=48, lines=2, unjoined=True)
+"""Plant beside the default model."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """Series of trials of one kind; ``stated`` as in `Task`."""
+
+    name: str
+    words: str
+    cut: Cut
+    stated: bool
+
+
+COVERAGE = Series('finer', 'a finer plant', FINER, stated=False)
+BOUND = Series('alike', 'the model as its own plant', AS_MODEL, stated=True)
+MOUTH = Series('mouth', 'a plant with a finer mouth', FAR_FINER, stated=False)
+SERIES = (COVERAGE, BOUND, MOUTH)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Plan of the study's size.
+
+    Attributes
+    ----------
+    gear
+        File or name.
+    seed
+        Of all trials.
+    coverage, bound, mouth
+        How many trials of each series.
+    around
+        Meshes around the mouth of the model's net.
+    tows
+        How many of `TOWS` a trial fits.
+    live_s
+        How long (s) the node is watched in real time; 0 leaves it out.
+    """
+
+    gear: str = 'kaifuha'
+    seed: int = SEED
+    coverage: int = 200
+    bound: int = 100
+    mouth: int = 30
+    around: int = FINER.around
+    tows: int = len(TOWS)
+    live_s: float = LIVE_S
+
+    def numbers(self) -> dict[str, int]:
+        """Number of trials by the name of their series."""
+        return {COVERAGE.name: self.coverage, BOUND.name: self.bound, MOUTH.name: self.mouth}
+
+    def asked(self) -> dict[str, Any]:
+        """Settings of each trial, as plain values."""
+        gear = load_gear(self.gear).model_dump(mode='json')
+        return {'seed': self.seed, 'around': self.around, 'tows': self.tows, 'gear': gear}
+
+    def cut(self, series: Series) -> Cut:
+        """Mesh of model and plant of a series."""
+        return Cut(**{**asdict(series.cut), 'around': self.around})
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Progress displays.
+
+    ``steps`` takes a title and their number, and gives what is called after each of them;
+    ``stretch`` takes a title and a time, s.
+    """
+
+    steps: Callable[[str, int], AbstractContextManager[Callable[[], None]]]
+    stretch: Callable[[str, float], AbstractContextManager[TimeProgress]]
+
+
+@dataclass(frozen=True)
+class Found:
+    """Result: all rows by section, and a figure of the trials."""
+
+    sections: tuple[tuple[str, tuple[Row, ...]], ...]
+    figure: Figure
+
+
+def run_study(
+    plan: Plan,
+    folder: Path,
+    shown: Shown,
+    *,
+    scheduler: str | None = None,
+    force: bool = False,
+    small: bool = False,
+) -> Found:
+    """Run the study, or the trials it lacks.
+
+    Parameters
+    ----------
+    plan
+        How large it is.
+    folder
+        Takes the trials, and what nodes say.
+    shown
+        Shows progress.
+    scheduler
+        Address of a Dask cluster for the trials; what is timed runs on this machine.
+    force
+        Whether to begin anew.
+    small
+        Whether to leave out all but the trials.
+    """
+    kept = run_trials(plan, folder, shown, scheduler=scheduler, force=force)
+    coverage, bound, mouth = (trials_of(plan, kept, series) for series in SERIES)
+    prior = board_prior(load_gear(plan.gear))
+    sections: list[tuple[str, tuple[Row, ...]]] = [
+        ('Intervals', (*coverage_rows(coverage, COVERAGE.words, asked=True),
+                       *(coverage_rows(mouth, MOUTH.words, asked=False) if plan.mouth else ()))),
+        ('Spread of the estimates', tuple(spread_rows(bound, prior))),
+        ('Tows left out', tuple(held_out_rows(coverage))),
+        ('The trials', tuple(board_rows((*coverage, *bound, *mouth)))),
+    ]  # fmt: skip
+    if not small:
+        with shown.steps('model beside plant', 2) as done:
+            rows = []
+            for cut in (plan.cut(COVERAGE), DEFAULT_FINER):
+                rows += model_error_rows(plan.gear, cut)
+                done()
+        sections.append(('Model and plant', tuple(rows)))
+        with shown.steps('planning', 1) as done:
+            sections.append(('A planned trial', tuple(planning_rows(plan.gear))))
+            done()
+        with shown.steps('replay', 1) as done:
+            costs = replay_rows(replay())
+            done()
+        if plan.live_s > 0.0:
+            costs += live_rows(live(plan.live_s, folder / 'log', shown.stretch))
+        sections.append(('Cost', tuple(costs)))
+    return Found(tuple(sections), trials_figure(coverage, bound, prior))
+
+
+def run_trials(
+    plan: Plan,
+    folder: Path,
+    shown: Shown,
+    *,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    force: bool = False,
+) -> KeptTrials:
+    """Run the trials that are missing.
+
+    Parameters
+    ----------
+    plan
+        How many.
+    folder
+        Where they are kept, one by one.
+    shown
+        Shows how many are done.
+    scheduler, workers
+        As in `trawl_ros.core.parallel.run_tasks`.
+    force
+        Whether to begin anew.
+
+    Raises
+    ------
+    TrawlError
+        If trials of another plan are kept there, or one cannot be made.
+    """
+    # Dask takes a second to import, for which other commands need not wait.
+    from trawl_ros.core.parallel import run_tasks
+
+    kept = KeptTrials(folder, plan.asked(), force=force)
+    tasks = {task.name: task for task in _tasks(plan) if not kept.has(task.series, task.number)}
+    with shown.steps('trials', len(tasks)) as done:
+        for _, trial in run_tasks(run_trial, tasks, scheduler=scheduler, workers=workers):
+            kept.add(trial)
+            done()
+    return kept
+
+
+def trials_of(plan: Plan, kept: KeptTrials, series: Series) -> tuple[Trial, ...]:
+    """Trials of a series in a plan; more may be on file."""
+    return kept.series(series.name)[: plan.numbers()[series.name]]
+
+
+def _tasks(plan: Plan) -> Iterator[Task]:
+    for series in SERIES:
+        for number in range(plan.numbers()[series.name]):
+            yield Task(
+                series.name,
+                number,
+                plan.seed,
+                plan.gear,
+                plan.cut(series),
+                plan.tows,
+                series.stated,
+            )

@@ -1,0 +1,161 @@
+"""Trial: a random board, towed, fitted, and predicted on a tow that was left out."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.objective import paper_values, stack
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.lab.studies.identification.bound import information
+from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, Board, Cut, draw_board
+from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows, wrong_by
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.channels import INPUTS
+from trawl_ros.solver.predict import Predictor
+
+WRONG_BY = 0.3
+"""Noise and biases are larger or smaller than stated by this part."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """Task of one trial.
+
+    Attributes
+    ----------
+    series
+        The series it belongs to, which is part of the seed.
+    number
+        Within the series.
+    seed
+        Of the study.
+    gear
+        File or name.
+    cut
+        How fine model and plant are.
+    tows
+        How many of `TOWS` are fitted.
+    stated
+        Whether noise is as stated and the estimator knows that model and plant are the same, as
+        a bound on the spread presumes.
+    """
+
+    series: str
+    number: int
+    seed: int
+    gear: str
+    cut: Cut
+    tows: int
+    stated: bool
+
+    @property
+    def name(self) -> str:
+        """Name in files and sentences."""
+        return f'{self.series} {self.number}'
+
+    def chance(self) -> np.random.Generator:
+        """Random generator of this trial alone, wherever and whenever it is made."""
+        return np.random.default_rng([self.seed, self.number, *self.series.encode()])
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Result of a trial.
+
+    Attributes
+    ----------
+    truth, values, std, low, high : 12 numbers each
+        Coefficients that made the data; the estimate, its standard deviations and intervals.
+    converged
+        Whether the fit came to rest.
+    windows
+        How many were fitted, of those there were.
+    rejected
+        Boards drawn before that cannot be towed, by reason.
+    information : 12 × 12 numbers
+        Fisher information of the data at the truth.
+    measured, predicted, perfect : n × 4 numbers
+        The channels of eq. 35 on the tow that was left out: measured, predicted by the fit, and
+        by the plant itself at the measured warp lengths and speed. NaN stands as None.
+    noise_scales
+        Noise found over noise stated, by group.
+    """
+
+    series: str
+    number: int
+    truth: list[float]
+    values: list[float]
+    std: list[float]
+    low: list[float]
+    high: list[float]
+    converged: bool
+    windows: int
+    rejected: dict[str, int]
+    information: list[list[float]]
+    measured: list[list[float]]
+    predicted: list[list[float | None]]
+    perfect: list[list[float]]
+    noise_scales: dict[str, float]
+
+    def record(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return asdict(self)
+
+
+def run_trial(task: Task) -> Trial:
+    """Run a trial.
+
+    Raises
+    ------
+    TrawlError
+        If no board drawn can be towed, or no window can be fitted.
+    """
+    chance = task.chance()
+    gear = task.cut.model(task.gear)
+    prior = board_prior(gear)
+    board = draw_board(task.cut.plant(task.gear), prior, (*TOWS[: task.tows], HELD_OUT), chance)
+    tows, held_out = board.tows[:-1], board.tows[-1]
+    sensors = AS_STATED if task.stated else wrong_by(WRONG_BY, chance)
+    exact = EstimatorOptions(model_error=0.0, state_share=0.0, unsettled=0.0)
+    options = exact if task.stated else None
+    estimator = Estimator(Predictor(build_model(gear)), prior, OBSERVABLES, options)
+    for window in steady_windows(tows, sensors, chance):
+        estimator.add(window)
+    estimate = estimator.finish()
+    if estimate is None:
+        raise TrawlError('the model has no steady state at any of the windows')
+    unseen = steady_windows([held_out], sensors, chance, first_tow=len(tows))
+    predicted = estimator.predictions(estimate.values, unseen)
+    return Trial(
+        series=task.series,
+        number=task.number,
+        truth=board.coefficients.tolist(),
+        values=estimate.values.tolist(),
+        std=estimate.std.tolist(),
+        low=estimate.low.tolist(),
+        high=estimate.high.tolist(),
+        converged=estimate.converged,
+        windows=estimate.windows,
+        rejected=dict(board.rejected),
+        information=information(tows, sensors).tolist(),
+        measured=stack([paper_values(window.means) for window in unseen]).tolist(),
+        predicted=[[None if np.isnan(value) else value for value in row] for row in predicted],
+        perfect=_perfect(board, [window.means for window in unseen]).tolist(),
+        noise_scales=dict(estimate.noise_scales),
+    )
+
+
+def _perfect(board: Board, means: list[Mapping[str, float]]) -> np.ndarray:
+    """Predictions (n, 4) of the plant itself at the inputs as measured."""
+    rows = []
+    for look, seen in zip(board.tows[-1], means, strict=True):
+        wrong = np.array([seen[name] for name in INPUTS]) - look.inputs
+        values = look.values + look.by_inputs @ wrong
+        rows.append(paper_values(dict(zip(OBSERVABLES, values, strict=True))))
+    return stack(rows)

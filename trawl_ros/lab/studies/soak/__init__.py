@@ -1,0 +1,1 @@
+"""The soak: the chain for a day at sea."""

@@ -1,0 +1,121 @@
+"""Soak test: the chain for a day at sea at full speed, then for a minute in real time."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from shutil import disk_usage
+from tempfile import TemporaryDirectory
+
+from trawl_ros.cli.progress import TimeProgress
+from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.lab.running.chain import Glance, start_chain, watch_chain
+from trawl_ros.lab.running.own_graph import own_graph
+from trawl_ros.lab.running.processes import Processes
+from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, write_coarse_gear, write_long_tow
+from trawl_ros.scenario.records import MAX_TRUTH_HZ
+
+GLANCES = 500
+"""Number of glances at a tow, however long it is."""
+
+SETTLE_S = 10.0
+"""Wall time at the start of the run in real time that is not counted."""
+
+MOST_BAG_MB_PER_HOUR = 250.0
+"""Room that the bag of a tow may need; it is gone again afterwards."""
+
+Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Plan of the soak: hours at sea at full speed, and seconds in real time.
+
+    ``truth_rate_hz`` is how often there is truth at sea; in real time it is the usual rate.
+    ``coarse`` says that the gear of the long tow has a coarse net.
+    """
+
+    hours: float
+    gear: str
+    real_time_s: float
+    truth_rate_hz: float = TRUTH_HZ
+    coarse: bool = False
+
+
+@dataclass(frozen=True)
+class Soak:
+    """Result of a soak: glances on the long tow and in real time, and size of its bag."""
+
+    plan: Plan
+    fast: tuple[Glance, ...]
+    real: tuple[Glance, ...]
+    bag_mb: float
+
+
+def run_soak(plan: Plan, folder: Path, shown: Shown, stop: Callable[[], bool]) -> Soak:
+    """Run the chain, each node as a process of its own.
+
+    Parameters
+    ----------
+    plan
+        How long.
+    folder
+        Takes what the nodes say; bags lie there for a while.
+    shown
+        Makes a progress bar from a title and its length (s).
+    stop
+        Asked now and then whether to end early; what was seen until then counts.
+
+    Raises
+    ------
+    TrawlError
+        If there is no room for the bag.
+    NodeFailed
+        If a node ends by itself, or cannot end cleanly.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    needed, free = plan.hours * MOST_BAG_MB_PER_HOUR, disk_usage(folder).free / 1e6
+    if free < needed:
+        raise TrawlError(
+            f'{folder}: {free:.0f} MB are free there, expected {needed:.0f} MB for the bag'
+        )
+    with TemporaryDirectory(dir=folder) as name:
+        scratch = Path(name)
+        gear = write_coarse_gear(scratch, plan.gear) if plan.coarse else plan.gear
+        fast = _run(gear, plan.hours, plan.truth_rate_hz, 0.0, scratch, folder / 'log', shown, stop)
+        files = list((scratch / 'bag').iterdir())
+        bag_mb = sum(file.stat().st_size for file in files) / 1e6
+    real: list[Glance] = []
+    if plan.real_time_s and not stop():
+        hours = (SETTLE_S + plan.real_time_s) / 3600.0
+        with TemporaryDirectory(dir=folder) as name:
+            logs = folder / 'log' / 'real_time'
+            real = _run(plan.gear, hours, MAX_TRUTH_HZ, 1.0, Path(name), logs, shown, stop)
+    return Soak(plan, tuple(fast), tuple(real), bag_mb)
+
+
+def _run(
+    gear: str,
+    hours: float,
+    truth_hz: float,
+    time_scale: float,
+    scratch: Path,
+    logs: Path,
+    shown: Shown,
+    stop: Callable[[], bool],
+) -> list[Glance]:
+    try:
+        from trawl_ros.lab.running.delay_monitor import DelayMonitor
+    except ImportError as reason:
+        raise RosMissing('the study', reason) from reason
+    scenario = write_long_tow(scratch, gear, hours, truth_hz)
+    title = 'in real time' if time_scale else 'at sea'
+    with (
+        own_graph(logs) as environment,
+        Processes(logs, environment) as processes,
+        DelayMonitor(environment) as monitor,
+        shown(title, 3600.0 * hours) as progress,
+    ):
+        start_chain(processes, scenario, scratch / 'bag', time_scale)
+        every = 1.0 if time_scale else 3600.0 * hours / GLANCES
+        return watch_chain(processes, monitor, every, progress.update, stop)

@@ -1,0 +1,1 @@
+"""Readings of the trawl sonar's image against truth."""

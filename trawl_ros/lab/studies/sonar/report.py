@@ -1,0 +1,101 @@
+"""Report of the study of the trawl sonar: JSON, Markdown and a figure."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.core.files import write_figure, write_json, write_text
+from trawl_ros.lab.studies.sonar.study import SHOWN, STATES, Measured, figures
+from trawl_ros.plots.records import SonarPicture
+from trawl_ros.plots.sonar import BACKGROUND, ECHOES, draw, prepare
+from trawl_ros.report import style
+from trawl_ros.report.rendering import page
+
+JSON, REPORT, PICTURE = 'sonar.json', 'sonar.md', 'sonar.png'
+
+
+def write_sonar(folder: Path, measured: Sequence[Measured], sweeps: int) -> None:
+    """Write ``sonar.json``, ``sonar.md`` and ``sonar.png`` into a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [_row(case) for case in measured]
+    write_json(folder / JSON, {'sweeps': sweeps, 'cases': rows}, indent=1)
+    about = {'rows': rows, 'sweeps': sweeps, 'picture': PICTURE, 'states': scatter(measured)}
+    write_text(folder / REPORT, page('trawl_ros.lab.studies.sonar', REPORT, **about))
+    write_figure(folder / PICTURE, sonar_figure(measured), style.DPI)
+
+
+def scatter(measured: Sequence[Measured]) -> dict[str, float]:
+    """Give the scatter (m, root mean square over the states of the gear) of both readings."""
+    states = [case for case in measured if case.case in STATES]
+    return {
+        'height': _together([figures(m.height, m.true_height).scatter for m in states]),
+        'width': _together([figures(m.width, m.true_width).scatter for m in states]),
+    }
+
+
+def _together(scatters: Sequence[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(scatters)))) if scatters else float('nan')
+
+
+def _row(measured: Measured) -> dict[str, object]:
+    def side(readings: np.ndarray, truth: np.ndarray) -> dict[str, float | None]:
+        found = {'truth': float(truth.mean()), **asdict(figures(readings, truth))}
+        # What could not be measured is null.
+        return {key: value if math.isfinite(value) else None for key, value in found.items()}
+
+    return {
+        'name': measured.case.name,
+        'height': side(measured.height, measured.true_height),
+        'width': side(measured.width, measured.true_width),
+    }
+
+
+def sonar_figure(measured: Sequence[Measured]) -> Figure:
+    """Draw the image of the clear 500 m case as it is in the message, and those with company."""
+    by_case = {m.case: m for m in measured}
+    clear, dense, seabed = (by_case[case] for case in SHOWN)
+    figure = Figure(figsize=(11.0, 8.2), layout='constrained')
+    axes = figure.subplots(2, 2)
+    for place, case, title, with_truth in (
+        (axes[0, 0], clear, 'the net, and where its ropes are', True),
+        (axes[1, 0], dense, 'fish between the ropes', False),
+        (axes[1, 1], seabed, 'the seabed below', False),
+    ):
+        picture = _picture(case, with_truth=with_truth)
+        prepare(place, picture)
+        draw(place, picture)
+        place.set_ylim(-picture.scan.max_range, 20.0)
+        place.set_title(title)
+    scan, image = clear.scan, clear.image.image
+    last = scan.angle_min + len(image) * scan.angle_increment
+    first = np.degrees(scan.angle_min - 0.5 * scan.angle_increment)
+    axes[0, 1].set_facecolor(BACKGROUND)
+    axes[0, 1].imshow(
+        image,
+        extent=(0.0, scan.max_range, np.degrees(last - 0.5 * scan.angle_increment), first),
+        aspect='auto',
+        cmap=ECHOES,
+        vmin=0,
+        vmax=255,
+        interpolation='nearest',
+    )
+    axes[0, 1].set_xlabel('range / m')
+    axes[0, 1].set_ylabel('angle, positive to port / deg')
+    axes[0, 1].set_title('the same sweep as it is in the message')
+    return figure
+
+
+def _picture(measured: Measured, *, with_truth: bool) -> SonarPicture:
+    return SonarPicture(
+        time=0.0,
+        image=measured.image,
+        scan=measured.scan,
+        height=float(measured.height[-1]),
+        width=float(measured.width[-1]),
+        mouth=measured.net.section[:, :2] if with_truth else np.zeros((0, 2)),
+        closed=False,
+    )

@@ -1,0 +1,157 @@
+"""Checks of a map of steady states: the usable ones form one branch, the good one."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.lab.report.check import Check
+from trawl_ros.lab.validation.branches.continuation import SAME, Answer
+from trawl_ros.lab.validation.branches.lattices import Lattice
+from trawl_ros.model.board import LAW_RANGE
+from trawl_ros.model.observables import Observables, outward_normal_lift
+from trawl_ros.solver.equilibrium import COLLAPSED_NORMAL
+
+PATIENCE = 10.0
+"""Longest CPU time (s) an answer may take."""
+
+JUMP = 5.0
+"""Change of the attack angle (°) between neighbours above which a branch has been left: less
+than half of what parts the boards' usual angles from the collapsed ones known of this gear.
+"""
+
+GROWING: dict[str, Callable[[Observables], float]] = {
+    'door spread': lambda seen: seen.door_spread,
+    'door depth': lambda seen: seen.door_depth,
+    'tension': lambda seen: seen.warp_tension,
+    'α': lambda seen: seen.port_attack,
+}
+
+
+def usable(lattices: Sequence[Lattice]) -> list[Answer]:
+    """Return all usable answers."""
+    return [
+        answer
+        for lattice in lattices
+        for answer in lattice.answers.values()
+        if answer.verdict == 'usable'
+    ]
+
+
+def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[Check]:
+    """Checks that hold for any map; ``name`` begins their keys.
+
+    Raises
+    ------
+    NoSteadyState
+        When nothing on the map is usable.
+    """
+    good = usable(lattices)
+    if not good:
+        raise NoSteadyState(f'the map over {name} shows no usable steady state, expected some')
+    every = [answer for lattice in lattices for answer in lattice.answers.values()]
+    roots = [answer.usable for answer in good if answer.usable is not None]
+    seen = [root.observables for root in roots]
+    attacks = np.degrees([(each.port_attack, each.starboard_attack) for each in seen])
+    normals = [outward_normal_lift(root.state).min() for root in roots]
+    low, high = np.degrees(LAW_RANGE)
+    searches = sum(answer.searches for answer in good)
+    return [
+        Check(
+            f'{name}_apart',
+            'distance between the states to which different starts lead, at usable places',
+            max(answer.apart for answer in good),
+            SAME,
+            rule='at_most',
+            unit='m',
+            note=f'{searches} searches at {len(good)} places: from every neighbour, so both ways '
+            'along each line of the map, and at every third place cold.',
+        ),
+        Check(
+            f'{name}_depends_on_start',
+            'usable places at which some start found nothing',
+            sum(not answer.agreed for answer in good),
+            0.0,
+        ),
+        Check(
+            f'{name}_second_branch',
+            'places with more than one usable state',
+            sum(answer.usable_roots > 1 for answer in every),
+            0.0,
+        ),
+        Check(
+            f'{name}_lowest_attack',
+            'smallest attack angle of a usable state',
+            float(attacks.min()),
+            low,
+            rule='at_least',
+            unit='°',
+            note='The range of eq. 14; on the collapsed branch α is negative, or above 40°.',
+        ),
+        Check(
+            f'{name}_highest_attack',
+            'largest attack angle of a usable state',
+            float(attacks.max()),
+            high,
+            rule='at_most',
+            unit='°',
+        ),
+        Check(
+            f'{name}_normal',
+            'smallest vertical part of an outward normal in a usable state',
+            float(np.min(normals)),
+            COLLAPSED_NORMAL,
+            rule='at_least',
+            note='A board counts as collapsed below this.',
+        ),
+        Check(
+            f'{name}_slowest',
+            'longest CPU time of one answer, refusals included',
+            max(answer.seconds for answer in every),
+            PATIENCE,
+            rule='at_most',
+            unit='s',
+            note='Searches end after a fixed number of iterations, whatever they meet.',
+        ),
+    ]
+
+
+def smoothness_checks(lattice: Lattice) -> Iterator[Check]:
+    """Check that a map over speed is smooth, and monotone in warp length where it should be."""
+    yield Check(
+        'jump',
+        'largest change of the attack angle from one usable place to the next',
+        max(
+            (
+                abs(float(np.degrees(one.port_attack - other.port_attack)))
+                for along in ((1, 0), (0, 1))
+                for one, other in _neighbouring(lattice, along)
+            ),
+            default=0.0,
+        ),
+        JUMP,
+        rule='at_most',
+        unit='°',
+        note='A step onto another branch would show as a jump.',
+    )
+    for k, (name, read) in enumerate(GROWING.items()):
+        falls = sum(
+            bool(read(long) <= read(short)) for short, long in _neighbouring(lattice, along=(1, 0))
+        )
+        yield Check(
+            f'grows_{k + 1}',
+            f'steps of warp length, at one speed, along which {name} does not grow',
+            falls,
+            0.0,
+            note='The paper, Fig. 6 and 13–16.',
+        )
+
+
+def _neighbouring(
+    lattice: Lattice, along: tuple[int, int]
+) -> Iterator[tuple[Observables, Observables]]:
+    """Observables at usable places and at their usable neighbours in one direction."""
+    for (i, j), here in lattice.answers.items():
+        there = lattice.answers.get((i + along[0], j + along[1]))
+        if there is not None and here.usable is not None and there.usable is not None:
+            yield here.usable.observables, there.usable.observables

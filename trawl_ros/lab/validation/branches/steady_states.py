@@ -1,0 +1,230 @@
+"""Steady states of the default gear over its conditions: existence, and absence of collapse."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.validation.branches.collapsed_starts import Tally, collapsed_shapes, tally
+from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
+from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
+from trawl_ros.lab.validation.branches.lattices import (
+    ANGLES,
+    SPEED,
+    Lattice,
+    angle_lattice,
+    speed_lattice,
+)
+from trawl_ros.lab.validation.branches.maps import LOOKS, angle_figure, speed_figure
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.solver.equilibrium import COLLAPSED_NORMAL, Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.relax import relax
+
+WORKING = 1.9, 2.3
+"""Speeds (m/s) between which the gear is towed."""
+
+INSTALLED = 5.0
+"""Installation angle (°) up to which the paper varies it, section IV.C."""
+
+OVERTURNED = np.radians(-20.0)
+"""Installation angle ε with which the boards collapse."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """Size of the case."""
+
+    lengths: Sequence[float]
+    speeds: Sequence[float]
+    angle_lengths: Sequence[float]
+    degrees: Sequence[float]
+    collapses: Sequence[tuple[float, float]]
+    hopeless_starts: int
+
+
+FULL = Size(
+    lengths=(200.0, 300.0, 400.0, 500.0, 700.0, 900.0),
+    speeds=(1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.1, 2.2, 2.3, 2.4, 2.6, 2.8, 3.0),
+    angle_lengths=(200.0, 500.0, 900.0),
+    degrees=tuple(np.arange(-10.0, 10.1, 2.5).tolist()),
+    collapses=((200.0, 1.9), (900.0, 2.7), (500.0, 2.1)),
+    hopeless_starts=3,
+)
+SMALL = Size(
+    lengths=(300.0, 500.0),
+    speeds=(2.1, 2.6),
+    angle_lengths=(500.0,),
+    degrees=(-10.0, 0.0),
+    collapses=((500.0, 2.1),),
+    hopeless_starts=1,
+)
+HOPELESS = 500.0, 1.5
+"""A warp length (m) and speed (m/s) at which the gear cannot be towed."""
+
+
+def run(small: bool) -> Outcome:
+    """Continue over the maps and search from collapsed shapes."""
+    size = SMALL if small else FULL
+    gear = load_gear('kaifuha')
+    if small:
+        coarse = gear.netting.model_copy(update={'around': 12})
+        gear = gear.model_copy(update={'netting': coarse})
+    model = build_model(gear)
+    speeds = speed_lattice(model, size.lengths, size.speeds)
+    angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
+    collapsed_checks, collapsed_table = _collapsed(model, size)
+    return Outcome(
+        checks=(
+            _working('working_speeds', 'warp lengths and speeds of 1.9 to 2.3 m/s', [speeds]),
+            _working('installed', 'warp lengths and installation angles up to ±5°', angles),
+            *branch_checks('speed', [speeds]),
+            *smoothness_checks(speeds),
+            *branch_checks('angle', angles),
+            *collapsed_checks,
+        ),
+        drawings=(
+            Drawing(
+                'speed',
+                'Steady states over warp length and speed; numbers are attack angles in degrees, '
+                'also of states that are refused.',
+                speed_figure(speeds),
+            ),
+            Drawing(
+                'angles',
+                f'Steady states over warp length and installation angles at {SPEED:g} m/s; '
+                'numbers are attack angles in degrees.',
+                angle_figure(angles),
+            ),
+        ),
+        tables=(_counts(speeds, angles), collapsed_table),
+        text=_text(speeds),
+    )
+
+
+def _working(key: str, what: str, lattices: Sequence[Lattice]) -> Check:
+    """Share of usable places in the gear's working range."""
+    low, high = WORKING if key == 'working_speeds' else (-INSTALLED, INSTALLED)
+    places = [
+        (lattice.across, lattice.columns[j], answer)
+        for lattice in lattices
+        for (_, j), answer in lattice.answers.items()
+        if low <= lattice.columns[j] <= high
+    ]
+    refused = [
+        f'at {across} {value:g}, {answer.refusal}'
+        for across, value, answer in places
+        if answer.refusal is not None
+    ]
+    note = f'{len(places)} places.'
+    if refused:
+        note = f'Of {len(places)} places {len(refused)} refused: {"; ".join(refused)}.'
+    return Check(
+        key,
+        f'share of usable places among {what}',
+        100.0 * (1.0 - len(refused) / len(places)),
+        100.0,
+        unit='%',
+        note=note,
+    )
+
+
+def _collapsed(model: GearModel, size: Size) -> tuple[list[Check], Table]:
+    """Search from collapsed shapes, with and without a steady state at hand."""
+    rows = []
+    tallies: list[Tally] = []
+    goods: list[Equilibrium] = []
+    for length, speed in size.collapses:
+        good = find_equilibrium(model, OperatingPoint(length, length, speed))
+        goods.append(good)
+        tallies.append(tally(model, good.point, collapsed_shapes(good.state), good))
+        rows.append(_row(length, speed, tallies[-1]))
+    length, speed = HOPELESS
+    shapes = collapsed_shapes(goods[-1].state)[-size.hopeless_starts :]
+    tallies.append(tally(model, OperatingPoint(length, length, speed), shapes, None))
+    rows.append(_row(length, speed, tallies[-1]))
+    total = sum(each.searches for each in tallies)
+    checks = [
+        Check(
+            'collapsed_starts',
+            'searches from a collapsed shape that gave another state than the good branch',
+            sum(each.other for each in tallies),
+            0.0,
+            note=f'{total} searches; the good branch is the one found cold, within {SAME:g} m.',
+        ),
+        _overturned(model, goods[-1]),
+    ]
+    head = ('warp (m)', 'speed (m/s)', 'searches', 'good branch', 'refused', 'another state')
+    return checks, Table('Searches from collapsed shapes', head, tuple(rows))
+
+
+def _row(length: float, speed: float, counted: Tally) -> tuple[str, ...]:
+    refused = ', '.join(f'{number} {reason}' for reason, number in counted.refused.items())
+    return (
+        f'{length:g}',
+        f'{speed:g}',
+        str(counted.searches),
+        str(counted.good),
+        refused or '0',
+        str(counted.other),
+    )
+
+
+def _overturned(model: GearModel, good: Equilibrium) -> Check:
+    """Check that boards set so far in that they collapse are refused, whatever the start."""
+    overturned = model.with_board(installation=(OVERTURNED, 0.0, 0.0))
+    tow = steady_tow(overturned, good.point)
+    collapsed, _, left = relax(overturned, good.state, tow, tolerance=1e-3, time_step=10.0)
+    given: list[str] = []
+    for start, near in ((None, None), (good, None), (None, collapsed)):
+        try:
+            find_equilibrium(overturned, good.point, start, near=near)
+            given.append('a state')
+        except NoSteadyState as error:
+            given.append(error.reason)
+    return Check(
+        'overturned',
+        f'of three searches for boards set at ε = {np.degrees(OVERTURNED):.0f}°, refused as '
+        'collapsed',
+        given.count('collapsed'),
+        3.0,
+        note=f'Cold, from the gear set at 0°, and from the collapsed root itself, {left:.1g} N '
+        f'from balance; they gave: {", ".join(given)}.',
+    )
+
+
+def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> Table:
+    kinds: list[Verdict] = list(LOOKS)
+    rows = []
+    for name, lattice in zip(('speed', *ANGLES), (speeds, *angles), strict=True):
+        counted = Counter(answer.verdict for answer in lattice.answers.values())
+        searches = sum(answer.searches for answer in lattice.answers.values())
+        rows.append((name, *(str(counted[kind]) for kind in kinds), str(searches)))
+    return Table('Places by verdict', ('map over', *kinds, 'searches'), tuple(rows))
+
+
+def _text(speeds: Lattice) -> str:
+    doubtful = [a for a in speeds.answers.values() if a.verdict != 'usable' and a.root is not None]
+    several = sum(answer.apart > SAME or not answer.agreed for answer in doubtful)
+    surfaced = any(answer.verdict == 'surfaced' for answer in speeds.answers.values())
+    wet = 'Fast on short warps the headrope comes out of the water. ' if surfaced else ''
+    return (
+        'Each place is searched from all its neighbours that have a state, and every third one '
+        'cold too. Below about 1.8 m/s the symmetric state is unstable: a real eigenvalue of a '
+        'mode in which one board rises as the other sinks turns positive. Slower still, at '
+        '1.6 m/s and less, boards lie over, roots are several or none, and what a search finds '
+        f'depends on its start ({several} places of this map); all of these are refused. '
+        f'{wet}Turned inward by ε the boards lose '
+        'their lift until they fall: the good branch runs on into the collapsed states, without '
+        'a fold, and is refused from where α is negative or an outward normal points '
+        f'{np.degrees(np.arcsin(-COLLAPSED_NORMAL)):.0f}° down.'
+    )
+
+
+CASE = Case(
+    'steady_states', 'Where steady states exist, over warp length, speed and installation', run
+)

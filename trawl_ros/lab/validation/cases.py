@@ -1,0 +1,66 @@
+"""The cases of ``trawl validate``, in the order of the report."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.lab.report.check import Case
+
+SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        'closed_forms': (
+            'towed_wire',
+            'catenary',
+            'sinking_line',
+            'board_law',
+            'free_rotation',
+            'energy_budget',
+        ),
+        'convergence': ('time_step', 'refinement'),
+        'paper': (
+            'warp_sweep',
+            'installation',
+            'degrees_of_freedom',
+            'identified',
+            'sentences',
+        ),
+        'peers': ('moordyn_wire', 'moorpy_wire'),
+        'branches': ('steady_states',),
+    }
+)
+"""Sub-package of `trawl_ros.lab.validation` → its modules, each with a ``CASE`` of that name."""
+
+TITLES: Mapping[str, str] = MappingProxyType(
+    {
+        'closed_forms': 'Closed forms',
+        'convergence': 'Convergence',
+        'paper': 'The paper, section IV',
+        'peers': 'Peers',
+        'branches': 'Branches',
+    }
+)
+
+NAMES: tuple[str, ...] = tuple(name for names in SECTIONS.values() for name in names)
+
+
+def section_of(name: str) -> str:
+    """The section a case belongs to.
+
+    Raises
+    ------
+    TrawlError
+        If there is no such case.
+    """
+    for section, names in SECTIONS.items():
+        if name in names:
+            return section
+    raise TrawlError(f'{name}: no such case; expected one of {", ".join(NAMES)}')
+
+
+def load_case(name: str) -> Case:
+    """Import one case."""
+    module = import_module(f'trawl_ros.lab.validation.{section_of(name)}.{name}')
+    case = module.CASE
+    assert isinstance(case, Case)
+    return case

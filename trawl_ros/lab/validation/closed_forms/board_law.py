@@ -1,0 +1,254 @@
+"""Board alone at random attitudes, against the paper's equations evaluated anew."""
+
+from dataclasses import dataclass, replace
+from math import pi, radians
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
+
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import BoardRecord, GearRecord
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.validation.closed_forms.paper_board import PaperBoard, coefficients
+from trawl_ros.model.assembly import board_loads, points_of
+from trawl_ros.model.board import COEFFICIENTS, coefficients_at
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.state import State
+from trawl_ros.model.water import Water
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+
+ATTITUDES = 50
+TOLERANCE = 1e-9
+
+WATER = Water(
+    density=1024.0,
+    density_gradient=0.02,
+    depths=np.array([0.0, 100.0, 300.0]),
+    currents=np.array([[0.3, -0.1], [0.1, 0.2], [-0.2, 0.1]]),
+)
+"""Density that grows and a current that shears, so that both are seen to be taken locally."""
+
+WITHIN = (0.0, radians(40.0)), (radians(-40.0), radians(40.0))
+"""Attack and slip where eq. 14 holds as it stands."""
+
+ANYWHERE = (-pi, pi), (radians(-85.0), radians(85.0))
+"""Attack, and the flow's angle to the plane across the span."""
+
+
+@dataclass(frozen=True)
+class Differences:
+    """Largest differences as shares of the force and of the moment; ``attack`` the least and
+    the largest attack angle (rad) that was met.
+    """
+
+    force: float
+    moment: float
+    attack: tuple[float, float]
+
+
+def moving_at(
+    model: GearModel, random: np.random.Generator, attack: np.ndarray, slip: np.ndarray
+) -> State:
+    """Both boards at random places and attitudes, met by the flow at given angles (2,).
+
+    ``slip`` is that of eq. 2 where the flow comes from ahead.
+    """
+    outward = np.array([1.0, -1.0])
+    flow = np.stack([-np.cos(attack), np.sin(attack), np.tan(slip) * np.abs(np.cos(attack))], 1)
+    flow *= random.uniform(0.5, 4.0, (2, 1)) / np.linalg.norm(flow, axis=1)[:, None]
+    flow[:, 1] *= outward
+    turns = Rotation.from_quat(random.normal(size=(2, 4))).as_matrix()
+    places = random.uniform([-500.0, -100.0, -250.0], [0.0, 100.0, -5.0], (2, 3))
+    rates = random.normal(0.0, 0.1, (2, 3))
+    velocities = WATER.current(places[:, 2]) - np.einsum('sij,sj->si', turns, flow)
+    still = State(
+        nodes=np.zeros((model.nodes, 3)),
+        board_positions=places,
+        board_rotations=turns,
+        node_velocities=np.zeros((model.nodes, 3)),
+        board_velocities=velocities,
+        board_rates=rates,
+    )
+    # The velocity of eq. 4 is that of the vertices, which a turning board moves as well.
+    points = points_of(model, still, steady_tow(model, OperatingPoint(500.0, 500.0, 2.0)))
+    ahead = np.cross(rates[:, None], points.arms).mean(1)
+    return replace(still, board_velocities=velocities - ahead)
+
+
+def on_paper(gear: GearRecord, model: GearModel, state: State) -> list[PaperBoard]:
+    """The same two boards in the paper's terms: vertices and their velocities."""
+    tow = steady_tow(model, OperatingPoint(500.0, 500.0, 2.0))
+    points = points_of(model, state, tow)
+    places = points.positions[model.nodes : model.nodes + 6].reshape(2, 3, 3)
+    speeds = points.velocities[model.nodes : model.nodes + 6].reshape(2, 3, 3)
+    heights = state.board_positions[:, 2]
+    return [
+        PaperBoard(
+            gear.board,
+            side == 0,
+            a=places[side, 0],
+            b=places[side, 1],
+            c=places[side, 2],
+            va=speeds[side, 0],
+            vb=speeds[side, 1],
+            vc=speeds[side, 2],
+            rate=state.board_rates[side],
+            water=WATER.current(heights[side]),
+            density=float(WATER.density_at(heights[side])),
+            gravity=WATER.gravity,
+        )
+        for side in range(2)
+    ]
+
+
+def compare(
+    gear: GearRecord,
+    random: np.random.Generator,
+    *,
+    within: bool,
+    paper: GearRecord | None = None,
+) -> Differences:
+    """Both boards at all attitudes; the equations are those of ``gear`` or of ``paper``."""
+    model = replace(build_model(gear), water=WATER)
+    # The gyroscopic moment is no part of eq. 1-14.
+    model = model.with_board(inertia=np.zeros((3, 3)))
+    of_force, of_moment = [], []
+    seen: list[float] = []
+    for _ in range(ATTITUDES):
+        attacks, slips = WITHIN if within else ANYWHERE
+        attack, slip = random.uniform(*attacks, 2), random.uniform(*slips, 2)
+        state = moving_at(model, random, attack, slip)
+        loads = board_loads(model, state)
+        for board, load in zip(on_paper(paper or gear, model, state), loads, strict=True):
+            force, moment = board.load()
+            of_force.append(np.linalg.norm(load[:3] - force) / np.linalg.norm(force))
+            of_moment.append(np.linalg.norm(load[3:] - moment) / np.linalg.norm(moment))
+        seen.extend(attack)
+    return Differences(
+        float(max(of_force)), float(max(of_moment)), (float(min(seen)), float(max(seen)))
+    )
+
+
+def run(small: bool) -> Outcome:
+    """Compare within the law's range and outside, with forces in either axes."""
+    random = np.random.default_rng(20)
+    default = load_gear('kaifuha')
+    other = 'board' if default.board.force_axes == 'flow' else 'flow'
+    checks, rows = [], []
+    for axes in (default.board.force_axes, other):
+        board = default.board.model_copy(update={'force_axes': axes})
+        gear = default.model_copy(update={'board': board})
+        for within in (True, False):
+            found = compare(gear, random, within=within)
+            where = 'within' if within else 'anywhere'
+            what = (
+                f'at {ATTITUDES} random attitudes on each side, {where} '
+                f'{"the range of eq. 14" if within else "around the board"}, '
+                f'forces along the {axes}'
+            )
+            for part in ('force', 'moment'):
+                checks.append(
+                    Check(
+                        f'{part}_{where}_{axes}',
+                        f'largest difference of the {part} {what}, as a share of it',
+                        getattr(found, part),
+                        TOLERANCE,
+                        rule='at_most',
+                        note='Against eq. 1-14 evaluated from the vertices of the board.',
+                    )
+                )
+            low, high = np.degrees(found.attack)
+            rows.append(
+                (
+                    where,
+                    axes,
+                    f'{low:.0f} to {high:.0f}',
+                    f'{found.force:.1e}',
+                    f'{found.moment:.1e}',
+                )
+            )
+    checks.extend(_continuation_checks(default.board))
+    return Outcome(
+        checks=tuple(checks),
+        drawings=(
+            Drawing(
+                'coefficients',
+                'Force and moment coefficients over the attack angle without slip, as the model '
+                'has them and evaluated anew; between the dotted lines eq. 14 holds as it stands.',
+                _drawn(default.board),
+            ),
+        ),
+        tables=(
+            Table(
+                'Largest differences as shares of the force and of the moment.',
+                ('attitudes', 'force axes', 'α [°]', 'force', 'moment'),
+                tuple(rows),
+            ),
+        ),
+        text='The paper leaves the signs of slip and moments, the axes of the forces and the '
+        'resistance to turning open; both evaluations take them from the gear file.',
+    )
+
+
+def _values(record: BoardRecord) -> np.ndarray:
+    return np.array([getattr(record.coefficients, name) for name in COEFFICIENTS])
+
+
+def _continuation_checks(record: BoardRecord) -> list[Check]:
+    """Check the continuation of the law outside its range."""
+    attack = np.radians(np.linspace(-180.0, 180.0, 3601))
+    seen = coefficients_at(_values(record), attack, np.zeros_like(attack))
+    ends = np.radians([-40.0, 90.0])
+    gone = coefficients_at(_values(record), ends, np.zeros(2))
+    jumps = np.abs(np.diff(seen, axis=0)).max()
+    return [
+        Check(
+            'no_thrust',
+            'least drag coefficient at any attack angle',
+            float(seen[:, 0].min()),
+            0.0,
+            rule='at_least',
+            note='Drag never becomes thrust.',
+        ),
+        Check(
+            'lift_gone',
+            'largest lift coefficient, and moment coefficient of α, at -40° and 90°',
+            float(np.abs(gone[:, [1, 3, 5]]).max()),
+            1e-12,
+            rule='at_most',
+            note='There lift and moments have faded.',
+        ),
+        Check(
+            'no_jump',
+            'largest change of a coefficient over 0.1° of attack',
+            float(jumps),
+            2.0 * np.abs(_values(record)).max() * np.radians(0.1),
+            rule='at_most',
+            note='At most twice that of the steepest line of eq. 14: the law has no step.',
+        ),
+    ]
+
+
+def _drawn(record: BoardRecord) -> Figure:
+    figure = Figure(figsize=(8.4, 4.2), layout='constrained')
+    fine, dots = np.linspace(-90.0, 120.0, 421), np.linspace(-90.0, 120.0, 43)
+    curves = coefficients_at(_values(record), np.radians(fine), np.zeros_like(fine))
+    points = np.array([coefficients(record, np.radians(alpha), 0.0) for alpha in dots])
+    names = ('$C_x^F$', '$C_y^F$', '$C_z^F$', '$C_x^M$', '$C_y^M$', '$C_z^M$')
+    for axes, group, title in zip(
+        figure.subplots(1, 2), ((0, 1, 2), (3, 4, 5)), ('force', 'moment'), strict=True
+    ):
+        for k in group:
+            (curve,) = axes.plot(fine, curves[:, k], '-', label=names[k])
+            axes.plot(dots, points[:, k], 'o', ms=3, color=curve.get_color())
+        axes.plot([], [], 'ko', ms=3, label='evaluated anew')
+        for edge in (0.0, 40.0):
+            axes.axvline(edge, color='k', ls=':', lw=1)
+        axes.set(xlabel='attack angle α [°]', ylabel=f'{title} coefficient [-]')
+        axes.grid(alpha=0.3)
+        axes.legend()
+    return figure
+
+
+CASE = Case('board_law', 'A board alone, eq. 1 to 14', run)

@@ -1,0 +1,220 @@
+"""Free rotation of boards without water and weight: conserved energy and angular momentum."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.lab.reference_codes.lone_line import WIRE, holding, lone_line, lying
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.validation.closed_forms.refinement import order
+from trawl_ros.model.assembly import forces, mass
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import rotation
+from trawl_ros.model.state import State, Tow
+from trawl_ros.model.water import Water
+from trawl_ros.solver.stepper import Motion, Stepper
+
+VOID = Water(density=1e-12, gravity=0.0)
+
+SECONDS = 100.0
+STEPS = (0.8, 0.4, 0.2)
+"""Time steps (s), the last being that of a simulation."""
+
+SHORT = 0.05
+"""A step (s) much shorter than a simulation's."""
+
+RATES = 0.2 * np.array([[1.0, 0.01, 0.02], [0.4, 0.5, 0.6]])
+"""First rates of turn of both boards about their own axes, rad/s."""
+
+
+@dataclass(frozen=True)
+class Spin:
+    """``times`` (k,) s; ``momentum`` and ``energy`` (k,): how far the boards' angular momentum
+    (length of the difference, the worse of both) and their kinetic energy are from the first,
+    as shares of it; ``upright`` (k, 2) cosine between each board's z axis and its first.
+    """
+
+    times: np.ndarray
+    momentum: np.ndarray
+    energy: np.ndarray
+    upright: np.ndarray
+
+
+def spinning() -> tuple[GearModel, State, Tow]:
+    """Two boards of the default gear that spin, port about its axis of middle inertia.
+
+    There a spin is unstable: that board tumbles.
+    """
+    model = lone_line(WIRE, 3, VOID)
+    tow = holding(60.0, np.zeros(3), np.zeros(3))
+    turn = rotation(np.array([0.3, -0.2, 0.5]))
+    line = lying(np.array([[-10.0, 0.0, 0.0], [-20.0, 0.0, 0.0], [-30.0, 0.0, 0.0]]), np.zeros(3))
+    state = State(
+        nodes=line.nodes,
+        board_positions=line.board_positions,
+        board_rotations=np.stack([turn, turn.T]),
+        node_velocities=line.node_velocities,
+        board_velocities=np.array([[1.0, 0.2, -0.1], [0.5, 0.0, 0.0]]),
+        board_rates=np.stack([turn @ RATES[0], turn.T @ RATES[1]]),
+    )
+    return model, state, tow
+
+
+def momentum_and_energy(model: GearModel, state: State) -> tuple[np.ndarray, float]:
+    """Angular momentum (2, 3) about the centres of gravity, N m s, and kinetic energy of both
+    boards, J, from the gear file's inertia in each board's own axes.
+    """
+    about = model.gear.board.inertia
+    momentum, energy = np.zeros((2, 3)), 0.0
+    for side, mirror in enumerate((1.0, -1.0)):
+        # Mirrored in x-z, the products of inertia with y change their sign.
+        xy, yz = mirror * about.xy_kg_m2, mirror * about.yz_kg_m2
+        turn = state.board_rotations[side]
+        p, q, r = turn.T @ state.board_rates[side]
+        own = np.array(
+            [
+                about.xx_kg_m2 * p - xy * q - about.xz_kg_m2 * r,
+                about.yy_kg_m2 * q - xy * p - yz * r,
+                about.zz_kg_m2 * r - about.xz_kg_m2 * p - yz * q,
+            ]
+        )
+        momentum[side] = turn @ own
+        energy += 0.5 * float(own @ (p, q, r))
+        energy += 0.5 * model.gear.board.mass_kg * float(np.sum(state.board_velocities[side] ** 2))
+    return momentum, energy
+
+
+def spun(h: float, seconds: float) -> Spin:
+    """The boards' motion as the stepper has it in steps of ``h`` seconds."""
+    model, state, tow = spinning()
+    inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
+    first = np.linalg.solve(inertia, forces(model, state, tow))
+    before, energy = momentum_and_energy(model, state)
+    size = np.linalg.norm(before, axis=1)
+    stepper, motion = Stepper(model), Motion(state, first, first)
+    rows = [(0.0, 0.0, 0.0, 1.0, 1.0)]
+    for k in range(round(seconds / h)):
+        motion = stepper.step(motion, tow, h)
+        after, left = momentum_and_energy(model, motion.state)
+        upright = np.einsum(
+            'si,si->s', motion.state.board_rotations[:, :, 2], state.board_rotations[:, :, 2]
+        )
+        rows.append(
+            (
+                (k + 1) * h,
+                float((np.linalg.norm(after - before, axis=1) / size).max()),
+                abs(left / energy - 1.0),
+                *upright,
+            )
+        )
+    table = np.array(rows)
+    return Spin(table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
+
+
+def run(small: bool) -> Outcome:
+    """Spin with shorter and shorter steps."""
+    seconds = 0.5 * SECONDS if small else SECONDS
+    spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT))}
+    momentum = {h: float(spin.momentum.max()) for h, spin in spins.items()}
+    energy = {h: float(spin.energy.max()) for h, spin in spins.items()}
+    usual = STEPS[-1]
+    kept = 'As a share of it; a free body keeps it, but for the error of the time stepper.'
+    second = 'The drift is the error of the time stepper, which is of second order.'
+    counts = [round(seconds / h) for h in STEPS]
+    checks = [
+        Check(
+            'momentum',
+            f'largest drift of the angular momentum in {seconds:.0f} s, steps of {usual} s',
+            momentum[usual],
+            5e-3,
+            rule='at_most',
+            note=kept,
+        ),
+        Check(
+            'energy',
+            f'largest drift of the kinetic energy in {seconds:.0f} s, steps of {usual} s',
+            energy[usual],
+            1e-3,
+            rule='at_most',
+            note=kept,
+        ),
+        Check(
+            'order_of_momentum',
+            'order with which the drift of the angular momentum falls with the step',
+            order(counts, [momentum[h] for h in STEPS]),
+            1.9,
+            rule='at_least',
+            note=second,
+        ),
+        Check(
+            'order_of_energy',
+            'order with which the drift of the energy falls with the step',
+            order(counts, [energy[h] for h in STEPS]),
+            1.9,
+            rule='at_least',
+            note=second,
+        ),
+        Check(
+            'tumbles',
+            'least cosine between the port board’s z axis and its first',
+            float(spins[usual].upright[:, 0].min()),
+            -0.9,
+            rule='at_most',
+            note='It turns over: what is kept is kept through large rotations.',
+        ),
+    ]
+    if not small:
+        checks.append(_floor(momentum[SHORT]))
+    rows = tuple((f'{h:g}', f'{momentum[h]:.2e}', f'{energy[h]:.2e}') for h in spins)
+    return Outcome(
+        checks=tuple(checks),
+        drawings=(
+            Drawing(
+                'drift',
+                'Drift of angular momentum and energy of two free boards, and how the port one '
+                'tumbles.',
+                _drawn(spins),
+            ),
+        ),
+        tables=(
+            Table(
+                'Largest drift as a share.',
+                ('step [s]', 'angular momentum', 'energy'),
+                rows,
+            ),
+        ),
+        text='Two boards without ropes, water or weight, one of them spinning about its axis of '
+        'middle inertia. The gyroscopic moment, which eq. 15 drops, is kept.',
+    )
+
+
+def _floor(drift: float) -> Check:
+    return Check(
+        'short_steps',
+        f'largest drift of the angular momentum in {SECONDS:.0f} s, steps of {SHORT} s',
+        drift,
+        1e-3,
+        rule='at_most',
+        note='With the error of the method out of the way, it is the equations that keep it.',
+    )
+
+
+def _drawn(spins: dict[float, Spin]) -> Figure:
+    figure = Figure(figsize=(7.0, 6.4), layout='constrained')
+    above, middle, below = figure.subplots(3, 1, sharex=True)
+    for h, spin in spins.items():
+        above.semilogy(spin.times[1:], spin.momentum[1:], label=f'steps of {h:g} s')
+        middle.semilogy(spin.times[1:], spin.energy[1:], label=f'steps of {h:g} s')
+    finest = spins[min(spins)]
+    below.plot(finest.times, finest.upright, label=('port', 'starboard'))
+    above.set(ylabel='angular momentum,\ndrift as a share [-]')
+    middle.set(ylabel='kinetic energy,\ndrift as a share [-]')
+    below.set(ylabel='cosine of z axis\nagainst its first [-]', xlabel='time [s]')
+    for axes in (above, middle, below):
+        axes.grid(alpha=0.3)
+        axes.legend()
+    return figure
+
+
+CASE = Case('free_rotation', 'Free rotation of a board', run)

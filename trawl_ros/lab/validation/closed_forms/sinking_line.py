@@ -1,0 +1,208 @@
+"""Free line that sinks in still water, against the speed at which drag balances its weight."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_line, lying
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.model.assembly import forces, mass
+from trawl_ros.solver.stepper import Motion, Stepper
+
+LENGTH, SEGMENTS = 200.0, 20
+SLOPES = (0.0, 30.0)
+"""Angles (degrees) of the line below the horizontal, its start being the upper end."""
+
+SLACK = 1.0 - 2e-4
+"""Distance of the nodes over the segments' length: a line that is slack all along."""
+
+TIME_STEP = 0.01
+
+SECONDS = 8.0
+"""After which the slowest, along the sloping line, is within 1e-6 of its last speed."""
+
+
+@dataclass(frozen=True)
+class Sinking:
+    """``times`` (k,) s; ``velocities`` (k, 2) m/s of the line's middle along the line and
+    across it, downward both; ``uneven`` is the largest difference between two nodes' velocities
+    at the end, m/s.
+    """
+
+    times: np.ndarray
+    velocities: np.ndarray
+    uneven: float
+
+
+def terminal(slope: float) -> np.ndarray:
+    """Terminal speeds (2,) m/s along and across a line, at which drag balances its weight.
+
+    w sin φ = ½ ρ C_t π d u², w cos φ = ½ ρ C_n d u².
+    """
+    diameter = WIRE['diameter_m']
+    weights = WIRE['weight_in_water_n_m'] * np.array([np.sin(slope), np.cos(slope)])
+    drags = np.array([WIRE['tangential_drag'] * np.pi, WIRE['normal_drag']])
+    return np.sqrt(weights / (0.5 * SEA.density * diameter * drags))
+
+
+def fall(slope: float, times: np.ndarray) -> np.ndarray:
+    """Speeds (k, 2) m/s along and across a line let go from rest: U tanh(w t / m U).
+
+    Across the line the water it displaces is carried along (added mass 1), along it none is.
+    """
+    displaced = SEA.density * np.pi / 4 * WIRE['diameter_m'] ** 2
+    own = WIRE['weight_in_water_n_m'] / SEA.gravity + displaced
+    masses = np.array([own, own + displaced])
+    weights = WIRE['weight_in_water_n_m'] * np.array([np.sin(slope), np.cos(slope)])
+    final = terminal(slope)
+    time_constants = masses * final / np.where(weights > 0.0, weights, 1.0)
+    safe = np.where(time_constants > 0.0, time_constants, 1.0)
+    return final * np.tanh(times[:, None] / safe)
+
+
+def sinking(slope: float, seconds: float) -> Sinking:
+    """A line let go from rest, as the stepper has it."""
+    model = lone_line(
+        {**WIRE, 'added_mass_normal': 1.0, 'added_mass_tangential': 0.0}, SEGMENTS, SEA, 'nowhere'
+    )
+    along = np.array([np.cos(slope), 0.0, -np.sin(slope)])
+    across = np.array([-np.sin(slope), 0.0, -np.cos(slope)])
+    place = np.linspace(0.0, SLACK * LENGTH, SEGMENTS + 1)[:, None]
+    state = lying(np.array([0.0, 0.0, -50.0]) + place * along, np.zeros(3))
+    tow = holding(LENGTH, np.zeros(3), np.zeros(3))
+    inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
+    first = np.linalg.solve(inertia, forces(model, state, tow))
+    stepper, motion = Stepper(model), Motion(state, first, first)
+    steps = round(seconds / TIME_STEP)
+    middle = SEGMENTS // 2
+    speeds = [np.zeros(2)]
+    for _ in range(steps):
+        motion = stepper.step(motion, tow, TIME_STEP)
+        velocity = motion.state.node_velocities[middle]
+        speeds.append(np.array([velocity @ along, velocity @ across]))
+    return Sinking(
+        times=TIME_STEP * np.arange(steps + 1),
+        velocities=np.array(speeds),
+        uneven=float(np.ptp(motion.state.node_velocities, axis=0).max()),
+    )
+
+
+def run(small: bool) -> Outcome:
+    """Let the line go level, and sloping."""
+    found = {slope: sinking(np.radians(slope), SECONDS) for slope in SLOPES}
+    level, sloping = (found[slope] for slope in SLOPES)
+    across_level = terminal(0.0)[1]
+    along, across = terminal(np.radians(SLOPES[1]))
+    law = 'Expected: the speed at which drag carries the weight, '
+    history = {
+        slope: float(
+            np.abs(line.velocities - fall(np.radians(slope), line.times)).max()
+            / terminal(np.radians(slope)).max()
+        )
+        for slope, line in found.items()
+    }
+    checks = (
+        Check(
+            'level',
+            'last sinking speed of a level line',
+            float(level.velocities[-1, 1]),
+            float(across_level),
+            1e-4,
+            'relative',
+            'm/s',
+            law + 'w = ½ ρ C_n d U².',
+        ),
+        Check(
+            'sloping_across',
+            'last speed across a line that slopes by 30°',
+            float(sloping.velocities[-1, 1]),
+            float(across),
+            1e-4,
+            'relative',
+            'm/s',
+            law + 'w cos φ = ½ ρ C_n d U².',
+        ),
+        Check(
+            'sloping_along',
+            'last speed along a line that slopes by 30°',
+            float(sloping.velocities[-1, 0]),
+            float(along),
+            1e-4,
+            'relative',
+            'm/s',
+            law + 'w sin φ = ½ ρ C_t π d U².',
+        ),
+        Check(
+            'together',
+            'largest difference of velocity between two nodes at the end',
+            max(line.uneven for line in found.values()),
+            1e-6,
+            rule='at_most',
+            unit='m/s',
+            note='Weight and drag are alike all along, so the line keeps straight.',
+        ),
+        *(
+            Check(
+                f'history_{slope:.0f}',
+                f'largest error of the speed on the way, line sloping by {slope:.0f}°, as a '
+                'share of the last speed',
+                error,
+                1e-3,
+                rule='at_most',
+                note=f'Against U tanh(w t / m U), with steps of {TIME_STEP} s.',
+            )
+            for slope, error in history.items()
+        ),
+    )
+    rows = tuple(
+        (
+            f'{slope:.0f}',
+            f'{line.velocities[-1, 0]:.5f}',
+            f'{terminal(np.radians(slope))[0]:.5f}',
+            f'{line.velocities[-1, 1]:.5f}',
+            f'{terminal(np.radians(slope))[1]:.5f}',
+        )
+        for slope, line in found.items()
+    )
+    return Outcome(
+        checks=checks,
+        drawings=(Drawing('speed', 'Speed of a free line let go from rest.', _drawn(found)),),
+        tables=(
+            Table(
+                'Last speeds.',
+                (
+                    'slope [°]',
+                    'along, model [m/s]',
+                    'along, closed form [m/s]',
+                    'across, model [m/s]',
+                    'across, closed form [m/s]',
+                ),
+                rows,
+            ),
+        ),
+        text='A steel wire of 200 m and 32 mm, free at both ends, let go from rest in still water.',
+    )
+
+
+def _drawn(found: dict[float, Sinking]) -> Figure:
+    figure = Figure(figsize=(6.4, 4.2), layout='constrained')
+    axes = figure.add_subplot()
+    fine = np.linspace(0.0, SECONDS, 400)
+    for slope, line in found.items():
+        exact = fall(np.radians(slope), fine)
+        for part, name in enumerate(('along', 'across')):
+            if slope == 0.0 and name == 'along':
+                continue
+            (curve,) = axes.plot(fine, exact[:, part], '-', label=f'{slope:.0f}°, {name}')
+            axes.plot(
+                line.times[::40], line.velocities[::40, part], 'o', ms=4, color=curve.get_color()
+            )
+    axes.plot([], [], 'ko', ms=4, label='model')
+    axes.set(xlabel='time [s]', ylabel='speed [m/s]', xlim=(0.0, SECONDS))
+    axes.grid(alpha=0.3)
+    axes.legend()
+    return figure
+
+
+CASE = Case('sinking_line', 'Terminal sinking of a free line', run)

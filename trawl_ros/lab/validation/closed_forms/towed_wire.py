@@ -1,0 +1,191 @@
+"""Towed elastic wire with a lump at its end, against its equation integrated along the wire."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.integrate import solve_ivp
+
+from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
+from trawl_ros.model.assembly import block_forces
+
+LENGTH, SPEED = 600.0, 2.0
+
+LUMP_MASS, LUMP_VOLUME, LUMP_DRAG_AREA = 2000.0, 0.25, 12.0
+"""kg, m³, C_D A in m²."""
+
+KNOWN = {'depth': 335.307, 'lag': 498.191, 'tension': 41_042.0}
+"""The same wire as somebody else integrated it: m, m, N, to these digits."""
+
+UNITS = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
+
+SEGMENTS = (5, 10, 20, 40, 80)
+CLAIMED = 20
+"""Segments at which an error of 0.1 % is claimed."""
+
+
+@dataclass(frozen=True)
+class Wire:
+    """Depth and lag (m) of the wire's lower end, pull (N) at its upper one; ``places`` (n, 2)
+    ahead and up (m) of points equally far apart along it, the block first.
+    """
+
+    depth: float
+    lag: float
+    tension: float
+    places: np.ndarray
+
+
+def integrated(points: int) -> Wire:
+    """The steady wire by integration from its lower end upward, at ``points`` equal pieces.
+
+    With the unstretched length σ from the lower end, t the direction up the wire and T the
+    tension: d(T t)/dσ = -(weight + drag), dr/dσ = (1 + T / EA) t. At σ = 0 the tension holds the
+    lump's weight and drag, so that the integration needs no shooting.
+    """
+    diameter = WIRE['diameter_m']
+    across = 0.5 * SEA.density * WIRE['normal_drag'] * diameter
+    along = 0.5 * SEA.density * WIRE['tangential_drag'] * np.pi * diameter
+    flow = np.array([-SPEED, 0.0])
+
+    def slope(_: float, y: np.ndarray) -> np.ndarray:
+        tension = np.hypot(y[0], y[1])
+        t = y[:2] / tension
+        slide = flow @ t
+        cross = flow - slide * t
+        load = across * np.hypot(*cross) * cross + along * abs(slide) * slide * t
+        load[1] -= WIRE['weight_in_water_n_m']
+        return np.concatenate([-load, (1.0 + tension / WIRE['stiffness_n']) * t])
+
+    heavy = (LUMP_MASS - SEA.density * LUMP_VOLUME) * SEA.gravity
+    resistance = 0.5 * SEA.density * LUMP_DRAG_AREA * SPEED**2
+    at = np.linspace(0.0, LENGTH, points + 1)
+    found = solve_ivp(
+        slope,
+        (0.0, LENGTH),
+        np.array([resistance, heavy, 0.0, 0.0]),
+        method='DOP853',
+        t_eval=at,
+        rtol=1e-12,
+        atol=1e-9,
+    )
+    top = found.y[:, -1]
+    places = (found.y[2:] - top[2:, None]).T[::-1]
+    return Wire(
+        depth=float(top[3]),
+        lag=float(top[2]),
+        tension=float(np.hypot(top[0], top[1])),
+        places=places,
+    )
+
+
+def modelled(segments: int) -> Wire:
+    """The steady wire as the gear model has it."""
+    model = lone_line(WIRE, segments, SEA)
+    model = loaded(model, LUMP_MASS, LUMP_VOLUME, LUMP_DRAG_AREA)
+    tow = holding(LENGTH, np.zeros(3), np.zeros(3), SPEED)
+    share = np.arange(1, segments + 1)[:, None] / segments
+    state = settled(model, share * LENGTH / np.sqrt(2.0) * np.array([-1.0, 0.0, -1.0]), tow)
+    places = np.concatenate([np.zeros((1, 2)), state.nodes[:, [0, 2]]])
+    return Wire(
+        depth=-float(state.nodes[-1, 2]),
+        lag=-float(state.nodes[-1, 0]),
+        tension=float(np.linalg.norm(block_forces(model, state, tow)[0])),
+        places=places,
+    )
+
+
+def run(small: bool) -> Outcome:
+    """Compare at several numbers of segments."""
+    counts = SEGMENTS[1:4] if small else SEGMENTS
+    exact = {count: integrated(count) for count in counts}
+    wires = {count: modelled(count) for count in counts}
+    claimed, reference = wires[CLAIMED], exact[CLAIMED]
+    checks = [
+        Check(
+            f'{key}_at_20_segments',
+            f'{key} of the wire, 20 segments',
+            getattr(claimed, key),
+            getattr(reference, key),
+            1e-3,
+            'relative',
+            unit,
+            'Expected: the integrated equation.',
+        )
+        for key, unit in UNITS.items()
+    ]
+    checks += [
+        Check(
+            f'integrated_{key}',
+            f'{key} by the equation integrated here',
+            getattr(reference, key),
+            KNOWN[key],
+            2e-6,
+            'relative',
+            unit,
+            'Expected: an integration of the same wire made before this model, to its digits.',
+        )
+        for key, unit in UNITS.items()
+    ]
+    shape = [
+        float(np.linalg.norm(wires[n].places - exact[n].places, axis=1).max()) / LENGTH
+        for n in counts
+    ]
+    errors = {
+        key: [abs(getattr(wires[n], key) / getattr(exact[n], key) - 1.0) for n in counts]
+        for key in UNITS
+    }
+    orders = {'shape': shape, **errors}
+    checks += [
+        Check(
+            f'order_of_{key}',
+            f'order of convergence of the {key}',
+            order(counts, values),
+            1.9,
+            rule='at_least',
+            note='A lumped line is of second order in the length of its segments.',
+        )
+        for key, values in orders.items()
+    ]
+    rows = tuple(
+        (str(n), f'{wires[n].depth:.4f}', f'{wires[n].lag:.4f}', f'{wires[n].tension:.2f}')
+        for n in counts
+    )
+    last = ('integrated', f'{reference.depth:.4f}', f'{reference.lag:.4f}')
+    return Outcome(
+        checks=tuple(checks),
+        drawings=(
+            Drawing(
+                'convergence',
+                'Relative errors of the towed wire against the integrated equation; the shape is '
+                'the largest distance of a node from its place, over the length.',
+                drawn(counts, orders, 'Towed wire, 600 m at 2 m/s'),
+            ),
+            Drawing('shape', 'The wire as modelled and as integrated.', _shape(claimed)),
+        ),
+        tables=(
+            Table(
+                'The towed wire at several numbers of segments.',
+                ('segments', 'depth [m]', 'lag [m]', 'top tension [N]'),
+                (*rows, (*last, f'{reference.tension:.2f}')),
+            ),
+        ),
+        text='A steel wire of 600 m and 32 mm, towed at 2 m/s with a lump of 2000 kg at its end.',
+    )
+
+
+def _shape(claimed: Wire) -> Figure:
+    figure = Figure(figsize=(6.4, 4.2), layout='constrained')
+    axes = figure.add_subplot()
+    fine = integrated(200)
+    axes.plot(*fine.places.T, '-', label='integrated')
+    axes.plot(*claimed.places.T, 'o', ms=4, label=f'model, {CLAIMED} segments')
+    axes.set(xlabel='ahead of the block [m]', ylabel='above the surface [m]', aspect='equal')
+    axes.grid(alpha=0.3)
+    axes.legend()
+    return figure
+
+
+CASE = Case('towed_wire', 'Towed elastic wire', run)

@@ -1,0 +1,235 @@
+"""Order of convergence of the time stepper, on manoeuvres with hauling."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.validation.convergence.manoeuvres import START, History, smooth_haul, winch_ramp
+from trawl_ros.model.assembly import bar_tensions
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+
+ORDER = 1.9
+"""Observed order at which a method counts as of second order: its error falls to 27 % or less
+where the step is halved."""
+
+DEFAULT_STEP = 0.2
+"""Step (s) of a tow at the simulation's default period."""
+
+
+SLACK = 10.0
+"""Tension (N) below which a bar of netting counts as slack."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """Durations (s) of both manoeuvres, steps (s), the finest for reference, and metres hauled."""
+
+    smooth_duration: float
+    smooth_steps: Sequence[float]
+    ramp_duration: float
+    ramp_steps: Sequence[float]
+    hauled: float
+
+
+FULL = Size(32.0, (0.8, 0.4, 0.2, 0.1, 0.0125), 64.0, (0.4, 0.2, 0.1, 0.0125), 16.0)
+SMALL = Size(16.0, (0.4, 0.2, 0.1, 0.025), 12.0, (0.4, 0.2, 0.1, 0.025), 2.0)
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Errors of coarser steps against the finest.
+
+    ``errors`` (steps, observables) is the largest during the manoeuvre, as a share of how much
+    the observable changes in it; ``places`` (steps, points) that of nodes and boards, m.
+    """
+
+    steps: np.ndarray
+    errors: np.ndarray
+    places: np.ndarray
+
+    @property
+    def norm(self) -> np.ndarray:
+        """Root mean square (steps,) of all observables' errors."""
+        return np.sqrt((self.errors**2).mean(1))
+
+    def order(self, errors: np.ndarray) -> float:
+        """Slope of errors (steps,) over the step, both as logarithms."""
+        return float(np.polyfit(np.log(self.steps), np.log(errors), 1)[0])
+
+    def orders(self) -> np.ndarray:
+        """Order (observables,) of each observable."""
+        return np.array([self.order(column) for column in self.errors.T])
+
+
+def convergence(runs: Sequence[History]) -> Convergence:
+    """Compare runs of one manoeuvre; the last has the finest step."""
+    *coarse, fine = runs
+    change = np.ptp(fine.seen, axis=0)
+    return Convergence(
+        steps=np.array([run.step for run in coarse]),
+        errors=np.array([np.abs(run.seen - fine.seen).max(0) / change for run in coarse]),
+        places=np.array([np.abs(run.places - fine.places).max((0, 2)) for run in coarse]),
+    )
+
+
+def run(small: bool) -> Outcome:
+    """Run both manoeuvres at several steps."""
+    size = SMALL if small else FULL
+    gear = load_gear('kaifuha')
+    if small:
+        coarse = gear.netting.model_copy(update={'around': 12})
+        gear = gear.model_copy(update={'netting': coarse})
+    model = build_model(gear)
+    smooth = _smooth(model, size)
+    ramp = convergence(
+        [winch_ramp(model, step, size.ramp_duration, size.hauled) for step in size.ramp_steps]
+    )
+    orders = smooth.orders()
+    flapping = _flapping(model, smooth)
+    at_default = ramp.errors[list(ramp.steps).index(DEFAULT_STEP)]
+    least, worst = int(orders.argmin()), int(at_default.argmax())
+    return Outcome(
+        checks=(
+            Check(
+                'smooth_every_observable',
+                'lowest order among all observables, smooth inputs',
+                float(orders[least]),
+                ORDER,
+                rule='at_least',
+                note=f'It is that of {OBSERVABLES[least]}; the next is '
+                f'{np.sort(orders)[1]:.2f}. The method, generalised-α, is of second order. '
+                + ('' if orders[least] >= ORDER else flapping),
+            ),
+            Check(
+                'smooth_norm',
+                'order in the root mean square of all observables, smooth inputs',
+                smooth.order(smooth.norm),
+                ORDER,
+                rule='at_least',
+            ),
+            Check(
+                'smooth_places',
+                'order in the places of all nodes and boards, smooth inputs',
+                smooth.order(smooth.places.max(1)),
+                ORDER,
+                rule='at_least',
+                note=flapping,
+            ),
+            Check(
+                'smooth_median_place',
+                'order in the median place of all nodes and boards, smooth inputs',
+                smooth.order(np.median(smooth.places, 1)),
+                ORDER,
+                rule='at_least',
+            ),
+            Check(
+                'ramp_norm',
+                'order in the root mean square of all observables, winch ramp',
+                ramp.order(ramp.norm),
+                ORDER,
+                rule='at_least',
+                note='Ship and winches accelerate abruptly: the second derivative of what they '
+                'impose jumps, and a single observable need not show the order.',
+            ),
+            Check(
+                'ramp_default_step',
+                'largest error of an observable at the default step, winch ramp, as a share of '
+                'its change',
+                100.0 * float(at_default[worst]),
+                1.0,
+                rule='at_most',
+                unit='%',
+                note=f'It is that of {OBSERVABLES[worst]}, at {DEFAULT_STEP:g} s.',
+            ),
+        ),
+        drawings=(
+            Drawing(
+                'order',
+                'Largest error of each observable during the manoeuvre over the time step, as a '
+                'share of how much it changes.',
+                _figure(smooth, ramp),
+            ),
+        ),
+        tables=(_table(smooth, ramp),),
+        text=(
+            f'The default gear at {START.port_length:g} m and {START.speed:g} m/s hauls, more to '
+            'port than to starboard, while the ship gains speed; the same manoeuvre is computed '
+            f'at several steps and held against one of {size.smooth_steps[-1]:g} s. The order of '
+            'a method shows only where its inputs have as many derivatives, so the winches haul '
+            'with one wave of a cosine, up to their largest speed. The second manoeuvre is the '
+            "simulation's own: acceleration sets in and ends abruptly."
+        ),
+    )
+
+
+def _smooth(model: GearModel, size: Size) -> Convergence:
+    point = OperatingPoint(START.port_length, START.starboard_length, START.speed)
+    start = find_equilibrium(model, point)
+    return convergence(
+        [smooth_haul(model, start, step, size.smooth_duration) for step in size.smooth_steps]
+    )
+
+
+def _flapping(model: GearModel, found: Convergence) -> str:
+    """Sentence on the point with the largest error at the shortest step, and on its slack lines."""
+    worst = int(found.places[-1].argmax())
+    if worst >= model.nodes:
+        return 'The largest error is that of a board.'
+    start = find_equilibrium(
+        model, OperatingPoint(START.port_length, START.starboard_length, START.speed)
+    )
+    tensions = bar_tensions(model, start.state, start.tow)
+    held = tensions[(model.ends == worst).any(axis=1)]
+    part = 'a node of the net' if worst in model.layout.net else 'a node of a rope'
+    share = float(np.median(found.places[-1]) / found.places[-1, worst])
+    return (
+        f'The largest error at {found.steps[-1]:g} s is that of {part}, of whose {len(held)} bars '
+        f'{int((held < SLACK).sum())} pull with less than {SLACK:.0f} N; the median of all points '
+        f'errs by {share:.2g} times as much. Slack netting flaps, and bars that jerk taut have no '
+        'smooth motion for a higher order to show on.'
+    )
+
+
+def _table(smooth: Convergence, ramp: Convergence) -> Table:
+    at_default = ramp.errors[list(ramp.steps).index(DEFAULT_STEP)]
+    rows = zip(OBSERVABLES, smooth.orders(), ramp.orders(), 100.0 * at_default, strict=True)
+    return Table(
+        'Observed orders, and the error at the default step',
+        ('observable', 'order, smooth', 'order, ramp', f'error at {DEFAULT_STEP:g} s, ramp (%)'),
+        tuple((name, f'{one:.2f}', f'{two:.2f}', f'{error:.3f}') for name, one, two, error in rows),
+    )
+
+
+def _figure(smooth: Convergence, ramp: Convergence) -> Figure:
+    figure = Figure(figsize=(10.0, 4.6), layout='constrained')
+    left, right = figure.subplots(1, 2, sharey=True)
+    _draw(left, smooth, 'smooth hauling')
+    _draw(right, ramp, 'winch ramp')
+    left.set_ylabel('largest error, share of the change (%)')
+    left.legend(loc='lower right')
+    return figure
+
+
+def _draw(axes: Axes, found: Convergence, title: str) -> None:
+    for k, errors in enumerate(found.errors.T):
+        label = 'each observable' if k == 0 else None
+        axes.loglog(found.steps, 100 * errors, '.-', color='0.7', linewidth=0.8, label=label)
+    axes.loglog(found.steps, 100 * found.norm, 'o-', color='C0', label='root mean square')
+    slope = found.norm[-1] * (found.steps / found.steps[-1]) ** 2
+    axes.loglog(found.steps, 100 * slope, 'k--', linewidth=1.0, label='second order')
+    axes.set_xticks(found.steps, [f'{step:g}' for step in found.steps])
+    axes.minorticks_off()
+    axes.set_xlabel('time step (s)')
+    axes.set_title(title)
+    axes.grid(alpha=0.3)
+
+
+CASE = Case('time_step', 'The time stepper is of second order', run)

@@ -1,0 +1,104 @@
+"""Reproduction of Fig. 7 to 12: the gear with its boards turned against their rigging."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.validation.paper.sweeps import (
+    FEW_TURNS,
+    INSTALLATION,
+    SPEED,
+    TURN,
+    TURNS,
+    WARP_LENGTH,
+    Sighting,
+    installation_sweep,
+    paper_model,
+)
+from trawl_ros.model.observables import Observables
+
+SYMBOLS = {'epsilon': 'ε', 'zeta': 'ζ', 'eta': 'η'}
+
+PANELS: tuple[tuple[str, str, Callable[[Observables], float]], ...] = (
+    ('Fig. 7', 'door spread [m]', lambda seen: seen.door_spread),
+    ('Fig. 8', 'door depth [m]', lambda seen: seen.door_depth),
+    ('Fig. 9', 'vertical opening [m]', lambda seen: seen.vertical_opening),
+    ('Fig. 10', 'warp tension [kN]', lambda seen: seen.warp_tension / 1e3),
+    ('Fig. 11', 'attack angle α [°]', lambda seen: float(np.degrees(seen.port_attack))),
+    ('Fig. 12', 'inclination δ [°]', lambda seen: float(np.degrees(seen.port_inclination))),
+)
+
+
+def run(small: bool) -> Outcome:
+    """Turn the boards of the default gear by up to 5° about each of their axes."""
+    turns = FEW_TURNS if small else TURNS
+    found = installation_sweep(paper_model(small), turns)
+    checks = (
+        Check(
+            'states',
+            'turned gears with a stable steady state under water, boards within their law',
+            float(sum(len(row) for row in found.values())),
+            float(len(turns) * len(INSTALLATION)),
+            note='none is left out: a turn without one ends the case',
+        ),
+        *(_monotone(found, panel) for panel in PANELS),
+    )
+    where = f'{WARP_LENGTH:g} m of warp and {SPEED:g} m/s'
+    caption = f'Fig. 7 to 12 remade, at {where}. ε, ζ, η turn the board about its z, y, x axes.'
+    return Outcome(
+        checks,
+        (Drawing('fig7_to_12', caption, _figure(found)),),
+        (_table(found, f'Changes by turns of {TURN:g}°, at {where}.'),),
+    )
+
+
+def _monotone(
+    found: Mapping[str, Mapping[float, Sighting]],
+    panel: tuple[str, str, Callable[[Observables], float]],
+) -> Check:
+    """Check that the curves are monotone between -5° and 5° of ε, as the paper's are."""
+    name, label, read = panel
+    values = np.array([read(one.seen) for one in found['epsilon'].values()])
+    steps = np.diff(values)
+    return Check(
+        f'monotone_{name[5:]}',
+        f'{label.rpartition(" [")[0]}: part of its whole change with ε that goes one way',
+        float(abs(steps.sum()) / np.abs(steps).sum()),
+        1.0,
+        tolerance=1e-9,
+        note=f'{name}: each turn has one direction of effect, as section IV.C speaks of it',
+    )
+
+
+def _figure(found: Mapping[str, Mapping[float, Sighting]]) -> Figure:
+    figure = Figure(figsize=(11.0, 6.5), layout='constrained')
+    for axes, (name, label, read) in zip(figure.subplots(2, 3).flat, PANELS, strict=True):
+        for (angle, row), style in zip(found.items(), ('C0-o', 'C2:s', 'C3--^'), strict=True):
+            values = [read(one.seen) for one in row.values()]
+            axes.plot(list(row), values, style, ms=4, label=SYMBOLS[angle])
+        axes.set_title(name, fontsize='medium')
+        axes.set_xlabel('turn against the rigging [°]')
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize='small')
+    return figure
+
+
+def _table(found: Mapping[str, Mapping[float, Sighting]], caption: str) -> Table:
+    rows = []
+    for angle, row in found.items():
+        base = row[0.0].seen
+        for turn in (TURN, -TURN):
+            cells = [f'{SYMBOLS[angle]} {turn:+g}°']
+            for _, label, read in PANELS:
+                change, before = read(row[turn].seen) - read(base), read(base)
+                degrees = label.endswith('[°]')
+                cells.append(f'{change:+.1f}°' if degrees else f'{100 * change / before:+.1f} %')
+            rows.append(tuple(cells))
+    head = ('turn', *(label.rpartition(' [')[0] for _, label, _ in PANELS))
+    return Table(caption, head, tuple(rows))
+
+
+CASE = Case('installation', 'Installation angles of the boards (Fig. 7 to 12)', run)

@@ -1,0 +1,117 @@
+"""Refit of the twelve coefficients to all states of the sample trial at once, as in Fig. 4."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.core.resources import share_path
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.validation.paper.sweeps import gear
+from trawl_ros.lab.validation.paper.trial import SCENARIO, trial_windows
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.scenario.scenario import true_coefficients
+from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.predict import Prediction, Predictor
+
+STAND_STILL = EstimatorOptions(tolerance=1e9)
+"""No step is as large as this many std: windows are taken in, the coefficients stay."""
+
+
+class _Remembering(Predictor):
+    """Predictor that keeps the boards' mean attack angle (rad), newest for each input: of the
+    estimate, once the fit has come to rest.
+    """
+
+    def __init__(self, model: GearModel) -> None:
+        super().__init__(model)
+        self.attack: dict[tuple[float, float, float], float] = {}
+
+    def predict(
+        self,
+        coefficients: np.ndarray,
+        port_length: float,
+        starboard_length: float,
+        speed: float,
+        start: Equilibrium | None = None,
+    ) -> Prediction:
+        found = super().predict(coefficients, port_length, starboard_length, speed, start)
+        seen = found.state.observables
+        self.attack[port_length, starboard_length, speed] = 0.5 * (
+            seen.port_attack + seen.starboard_attack
+        )
+        return found
+
+
+@dataclass(frozen=True)
+class Refit:
+    """The fit, the objective of eq. 35 at the start and after each iteration, and what made the
+    trial.
+
+    ``attack`` has the least and largest mean α (rad) of the boards in the fitted states.
+    """
+
+    estimate: Estimate
+    prior: BoardPrior
+    truth: np.ndarray
+    objective: np.ndarray
+    attack: tuple[float, float]
+
+    def line(self, values: np.ndarray, slope: str, attack: np.ndarray) -> np.ndarray:
+        """A straight line of eq. 14, drag (``a1``) or lift (``a2``), at angles in rad."""
+        first = COEFFICIENTS.index(slope)
+        return values[first] * attack + values[first + 1]
+
+    def half_width(self, slope: str, attack: np.ndarray) -> np.ndarray:
+        """Standard deviation of the fitted line at angles in rad."""
+        first = COEFFICIENTS.index(slope)
+        part = self.estimate.covariance[first : first + 2, first : first + 2]
+        basis = np.stack([attack, np.ones_like(attack)], -1)
+        return np.sqrt(np.sum(basis @ part * basis, -1))
+
+
+@cache
+def refit_trial(small: bool) -> Refit:
+    """Fit the gear of the paper to the sample trial; in a process once."""
+    return refit(gear(small), trial_windows(small))
+
+
+def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> Refit:
+    """Fit a gear to steady windows, all together from the first iteration on.
+
+    `trawl identify` takes windows one by one, as they come; an objective that gains terms on the
+    way could not be set beside Fig. 4.
+
+    Raises
+    ------
+    NoSteadyState
+        When the gear has no steady state at the start in any window.
+    """
+    prior = board_prior(record)
+    predictor = _Remembering(build_model(record))
+    gathered = Estimator(predictor, prior, OBSERVABLES, STAND_STILL)
+    for window in windows:
+        gathered.add(window)
+    if gathered.estimate is None:
+        raise NoSteadyState('the gear has no steady state at the start in any window of the trial')
+    fit = gathered.subset({window.state for window in gathered.windows}, EstimatorOptions())
+    estimate = fit.finish()
+    assert estimate is not None
+    history = [entry.objective for entry in fit.history]
+    return Refit(
+        estimate=estimate,
+        prior=prior,
+        truth=true_coefficients(share_path(*SCENARIO)),
+        objective=np.array([gathered.estimate.objective, *history]),
+        attack=(min(predictor.attack.values()), max(predictor.attack.values())),
+    )

@@ -1,0 +1,79 @@
+"""Reproduction of Fig. 6: the boards' angles against warp length."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome
+from trawl_ros.lab.validation.paper.sweeps import (
+    FEW_LENGTHS,
+    LENGTHS,
+    SPEED,
+    paper_model,
+    sighting,
+    warp_sweep,
+)
+
+
+def run(small: bool) -> Outcome:
+    """Solve the default gear from 200 to 900 m of warp."""
+    lengths = FEW_LENGTHS if small else LENGTHS
+    model = paper_model(small)
+    sweep = warp_sweep(model, lengths, SPEED)
+    seen = [steady.observables for steady in sweep]
+    normals = [sighting(model, steady).board.normal for steady in sweep]
+    angles = {
+        name: np.degrees([getattr(one, f'port_{name}') for one in seen])
+        for name in ('attack', 'slip', 'inclination')
+    }
+    checks = (
+        Check(
+            'attack_grows',
+            'least growth of α from one length to the next',
+            float(np.diff(angles['attack']).min()),
+            0.0,
+            rule='at_least',
+            unit='°',
+            note='section IV.D, Fig. 13: α grows with warp length',
+        ),
+        Check(
+            'inclination_grows',
+            'least growth of δ from one length to the next',
+            float(np.diff(angles['inclination']).min()),
+            0.0,
+            rule='at_least',
+            unit='°',
+            note='section IV.D, Fig. 14 and 15: δ grows with warp length',
+        ),
+        Check(
+            'normal_up',
+            'least vertical part of the outward normal',
+            float(min(normals)),
+            0.0,
+            rule='at_least',
+            note='section IV.D: δ gives lift an upward part, so the normal points up',
+        ),
+    )
+    return Outcome(
+        checks,
+        (Drawing('fig6', f'Fig. 6 remade, at {SPEED:g} m/s.', _figure(np.array(lengths), angles)),),
+    )
+
+
+def _figure(lengths: np.ndarray, angles: dict[str, np.ndarray]) -> Figure:
+    figure = Figure(figsize=(7.5, 4.5), layout='constrained')
+    axes = figure.subplots()
+    for name, style, label in (
+        ('attack', 'b--o', 'attack angle α'),
+        ('slip', 'k:s', 'slip angle β'),
+        ('inclination', 'r-^', 'inclination δ'),
+    ):
+        axes.plot(lengths, angles[name], style, ms=4, label=label)
+    axes.axhline(0.0, color='0.6', lw=0.8)
+    axes.set_xlabel('warp length [m]')
+    axes.set_ylabel('angle [°]')
+    axes.grid(alpha=0.3)
+    axes.legend()
+    return figure
+
+
+CASE = Case('warp_sweep', 'Angles of the boards against warp length (Fig. 6)', run)

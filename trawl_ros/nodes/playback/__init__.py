@@ -1,0 +1,1 @@
+"""Bags on the graph: which topics, which stretch, with which quality of service."""

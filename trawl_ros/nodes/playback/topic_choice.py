@@ -1,0 +1,60 @@
+"""Choice of topics: those of the project, those named, those whose names match, or all."""
+
+import re
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from trawl_ros.core.errors import TrawlError
+
+ALL = 'all'
+
+
+class TopicChoice:
+    """Predicate of full topic names.
+
+    Parameters
+    ----------
+    project
+        The project's own, wanted where nothing else is.
+    named
+        Full names; ``{'all'}`` stands for every topic.
+    patterns
+        Regular expressions by parameter: ``regex`` adds the topics in whose names it is found,
+        ``exclude_regex`` takes such away; '' is none.
+    never
+        Full names that are never wanted.
+
+    Raises
+    ------
+    TrawlError
+        If an expression is none.
+    """
+
+    def __init__(
+        self,
+        project: Collection[str],
+        named: Collection[str],
+        patterns: Mapping[str, str],
+        never: Collection[str],
+    ) -> None:
+        found = {name: _compiled(name, pattern) for name, pattern in patterns.items()}
+        self._added, self._left_out = found.get('regex'), found.get('exclude_regex')
+        self._everything = ALL in named
+        self._named = frozenset(named) if named or self._added else frozenset(project)
+        self._never = frozenset(never)
+
+    def __contains__(self, topic: Any) -> bool:
+        if topic in self._never or (self._left_out and self._left_out.search(topic)):
+            return False
+        if self._everything or topic in self._named:
+            return True
+        return self._added is not None and self._added.search(topic) is not None
+
+
+def _compiled(parameter: str, pattern: str) -> re.Pattern[str] | None:
+    try:
+        return re.compile(pattern) if pattern else None
+    except re.error as reason:
+        raise TrawlError(
+            f'parameter {parameter}: found {pattern!r}, expected a regular expression ({reason})'
+        ) from None

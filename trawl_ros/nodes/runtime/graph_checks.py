@@ -1,0 +1,102 @@
+"""Checks of the ROS graph: two clocks or sources, other types or QoS than expected."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rclpy.duration import Infinite
+from rclpy.node import Node
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
+from trawl_ros.records.topics import CLOCK, COMMANDS, find_topic
+
+SYNC = 'sync/progress'
+SHARED = ('/diagnostics', SYNC, *(topic.name for topic in COMMANDS))
+"""Topics on which several may speak."""
+
+
+def clock_status(node: Node) -> Status:
+    """Return the status of a node's clock: its source, and a warning of several."""
+    publishers = [info.node_name for info in node.get_publishers_info_by_topic(CLOCK.name)]
+    names = ', '.join(sorted(publishers))
+    simulated = bool(node.get_parameter('use_sim_time').value)
+    values = {
+        'publishers on /clock': str(len(publishers)),
+        'use_sim_time': str(simulated).lower(),
+        'time': f'{node.get_clock().now().nanoseconds / 1e9:.3f}',
+    }
+    if len(publishers) > 1:
+        message = f'{len(publishers)} publishers on /clock ({names}); expected one'
+        return Status('clock', ERROR, message, values)
+    if simulated and not publishers:
+        message = 'use_sim_time is set, but nobody publishes /clock'
+        return Status('clock', WARN, message, values)
+    if publishers and not simulated and node.get_name() not in publishers:
+        message = f'{names} publishes /clock, but use_sim_time is not set; expected one clock'
+        return Status('clock', WARN, message, values)
+    return Status('clock', OK, 'simulated time' if publishers else 'system time', values)
+
+
+@dataclass(frozen=True)
+class Listening:
+    """Expectation of a subscriber: type of the topic, and quality of service."""
+
+    type: str
+    profile: QoSProfile
+
+
+def connection_problems(
+    node: Node, subscribed: Mapping[str, Listening], offered: Mapping[str, QoSProfile]
+) -> list[str]:
+    """Return a sentence for each connection that is not as expected.
+
+    Parameters
+    ----------
+    node
+        Whose connections they are.
+    subscribed
+        What it listens to, by full topic name.
+    offered
+        With which quality of service it publishes, by full topic name.
+    """
+    problems = []
+    shared = {node.resolve_topic_name(name) for name in SHARED}
+    for topic, expected in subscribed.items():
+        infos = node.get_publishers_info_by_topic(topic)
+        for info in infos:
+            if info.topic_type != expected.type:
+                problems.append(
+                    f'{topic} has type {info.topic_type} from {info.node_name}; expected '
+                    f'{expected.type}'
+                )
+            elif reason := _mismatch(info.qos_profile, _as_found(expected.profile)):
+                problems.append(f'{topic}: nothing arrives from {info.node_name}: {reason}')
+        if len(infos) > 1 and topic not in shared and find_topic(topic, node.get_namespace()):
+            names = ', '.join(sorted(info.node_name for info in infos))
+            problems.append(f'{len(infos)} publishers on {topic} ({names}); expected one')
+    for topic, profile in offered.items():
+        for info in node.get_subscriptions_info_by_topic(topic):
+            if reason := _mismatch(_as_found(profile), info.qos_profile):
+                problems.append(f'{topic}: nothing arrives at {info.node_name}: {reason}')
+    return problems
+
+
+def _as_found(profile: QoSProfile) -> QoSProfile:
+    """Convert an own profile to the form in which others see it: no deadline where none is set."""
+    return QoSProfile(
+        depth=profile.depth,
+        reliability=profile.reliability,
+        durability=profile.durability,
+        deadline=Infinite,
+        liveliness_lease_duration=Infinite,
+    )
+
+
+def _mismatch(offered: QoSProfile, asked: QoSProfile) -> str:
+    """Reason why publisher and subscriber are incompatible; empty where they match."""
+    compatibility, reason = qos_check_compatible(offered, asked)
+    if compatibility != QoSCompatibility.ERROR:
+        return ''
+    return '; '.join(
+        part.removeprefix('ERROR:').strip() for part in reason.split(';') if 'ERROR' in part
+    ).lower()

@@ -1,0 +1,185 @@
+"""Boundary of subscriptions: no error of a message or its handler ends a node."""
+
+import inspect
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from trawl_ros.core.errors import MessageError, TrawlError
+from trawl_ros.core.foreign import short
+from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES, SCAN_BYTES, Limit
+from trawl_ros.core.time import SECOND
+from trawl_ros.messages.cdr import deserialize
+from trawl_ros.messages.stamps import from_time, stamp_of
+from trawl_ros.nodes.runtime.rewinding import CONFIRM
+from trawl_ros.nodes.runtime.source import Source
+from trawl_ros.records.topics import CLOCK
+
+FAR_NS = 60 * SECOND
+"""Stamps further than this from the last on their topic may be false; a slow topic's are not."""
+
+FAR_CLOCK_NS = 10 * SECOND
+"""The same for /clock, which goes on in small steps."""
+
+_LARGE: dict[str, Limit] = {
+    'sensor_msgs/msg/Image': IMAGE_BYTES,
+    'sensor_msgs/msg/PointCloud2': IMAGE_BYTES,
+    'sensor_msgs/msg/LaserScan': SCAN_BYTES,
+    'diagnostic_msgs/msg/DiagnosticArray': SCAN_BYTES,
+    'visualization_msgs/msg/MarkerArray': SCAN_BYTES,
+}
+
+
+class Incoming:
+    """Callback of a subscription that uses a message, or reports the reason why it does not.
+
+    Parameters
+    ----------
+    topic
+        For what is said.
+    use
+        What is done with a message.
+    refuse
+        Told why a message is not used.
+    end
+        Told why the node cannot go on: a `TrawlError` that is no `MessageError`.
+    source
+        Judge of who has sent a message; it counts what gets lost.
+    single
+        Whether only what its source has sent is used.
+    """
+
+    # Asked for both arguments, rclpy gives the message's number along with it.
+    __signature__ = inspect.signature(lambda message, info: None)
+
+    def __init__(
+        self,
+        topic: str,
+        use: Callable[[Any], None],
+        refuse: Callable[[str], None],
+        end: Callable[[str], None],
+        source: Source,
+        single: bool,
+    ) -> None:
+        self._topic = topic
+        self._use = use
+        self._refuse = refuse
+        self._end = end
+        self._source = source
+        self._single = single
+
+    def __call__(self, *arrived: Any) -> None:
+        """Handle a message with the information that ROS has of it."""
+        # rclpy's own executor hands over message and info, its events executor a pair of them.
+        message, info = arrived if len(arrived) == 2 else arrived[0]
+        try:
+            alien = not self._source.take(info.get('publication_sequence_number'))
+            if alien and self._single:
+                raise MessageError(
+                    f'{self._topic} has several publishers; only the one that was heard first is '
+                    'used, as long as it is heard'
+                )
+            self._use(message)
+        except MessageError as reason:
+            self._refuse(str(reason))
+        except TrawlError as reason:
+            self._end(str(reason))
+        except Exception as reason:
+            self._refuse(f'{self._topic}: {error_of_program(reason)}')
+
+
+class Leaps:
+    """Filter of leaping stamps: holds back messages until enough agree.
+
+    Parameters
+    ----------
+    far_ns
+        What is far, ns.
+    """
+
+    def __init__(self, far_ns: int = FAR_NS) -> None:
+        self._far = far_ns
+        self._newest: int | None = None
+        self._held: list[tuple[int, Any]] = []
+
+    def take(self, stamp: int, message: Any) -> tuple[list[Any], int]:
+        """Filter the next message.
+
+        Returns
+        -------
+        list
+            The messages that can be used now, in the order in which they came.
+        int
+            How many of those held back turned out to be stamped falsely.
+        """
+        held, self._held = self._held, []
+        if self._newest is None or abs(stamp - self._newest) <= self._far:
+            self._newest = stamp
+            return [message], len(held)
+        agreeing = [one for one in held if abs(stamp - one[0]) <= self._far]
+        self._held = [*agreeing, (stamp, message)]
+        false = len(held) - len(agreeing)
+        if len(self._held) < CONFIRM:
+            return [], false
+        self._newest = stamp
+        found, self._held = [one for _, one in self._held], []
+        return found, false
+
+
+def decoding(topic: str, type_name: str, use: Callable[[Any], None]) -> Callable[[bytes], None]:
+    """Make the decoder of messages of a bounded size; no error of ``use`` ends the node."""
+    limit = _LARGE.get(type_name, MESSAGE_BYTES)
+
+    def take(data: bytes) -> None:
+        if len(data) > limit.value:
+            raise MessageError(f'{topic}: a message of {len(data)} bytes; expected at most {limit}')
+        try:
+            use(deserialize(data, type_name))
+        except TrawlError as reason:
+            raise MessageError(str(reason)) from reason
+
+    return take
+
+
+def settling(
+    topic: str,
+    use: Callable[[Any], None],
+    refuse: Callable[[str], None],
+    *,
+    stamp_in: Callable[[Any], int] = stamp_of,
+    far_ns: int = FAR_NS,
+) -> Callable[[Any], None]:
+    """Make the filter that passes a message once its stamp is confirmed."""
+    leaps = Leaps(far_ns)
+
+    def take(message: Any) -> None:
+        believed, false = leaps.take(stamp_in(message), message)
+        for _ in range(false):
+            refuse(f'{topic} is stamped far from its other messages, and only for a moment')
+        for one in believed:
+            use(one)
+
+    return take
+
+
+def believing_clock(
+    use: Callable[[Any], None], refuse: Callable[[str], None]
+) -> Callable[[Any], None]:
+    """Make the filter that passes a message of /clock once it is confirmed."""
+
+    def stamp_in(message: Any) -> int:
+        stamp = from_time(message.clock)
+        if stamp < 0:
+            raise MessageError(f'{CLOCK.name}: {stamp / SECOND:g} s; expected 0 or later')
+        return stamp
+
+    return settling(CLOCK.name, use, refuse, stamp_in=stamp_in, far_ns=FAR_CLOCK_NS)
+
+
+def error_of_program(reason: Exception) -> str:
+    """Describe an unforeseen error and its place in a line."""
+    frames = traceback.extract_tb(reason.__traceback__)
+    own = [frame for frame in frames if 'trawl_ros' in Path(frame.filename).parts] or frames
+    place = f' in {Path(own[-1].filename).name}, line {own[-1].lineno}' if own else ''
+    return f'an error of the program{place}: {short(reason)}'

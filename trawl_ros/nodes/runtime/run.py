@@ -1,0 +1,156 @@
+"""Runtime of a node: from the command line to a spinning node and to a clean end."""
+
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from traceback import walk_tb
+from types import FrameType
+
+import rclpy
+from rclpy.exceptions import ROSInterruptException
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, get_logger_level, set_logger_level
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.foreign import short
+from trawl_ros.nodes.runtime.node import TrawlNode
+
+try:
+    # Takes a message in a tenth of the time, since it makes no list of all that it waits for.
+    from rclpy.experimental import EventsExecutor as NodeExecutor
+except ImportError:
+    NodeExecutor = SingleThreadedExecutor
+
+WAKE_S = 0.1
+"""Python sees a signal only between two waits, so no wait is longer than this."""
+
+QUIET_S = 0.3
+LONGEST_DRAIN_S = 5.0
+
+SOURCE_PLACES = re.compile(r',?( at)? /project/\S+:\d+')
+"""Places in the sources of ROS 2, which are of no use to a reader."""
+
+REFUSAL_WIDTH = 400
+"""Signs of what ROS 2 says, which may hold the path of a file."""
+
+
+class _Stop:
+    """Counter of SIGINT and SIGTERM while entered."""
+
+    def __init__(self) -> None:
+        self.wishes = 0
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self.wishes += 1
+
+    def __enter__(self) -> '_Stop':
+        self._before = {
+            number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)
+        }
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            # Asked to end, the process is leaving: a second signal must not make that unclean.
+            signal.signal(number, signal.SIG_IGN if self.wishes else handler)
+
+
+def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int:
+    """Spin a node until SIGINT, SIGTERM, or until it has come to its end by itself.
+
+    Parameters
+    ----------
+    make
+        Creates the node once ROS is up.
+    args
+        Command line with the program's name first; by default that of the process.
+
+    Returns
+    -------
+    int
+        Exit code: 0, or 1 after one sentence on stderr.
+    """
+    arguments = list(sys.argv if args is None else args)
+    program = Path(arguments[0]).name if arguments else 'trawl_ros'
+    with _Stop() as stop:
+        try:
+            _open_ros(arguments)
+            unknown = remove_ros_args(arguments)[1:]
+            if unknown:
+                raise TrawlError(
+                    f'{" ".join(unknown)}: not understood; expected parameters such as '
+                    '--ros-args -p name:=value'
+                )
+            return _spin(make, stop)
+        except TrawlError as reason:
+            print(f'{program}: {reason}', file=sys.stderr)  # noqa: T201
+            return 1
+        except (ExternalShutdownException, ROSInterruptException):
+            return 0
+        finally:
+            rclpy.try_shutdown()
+
+
+def _open_ros(arguments: Sequence[str]) -> None:
+    # What it would log of wrong arguments it raises as well.
+    set_logger_level('rcl', LoggingSeverity.FATAL)
+    try:
+        with _refusals():
+            # ROS's own handlers would close the context before the last words are said.
+            rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    finally:
+        if get_logger_level('rcl') == LoggingSeverity.FATAL:
+            set_logger_level('rcl', LoggingSeverity.UNSET)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Convert errors of ROS 2 at the start, of arguments and environment, into a sentence."""
+    try:
+        yield
+    except Exception as reason:
+        *_, (frame, _) = walk_tb(reason.__traceback__)
+        # Its classes have no base in common; what the project's own code raises is a mistake there.
+        if not frame.f_globals['__name__'].startswith('rclpy'):
+            raise
+        said = SOURCE_PLACES.sub('', short(reason, REFUSAL_WIDTH))
+        raise TrawlError(
+            f'ROS 2 refuses to start: {said}; expected arguments and environment as it takes them'
+        ) from reason
+
+
+def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
+    with _refusals():
+        node = make()
+    node.introduce()
+    executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
+    executor.add_node(node)
+    try:
+        while not stop.wishes and node.exit_code is None:
+            executor.spin_once(timeout_sec=WAKE_S)
+        # Who has failed, as at a full disk, would only fail at what is under way as well.
+        if node.DRAINS and not node.exit_code:
+            _drain(executor, node, stop)
+    finally:
+        node.destroy_node()
+        executor.shutdown()
+    return node.exit_code or 0
+
+
+def _drain(executor: Executor, node: TrawlNode, stop: _Stop) -> None:
+    """Process messages on their way, until none come or patience ends, or by a second signal."""
+    wishes = stop.wishes
+    end = time.monotonic() + LONGEST_DRAIN_S
+    received, since = -1, time.monotonic()
+    while time.monotonic() < end and stop.wishes == wishes:
+        executor.spin_once(timeout_sec=0.05)
+        if node.traffic.total('received') != received:
+            received, since = node.traffic.total('received'), time.monotonic()
+        elif time.monotonic() - since > QUIET_S:
+            break

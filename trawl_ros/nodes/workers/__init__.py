@@ -1,0 +1,1 @@
+"""Estimation and diagnosis in threads beside a node, and their statuses."""

@@ -1,0 +1,132 @@
+"""Diagnostic statuses of an identification, for ``identification/status``."""
+
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.fit.estimate import Innovation as Innovations
+from trawl_ros.estimation.fit.laws import QUANTITIES
+from trawl_ros.estimation.planning.next_manoeuvre import Advice
+from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.estimates import Innovation
+from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.nodes.workers.outcome import Outcome
+
+
+def innovations_of(found: Innovations) -> list[Innovation]:
+    """Return the innovations of a window channel by channel."""
+    rows = zip(found.channels, found.values, found.stds, found.test_ratios, strict=True)
+    return [Innovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
+
+
+def identification_statuses(outcome: Outcome) -> list[Status]:
+    """Return the statuses of coefficients, channels and instruments.
+
+    The coefficients always come first; before there is an estimate, with the reason why.
+    """
+    statuses = [coefficients_status(outcome), channels_status(outcome)]
+    if outcome.estimate is not None:
+        statuses.append(instruments_status(outcome.estimate))
+    return statuses
+
+
+def coefficients_status(outcome: Outcome) -> Status:
+    """Return the coefficients by name, with intervals, counts by reason, and their certainty."""
+    name = 'identification: coefficients'
+    estimate = outcome.estimate
+    rejected = {f'rejected {reason}': str(count) for reason, count in outcome.rejected.items()}
+    rejected |= {f'found {reason}': sentence for reason, sentence in outcome.found.items()}
+    if estimate is None:
+        values = {'stamp': f'{outcome.stamp / 1e9:.3f}', 'revision': '0', 'windows': '0'}
+        why_not = outcome.why_not or ''
+        values |= {'converged': 'false', 'reason': why_not, **rejected}
+        return Status(name, WARN, why_not, values)
+    values = {
+        'stamp': f'{estimate.stamp / 1e9:.3f}',
+        'revision': str(estimate.revision),
+        'windows': str(estimate.windows),
+        'converged': str(estimate.converged).lower(),
+        'reason': estimate.reason,
+        'objective': f'{estimate.objective:.6g}',
+        'condition number': f'{estimate.condition_number:.6g}',
+        'undetermined': '; '.join(map(str, estimate.undetermined)),
+        'active bounds': ', '.join(estimate.active_bounds),
+    }
+    for factor in estimate.net:
+        values |= {f'net {factor.what}': f'{factor.value:.6g}',
+                   f'net {factor.what} std': f'{factor.std:.6g}'}  # fmt: skip
+    for i, coefficient in enumerate(COEFFICIENTS):
+        values |= {
+            coefficient: f'{estimate.values[i]:.9g}',
+            f'{coefficient} std': f'{estimate.std[i]:.6g}',
+            f'{coefficient} low': f'{estimate.low[i]:.6g}',
+            f'{coefficient} high': f'{estimate.high[i]:.6g}',
+            f'{coefficient} shrink': f'{estimate.shrink[i]:.4f}',
+            f'{coefficient} determined': str(estimate.determined[i]).lower(),
+        }
+    level = OK if estimate.converged else WARN
+    message = (
+        f'{sum(estimate.determined)} of {len(COEFFICIENTS)} coefficients determined by '
+        f'{estimate.windows} windows; {estimate.reason}'
+    )
+    return Status(name, level, message, values | rejected)
+
+
+def channels_status(outcome: Outcome) -> Status:
+    """Give per channel its readings, and innovation and whiteness where it is compared."""
+    values = {}
+    for name, count in outcome.readings.items():
+        values[f'{name} arrived'] = str(count.arrived)
+        values[f'{name} accepted'] = str(count.accepted)
+    beyond = []
+    if outcome.estimate is not None and (found := outcome.estimate.innovation) is not None:
+        for seen in innovations_of(found):
+            values |= {
+                f'{seen.channel} innovation': f'{seen.innovation:.6g}',
+                f'{seen.channel} std': f'{seen.std:.6g}',
+                f'{seen.channel} test ratio': f'{seen.ratio:.4g}',
+            }
+            if seen.ratio > 1.0:
+                beyond.append(f'{seen.channel} is beyond what its stated errors allow')
+    for name, white in outcome.whiteness.items():
+        values[f'{name} whiteness'] = 'too few windows' if white is None else f'{white.p_value:.3g}'
+        if white is not None and not white.white:
+            beyond.append(f'the innovations of {name} are not white')
+    message = '; '.join(beyond) or 'innovations are within what stated errors allow'
+    return Status('identification: channels', WARN if beyond else OK, message, values)
+
+
+def instruments_status(estimate: Estimate) -> Status:
+    """Return the estimated errors of the instruments: noise scales and biases."""
+    values = {
+        f'noise scale {group}': f'{scale:.4g}' for group, scale in estimate.noise_scales.items()
+    }
+    values['misfit'] = f'{estimate.misfit:.4g}'
+    for found in estimate.tow_biases:
+        values[f'tow {found.tow + 1} {found.channel} bias'] = (
+            f'{found.value:.4g} ± {found.std:.2g} {found.unit}'
+        )
+    message = 'noise as found over noise as stated, and what each tow reads too high by'
+    return Status('identification: instruments', OK, message, values)
+
+
+def advice_status(advice: Advice | None, trouble: str) -> Status:
+    """Return the next manoeuvre with its gain, or the reason why there is none."""
+    name = 'identification: next manoeuvre'
+    if advice is None:
+        return Status(
+            name,
+            WARN if trouble else OK,
+            trouble or 'none yet: it needs a window, and time to look up',
+        )
+    manoeuvre = advice.manoeuvre
+    values = {
+        'port_warp': f'{manoeuvre.port_length:g}',
+        'starboard_warp': f'{manoeuvre.starboard_length:g}',
+        'speed': f'{manoeuvre.speed:g}',
+        'minutes': f'{advice.minutes:.0f}',
+        'gain': f'{advice.nats:.3f}',
+        'looked up': f'{advice.looked_up:.2f}',
+    }
+    for at, quantity in enumerate(QUANTITIES):
+        before, after = advice.before.ratio[at], advice.after.ratio[at]
+        values[f'{quantity} now'] = f'{before:.3f}'
+        values[f'{quantity} then'] = f'{after:.3f}'
+    return Status(name, OK, str(advice), values)

@@ -1,0 +1,57 @@
+"""Diagnostic statuses of a diagnosis, for ``discrepancy/findings``."""
+
+from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
+from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.report.sentences import headline
+from trawl_ros.messages.diagnostics import OK, WARN, Status
+
+NAME = 'discrepancy'
+CALM = ('NO_DISCREPANCY', 'NOT_TESTABLE')
+"""Verdicts that raise no finding."""
+
+
+def finding_statuses(found: Diagnosis) -> list[Status]:
+    """Return the verdict's status, then one per finding: an effect, or an empirical term."""
+    seen = found.seen
+    values = {
+        'verdict': found.verdict,
+        'reason': found.reason,
+        'windows': str(len(found.split.deciding) + len(found.split.showing)),
+        'tows': str(len(found.tows)),
+    }
+    if seen is not None:
+        values |= {'evidence': f'{seen.strongest:.2f}', 'limit': f'{seen.limit:.2f}'}
+    for where in found.where:
+        values.setdefault(f'{where.channel} {where.variable}', f'{where.region}, z {where.z:.1f}')
+    level = OK if found.verdict in CALM else WARN
+    statuses = [Status(f'{NAME}: verdict', level, headline(found), values)]
+    repair = found.repair
+    if repair is None and found.verdict == 'AMBIGUOUS':
+        repair = found.best
+    if repair is not None:
+        kind = 'empirical term' if found.empirical is not None else 'effect'
+        more = {
+            'verdict': found.verdict,
+            'delta chi2': f'{repair.delta_chi2:.1f}',
+            'delta bic': f'{repair.delta_bic:.1f}',
+            'bootstrap share': f'{repair.share:.2f}',
+        }
+        statuses += [
+            Status(f'{NAME}: {name}', WARN, f'{kind} {name}', own | more)
+            for name, own in _sizes(repair.refit).items()
+        ]
+    return statuses
+
+
+def _sizes(one: Refit) -> dict[str, dict[str, str]]:
+    found: dict[str, dict[str, str]] = {}
+    for name, values in values_of(one).items():
+        found[name] = {}
+        for parameter, (value, low, high, unit) in values.items():
+            found[name] |= {
+                parameter: f'{value:.6g}',
+                f'{parameter} low': f'{low:.6g}',
+                f'{parameter} high': f'{high:.6g}',
+                f'{parameter} unit': unit,
+            }
+    return found

@@ -1,0 +1,247 @@
+"""Worker thread of the estimator, so that solving a window blocks no callback.
+
+Only this thread ever touches the `Identification`. Work comes in through one queue, in order;
+what others may know of it goes out as immutable records.
+"""
+
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, replace
+from queue import Empty, SimpleQueue
+from threading import Event, Thread
+
+from trawl_ros.core.errors import sentence_of
+from trawl_ros.estimation.fit.whiteness import Whiteness
+from trawl_ros.estimation.pipeline import Identification, WindowUsed
+from trawl_ros.nodes.runtime.rewinding import Reached
+from trawl_ros.nodes.workers.outcome import Outcome, readings_of, whiteness_of
+from trawl_ros.records.samples import Sample
+
+QUIET_S = 0.5
+"""A wish to finish is granted when no sample has come for this long."""
+
+POLL_S = 0.005
+"""Time for which an executor is held up to ask whether a request is granted."""
+
+
+@dataclass(frozen=True)
+class _Look:
+    """Request for a fresh `Outcome`."""
+
+
+@dataclass(frozen=True)
+class _Reset:
+    """Request to reset the identification."""
+
+
+@dataclass(frozen=True)
+class _Stop:
+    """Request to end the thread."""
+
+
+class Finish:
+    """Request to finish; ``outcome`` is there once it is granted. Coroutines may await that."""
+
+    def __init__(self) -> None:
+        self._granted = Event()
+        self.outcome = Outcome()
+
+    def grant(self, outcome: Outcome) -> None:
+        """Hand over the outcome."""
+        self.outcome = outcome
+        self._granted.set()
+
+    def __await__(self) -> Generator[None, None, None]:
+        # Some executors ask again at once, which would take the processor from the worker.
+        while not self._granted.wait(POLL_S):
+            yield
+
+
+Work = Sample | Finish | _Look | _Reset | _Stop
+
+
+class IdentificationWorker(Thread):
+    """Worker thread that feeds an identification.
+
+    Parameters
+    ----------
+    identification
+        Nobody else may use it from now on.
+    told
+        Called with what is new: after each window, used or not, at the end, and after `look`
+        where counts have changed.
+    dealt_with
+        Called with the newest stamp (ns) so far after each sample was used. A sonar's reading is
+        as old as its sweep is long, so stamps do not rise from one sample to the next.
+    save
+        Called after each window, and before the estimate is brought to rest, to save the state.
+    report
+        Called at the end to write the report; gives the sentence with which all ends.
+
+    All of these are called in this thread.
+    """
+
+    def __init__(
+        self,
+        identification: Identification,
+        told: Callable[[Outcome], None],
+        dealt_with: Callable[[int], None],
+        save: Callable[[Identification], None],
+        report: Callable[[Identification], str],
+    ) -> None:
+        super().__init__(name='identification', daemon=True)
+        self._identification = identification
+        self._told = told
+        self._dealt_with = dealt_with
+        self._save = save
+        self._report = report
+        self._queue: SimpleQueue[Work] = SimpleQueue()
+        self._wishes: list[Finish] = []
+        self._handed_over = 0
+        self._dealt = 0
+        self._fed = 0
+        self._reached = Reached(
+            max((event.window.end_ns for event in identification.course), default=0)
+        )
+        self._troubles: dict[str, str] = {}
+        self._whiteness: Mapping[str, Whiteness | None] = whiteness_of(identification)
+        self.outcome = self._outcome()
+
+    @property
+    def idle(self) -> bool:
+        """True if all samples that were handed over are dealt with."""
+        return self._handed_over == self._dealt
+
+    def feed(self, sample: Sample) -> None:
+        """Queue a sample."""
+        self._handed_over += 1
+        self._queue.put(sample)
+
+    def reset(self) -> None:
+        """Discard all that was handed over before."""
+        self._queue.put(_Reset())
+
+    def look(self) -> None:
+        """Request an update of `outcome`."""
+        self._queue.put(_Look())
+
+    def finish(self) -> Finish:
+        """Request to converge the estimate and to write the report, once no sample waits."""
+        wish = Finish()
+        self._queue.put(wish)
+        return wish
+
+    def stop(self) -> None:
+        """End the thread after its queued work, and wait for it."""
+        self._queue.put(_Stop())
+        self.join()
+
+    def run(self) -> None:
+        """Work until stopped."""
+        while True:
+            try:
+                work = self._queue.get(timeout=QUIET_S if self._wishes else None)
+            except Empty:
+                self._grant()
+                continue
+            if isinstance(work, _Stop):
+                if self._wishes:
+                    self._grant()
+                return
+            self._do(work)
+
+    def _do(self, work: Work) -> None:
+        match work:
+            case Finish():
+                self._wishes.append(work)
+            case _Reset():
+                self._identification.reset()
+                self._fed, self._reached = 0, Reached()
+                self._troubles, self._whiteness = {}, {}
+                self._tell()
+            case _Look():
+                self._look()
+            case _Stop():
+                pass
+            case _:
+                self._attempt('estimating', lambda: self._use(work))
+                self._dealt += 1
+                self._attempt('reporting', lambda: self._dealt_with(self._reached.stamp))
+
+    def _look(self) -> None:
+        if self.outcome.finished is None:
+            before, self.outcome = self.outcome, self._outcome()
+            if self.outcome.rejected != before.rejected:
+                self._told(self.outcome)
+
+    def _use(self, sample: Sample) -> None:
+        self._fed += 1
+        events = self._identification.feed(sample)
+        self._reached.take(sample.stamp)
+        used = [event for event in events if isinstance(event, WindowUsed)]
+        if events:
+            self._whiteness = whiteness_of(self._identification)
+        # One sample may decide several windows, and each brings an estimate.
+        for event in used[:-1]:
+            self._told(replace(self._outcome(), estimate=event.estimate))
+        if events:
+            self._tell()
+        if used:
+            self._keep()
+
+    def _keep(self) -> None:
+        self._troubles.pop('saving', None)
+        self._attempt('saving', lambda: self._save(self._identification))
+
+    def _attempt(self, what: str, act: Callable[[], None]) -> None:
+        """Run an action; an error of it is reported, and the thread lives on."""
+        try:
+            act()
+        except Exception as reason:
+            # Unsaid, it would end the thread: the node would look alive and estimate nothing.
+            self._troubles[what] = sentence_of(reason)
+
+    def _tell(self, finished: str | None = None, failed: bool = False) -> None:
+        self.outcome = self._outcome(finished, failed)
+        self._told(self.outcome)
+
+    def _grant(self) -> None:
+        wishes, self._wishes = self._wishes, []
+        if self._fed:
+            # Saved before: brought to rest it would go on otherwise than without an interruption.
+            self._keep()
+            self._fed = 0
+            sentence, failed = self._end()
+            self._tell(sentence, failed)
+        elif self.outcome.finished is None:
+            why_not = self._identification.why_not() or 'no samples were there to finish with'
+            self.outcome = self._outcome(why_not, True)
+        for wish in wishes:
+            wish.grant(self.outcome)
+
+    def _end(self) -> tuple[str, bool]:
+        sentences: list[str] = []
+
+        def end() -> None:
+            self._identification.finish()
+            self._whiteness = whiteness_of(self._identification)
+            sentences.append(self._report(self._identification))
+
+        self._troubles.pop('finishing', None)
+        self._attempt('finishing', end)
+        return (sentences[0], False) if sentences else (self._troubles.pop('finishing'), True)
+
+    def _outcome(self, finished: str | None = None, failed: bool = False) -> Outcome:
+        identification = self._identification
+        return Outcome(
+            stamp=self._reached.stamp,
+            estimate=identification.estimate,
+            rejected=identification.rejected,
+            found=identification.found,
+            readings=readings_of(identification),
+            whiteness=self._whiteness,
+            fit=identification.estimator.fit,
+            why_not=identification.why_not(),
+            troubles=dict(self._troubles),
+            finished=finished,
+            failed=failed,
+        )

@@ -1,0 +1,1 @@
+"""Records that flow between rooms: truth, samples, channels, the table of topics."""

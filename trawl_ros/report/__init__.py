@@ -1,0 +1,1 @@
+"""The kit of reports: templates, and the style of figures."""

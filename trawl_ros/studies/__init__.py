@@ -1,1 +1,0 @@
-"""Studies: long runs of the whole chain, and their reports."""

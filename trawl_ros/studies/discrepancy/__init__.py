@@ -1,1 +1,0 @@
-"""Blind tests of ``trawl diagnose``: effects hidden in data of another plant."""
