@@ -17,7 +17,7 @@ from trawl_ros.control.autopilot import (
 from trawl_ros.core.errors import ScenarioError
 from trawl_ros.core.geodesy import Datum
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.instruments.vessel import GpsFix, GpsVelocity, Heading, SpeedLog
 from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
@@ -45,7 +45,7 @@ class Voyage:
     def __post_init__(self):
         self.pilot = Autopilot(self.settings, DATUM)
         self.ship = Ship(np.zeros(3), self.heading, SPEED, 0.0)
-        made, draws = load_instruments('default').vessel, Draws(3)
+        made, draws = load_instruments('default').vessel, SeedPlan(3)
         self.log = SpeedLog(made.velocity_water, draws)
         self.gps = GpsVelocity(made.velocity_ground, draws)
         self.fix = GpsFix(made.fix, DATUM, draws)

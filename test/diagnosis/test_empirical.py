@@ -9,7 +9,7 @@ from trawl_ros.diagnosis.diagnosis import diagnose
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.effects.effect_set import Active, acting
+from trawl_ros.effects.effect_set import ActiveEffect, effects_of
 from trawl_ros.effects.empirical.library import dictionary
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
@@ -70,7 +70,7 @@ def test_terms_and_effects_have_names_of_their_own():
 
 def test_a_gear_file_may_have_a_term(coarse):
     record = EffectRecord(name='empirical_net_weight', values={'size': 0.3})
-    (active,) = acting(coarse.model_copy(update={'effects': (record,)})).effects
+    (active,) = effects_of(coarse.model_copy(update={'effects': (record,)})).effects
     assert active.values == [0.3]
 
 
@@ -88,7 +88,7 @@ def plain(model, coarse):
 def test_terms_do_nothing_at_nought_and_have_the_derivatives_they_claim(model, plain):
     start, clean = plain
     terms = [dictionary()[name] for name in NAMES]
-    wanted = [Active(term, term.neutral) for term in terms]
+    wanted = [ActiveEffect(term, term.neutral) for term in terms]
     claimed = Predictor(model, at=AT).signatures(start, INPUTS, clean.state, wanted)
     assert np.all(np.abs(claimed).max(axis=0) > 0.0), 'every term shows'
     for place, term in enumerate(terms):

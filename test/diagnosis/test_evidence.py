@@ -89,10 +89,10 @@ def test_twins_cover_each_other_and_strangers_do_not():
 def test_what_is_not_seen_has_no_evidence():
     seen = np.column_stack((np.ones(10), np.zeros(10)))
     found = gathered(seen, np.ones(10))
-    assert found.freedom([1]) == 0
+    assert found.degrees_of_freedom([1]) == 0
     assert found.strength([1]) == 0.0
     assert found.std([1])[0] == np.inf
-    assert found.freedom([0, 1]) == 1
+    assert found.degrees_of_freedom([0, 1]) == 1
 
 
 def test_the_tail_is_a_probability():

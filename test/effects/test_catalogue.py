@@ -7,7 +7,7 @@ import pytest
 from trawl_ros.core.errors import GearError, TrawlError
 from trawl_ros.effects import registry as module
 from trawl_ros.effects.base.effect import Effect, Parameter
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.records import EffectRecord
 
@@ -90,10 +90,10 @@ def test_what_other_packages_get_wrong_is_told(points):
 )
 def test_a_gear_file_is_held_to_it(gear, record, told):
     with pytest.raises(GearError, match=told):
-        acting(gear.model_copy(update={'effects': (record,)}))
+        effects_of(gear.model_copy(update={'effects': (record,)}))
 
 
 def test_values_that_are_not_given_are_neutral(gear):
     record = EffectRecord(name='speed_log', values={'bias': 0.1})
-    (active,) = acting(gear.model_copy(update={'effects': (record,)})).effects
+    (active,) = effects_of(gear.model_copy(update={'effects': (record,)})).effects
     assert active.values.tolist() == [0.0, 0.1]

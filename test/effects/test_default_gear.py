@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from trawl_ros.diagnosis.repair import gear_text
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.model.gear_model import build_model
@@ -30,5 +30,5 @@ def test_its_steady_state_has_the_effect(gear, affected):
 def test_it_is_towed_with_the_effect(gear, affected):
     command = Command(500.0, 500.0, 2.1)
     without = Simulation(build_model(gear), command).truth()
-    there = Simulation(build_model(affected), command, acting=acting(affected)).truth()
+    there = Simulation(build_model(affected), command, acting=effects_of(affected)).truth()
     assert there.winches[0].tension > 1.1 * without.winches[0].tension

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.effects.effect_set import NONE, Acting, Active
+from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.model.observables import OBSERVABLES
@@ -79,7 +79,7 @@ def test_what_shows_in_motion_alone_does_not_show_in_steady_tows(model, coeffici
 def test_signatures_of_all_at_once_are_those_of_each(model, coefficients, plain):
     effects = [effect for effect in catalogue().values() if not effect.dynamic]
     predictor = Predictor(model, at=AT)
-    wanted = [Active(effect, effect.neutral) for effect in effects]
+    wanted = [ActiveEffect(effect, effect.neutral) for effect in effects]
     together = predictor.signatures(coefficients, INPUTS, plain.state, wanted)
     assert together.shape == (len(OBSERVABLES), sum(len(one.values) for one in wanted))
     column = 0
@@ -119,7 +119,7 @@ def test_free_effects_are_not_there_in_tows_without_them(model, coefficients, pl
 
 
 def test_fixed_effects_act_on_what_is_shown(model, coefficients, plain):
-    fixed = Acting((Active(catalogue()['tension_cell'], np.array([1e3, 0.1])),))
+    fixed = EffectSet((ActiveEffect(catalogue()['tension_cell'], np.array([1e3, 0.1])),))
     found = Predictor(model, fixed).predict(coefficients, *INPUTS, start=plain.state)
     tension = OBSERVABLES.index('port_tension')
     assert found.values[tension] == pytest.approx(1.1 * plain.values[tension] + 1e3)
@@ -128,17 +128,17 @@ def test_fixed_effects_act_on_what_is_shown(model, coefficients, plain):
 
 def test_one_of_the_same_name_takes_its_place(gear):
     effects = catalogue()
-    first = Active(effects['heave'], np.array([0.1]))
-    other = Active(effects['counter_offset'], np.array([5.0]))
-    both = NONE.having(first).having(other)
-    changed = both.having(Active(effects['heave'], np.array([0.3])))
+    first = ActiveEffect(effects['heave'], np.array([0.1]))
+    other = ActiveEffect(effects['counter_offset'], np.array([5.0]))
+    both = NO_EFFECTS.having(first).having(other)
+    changed = both.having(ActiveEffect(effects['heave'], np.array([0.3])))
     assert [active.name for active in changed.effects] == ['heave', 'counter_offset']
     assert changed.of(effects['heave']).values == pytest.approx([0.3])
     assert changed.of(effects['counter_scale']).values == pytest.approx([0.0, 0.0])
 
 
 def test_the_net_is_estimated_along_beside_effects(model, coefficients, plain):
-    fixed = Acting((Active(catalogue()['tension_cell'], np.array([1e3, 0.1])),))
+    fixed = EffectSet((ActiveEffect(catalogue()['tension_cell'], np.array([1e3, 0.1])),))
     predictor = Predictor(model, fixed)
     found = predictor.predict(coefficients, *INPUTS, start=plain.state)
     size = 1e-3

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.effects.effect_set import acting
-from trawl_ros.effects.sensor_effects import Showing
+from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.effects.sensor_effects import SensorEffects
 from trawl_ros.estimation.from_gear import board_prior, predictor_for
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.model.gear_model import build_model, build_water
@@ -40,7 +40,7 @@ def affected(gear):
 
 @pytest.fixture(scope='module')
 def truth(affected):
-    simulation = Simulation(build_model(affected), COMMAND, acting=acting(affected))
+    simulation = Simulation(build_model(affected), COMMAND, acting=effects_of(affected))
     first = simulation.truth()
     for _ in range(4):
         simulation.advance()
@@ -56,7 +56,7 @@ def test_winches_and_ship_follow_counters_and_log(truth):
 
 
 def test_what_is_shown_is_what_is_predicted(affected, truth):
-    showing = Showing(acting(affected), build_water(affected))
+    showing = SensorEffects(effects_of(affected), build_water(affected))
     water = build_water(affected)
     lengths = tuple(winch.length for winch in truth.winches)
     tensions = tuple(winch.tension for winch in truth.winches)
@@ -79,7 +79,7 @@ def test_what_is_shown_is_what_is_predicted(affected, truth):
 
 def test_a_drift_goes_on_from_the_first_sample(affected):
     water = build_water(affected)
-    showing = Showing(acting(affected), water)
+    showing = SensorEffects(effects_of(affected), water)
     first = PressureSample(10**12, 'sonar', water.pressure(100.0), 1.0)
     later = replace(first, stamp=first.stamp + 1800 * 10**9)
     assert water.depth(showing(first).pressure) == pytest.approx(104.0)
@@ -89,7 +89,7 @@ def test_a_drift_goes_on_from_the_first_sample(affected):
 def test_an_empirical_term_of_attitude_is_shown(gear):
     record = EffectRecord(name='empirical_port_pitch_offset', values={'size': 0.05})
     tilted = gear.model_copy(update={'effects': (record,)})
-    showing = Showing(acting(tilted), build_water(tilted))
+    showing = SensorEffects(effects_of(tilted), build_water(tilted))
     port = showing(AttitudeSample(0, 'port', 0.1, 0.2, 0.01))
     assert (port.pitch, port.roll) == pytest.approx((0.15, 0.2))
     starboard = AttitudeSample(0, 'starboard', 0.1, 0.2, 0.01)
@@ -97,7 +97,7 @@ def test_an_empirical_term_of_attitude_is_shown(gear):
 
 
 def test_without_effects_samples_pass_unchanged(gear):
-    showing = Showing(acting(gear), build_water(gear))
+    showing = SensorEffects(effects_of(gear), build_water(gear))
     sample = PressureSample(0, 'sonar', 1e6, 1.0)
     assert showing(sample) is sample
 

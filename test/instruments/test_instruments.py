@@ -9,7 +9,7 @@ from trawl_ros.core.geodesy import Datum, to_latitude_longitude
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument
 from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, pitch_and_roll
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.errors.records import ForceErrors, LengthErrors, SpeedErrors, TurnErrors
 from trawl_ros.instruments.parameters import (
     AttitudeParameters,
@@ -28,7 +28,7 @@ from trawl_ros.model.water import Water
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import DoorTruth, WinchTruth
 
-DRAWS = Draws(seed=4)
+DRAWS = SeedPlan(seed=4)
 SEA = Surroundings(Water().pressure)
 LIMITS = {'min_range_m': 5.0, 'max_range_m': 400.0}
 

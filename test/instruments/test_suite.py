@@ -10,7 +10,7 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.doors import DoorInstruments
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
@@ -30,7 +30,7 @@ from trawl_ros.records.truth import DoorTruth, NetTruth, Truth, VesselTruth, Win
 
 PRESSURE = Water().pressure
 SEA = Surroundings(PRESSURE)
-DRAWS = Draws(seed=3)
+DRAWS = SeedPlan(seed=3)
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
@@ -64,7 +64,9 @@ def observed(instruments: Observer, truths: list[Truth]) -> list[Sample]:
     return [sample for truth in truths for sample in instruments.observe(truth)]
 
 
-def suite(draws: Draws = DRAWS, parameters: InstrumentParameters | None = None) -> InstrumentSuite:
+def suite(
+    draws: SeedPlan = DRAWS, parameters: InstrumentParameters | None = None
+) -> InstrumentSuite:
     return InstrumentSuite(parameters or load_instruments(), surroundings=SEA, draws=draws)
 
 
@@ -117,7 +119,7 @@ def test_all_samples_carry_the_stamp_of_their_truth_and_a_sweep_that_of_its_firs
 
 
 def test_a_group_alone_gives_what_the_whole_suite_gives() -> None:
-    parameters, draws = load_instruments(), Draws(seed=3, state_changes=(10.0,))
+    parameters, draws = load_instruments(), SeedPlan(seed=3, state_changes=(10.0,))
     groups = (
         WinchInstruments(parameters.winch, draws),
         DoorInstruments(parameters.door, draws, surroundings=SEA),
@@ -142,13 +144,13 @@ def test_a_change_to_one_sensor_changes_no_other() -> None:
 
 def test_the_seed_decides_on_all_data() -> None:
     one, again = (list(map(repr, observed(suite(), tow(10)))) for _ in range(2))
-    other = list(map(repr, observed(suite(Draws(seed=4)), tow(10))))
+    other = list(map(repr, observed(suite(SeedPlan(seed=4)), tow(10))))
     assert one == again
     assert one != other
 
 
 def test_a_backward_jump_gives_the_data_of_a_new_ship() -> None:
-    boat = suite(Draws(seed=3, state_changes=(5.0,)))
+    boat = suite(SeedPlan(seed=3, state_changes=(5.0,)))
     first = list(map(repr, observed(boat, tow(10))))
     second = list(map(repr, observed(boat, tow(10))))
     assert first == second
@@ -163,7 +165,7 @@ def test_biases_change_with_the_states_of_the_tow_and_only_then() -> None:
         update={'door': parameters.door.model_copy(update={'pressure': pressure})}
     )
     start = 1_000 * SECOND
-    samples = observed(suite(Draws(3, (20.0, 40.0)), biased), tow(60, start))
+    samples = observed(suite(SeedPlan(3, (20.0, 40.0)), biased), tow(60, start))
     port = [s for s in samples if isinstance(s, PressureSample) and s.place == 'port']
     by_state = [
         {s.pressure for s in port if low <= (s.stamp - start) / SECOND < high}

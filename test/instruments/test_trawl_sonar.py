@@ -12,7 +12,7 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.faults import Fault, FaultPanel
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import SweepParameters, load_instruments
 from trawl_ros.instruments.sonar.reading import read_openings
 from trawl_ros.instruments.sonar.records import InterferenceRecord
@@ -77,7 +77,7 @@ def still(section: np.ndarray, sweeps: int, **sea: Any) -> list[Truth]:
 
 
 def sonar(record: SweepParameters, seed: int = 0) -> TrawlSonar:
-    return TrawlSonar(record, SEA, Draws(seed))
+    return TrawlSonar(record, SEA, SeedPlan(seed))
 
 
 def swept(instrument: TrawlSonar, truths: Sequence[Truth]) -> list[Sweep]:
@@ -220,7 +220,7 @@ def test_a_screen_hangs_as_often_and_as_long_as_was_said() -> None:
 
 @pytest.mark.parametrize('quantity', ['gain', 'angle'])
 def test_a_lost_gain_or_angle_leaves_a_black_image_and_no_reading(quantity: str) -> None:
-    instruments = SonarInstruments(load_instruments().sonar, Draws(1), surroundings=SEA)
+    instruments = SonarInstruments(load_instruments().sonar, SeedPlan(1), surroundings=SEA)
     FaultPanel(instruments.instruments).switch(f'sonar/image/{quantity}', 'lost')
     samples = [s for now in still(rope(40.0), 1) for s in instruments.observe(now)]
     (image,) = [s for s in samples if isinstance(s, SonarImageSample)]
@@ -235,7 +235,7 @@ def test_a_lost_gain_or_angle_leaves_a_black_image_and_no_reading(quantity: str)
 
 
 def test_a_silent_sonar_sends_no_image_and_nothing_read_off_it() -> None:
-    instruments = SonarInstruments(load_instruments().sonar, Draws(1), surroundings=SEA)
+    instruments = SonarInstruments(load_instruments().sonar, SeedPlan(1), surroundings=SEA)
     FaultPanel(instruments.instruments).switch('sonar/image', 'silent')
     samples = [s for now in still(rope(40.0), 2) for s in instruments.observe(now)]
     assert {type(s).__name__ for s in samples} == {'PressureSample', 'RangeSample'}
@@ -274,7 +274,7 @@ def readings(samples: Sequence[Sample], what: str) -> list[float]:
 def test_a_net_in_tow_is_read_off_the_image_and_costs_little(default_model: GearModel) -> None:
     tow = Simulation(default_model, Command(300.0, 300.0, 2.1)).truth()
     truths = [replace(tow, stamp=k * SECOND // 10) for k in range(401)]
-    instruments = SonarInstruments(load_instruments().sonar, Draws(2), surroundings=SEA)
+    instruments = SonarInstruments(load_instruments().sonar, SeedPlan(2), surroundings=SEA)
     began = time.process_time()
     samples = [s for now in truths for s in instruments.observe(now)]
     spent = time.process_time() - began

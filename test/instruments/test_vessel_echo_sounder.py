@@ -7,7 +7,7 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.echo_sounder import EchoSounder, cone
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
 from trawl_ros.instruments.sonar.schools import inside
 from trawl_ros.model.gear_model import GearModel
@@ -34,7 +34,7 @@ def sounder(
         depth=RangeParameters(rate_hz=1.0, noise_m=noise, **limits),
         school=RangeParameters(rate_hz=1.0, **limits),
     )
-    return EchoSounder(parameters, DRAUGHT, surroundings, Draws(seed=4))
+    return EchoSounder(parameters, DRAUGHT, surroundings, SeedPlan(seed=4))
 
 
 def truth(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.fish_sonar import FishSonar
 from trawl_ros.instruments.parameters import FishSonarParameters, load_instruments
 from trawl_ros.instruments.vessel import VesselInstruments
@@ -32,7 +32,7 @@ EXACT = DEFAULT.model_copy(
 
 
 def sonar(parameters: FishSonarParameters = EXACT, seed: int = 4) -> FishSonar:
-    return FishSonar(parameters, DRAUGHT, SEA, Draws(seed=seed))
+    return FishSonar(parameters, DRAUGHT, SEA, SeedPlan(seed=seed))
 
 
 def ship(heading: float = 0.0, east: float = 0.0, north: float = 0.0) -> VesselTruth:
@@ -151,7 +151,7 @@ def test_it_begins_again_when_time_is_set_back() -> None:
 
 def test_a_cross_current_shows_as_the_difference_of_ground_and_water() -> None:
     parameters = load_instruments().vessel
-    boat = VesselInstruments(parameters, Draws(seed=1), surroundings=SEA)
+    boat = VesselInstruments(parameters, SeedPlan(seed=1), surroundings=SEA)
     current = np.array([0.1, 0.4, 0.0])
     heading = 0.5
     ahead = np.array([math.cos(heading), math.sin(heading), 0.0])

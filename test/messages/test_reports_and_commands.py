@@ -15,7 +15,7 @@ from trawl_ros.messages.commands import (
 )
 from trawl_ros.messages.diagnostics import OK, STALE, Status, diagnostic_array, read_statuses
 from trawl_ros.messages.estimates import (
-    Innovation,
+    ChannelInnovation,
     covariance_message,
     estimate_message,
     innovation_message,
@@ -63,7 +63,10 @@ def test_an_estimate_of_another_size_is_refused():
 
 
 def test_innovations_come_back():
-    sent = (Innovation('door_spread', -1.5, 0.8, 0.3), Innovation('net_depth', 2.0, 1.0, 1.2))
+    sent = (
+        ChannelInnovation('door_spread', -1.5, 0.8, 0.3),
+        ChannelInnovation('net_depth', 2.0, 1.0, 1.2),
+    )
     assert read_innovations(through_bytes(*innovation_message(5, sent))) == sent
 
 

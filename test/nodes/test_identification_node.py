@@ -14,7 +14,7 @@ from trawl_ros.bags.logs.import_log import import_log  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
 from trawl_ros.core.errors import TrawlError  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
-from trawl_ros.instruments.errors.instrument import Draws  # noqa: E402
+from trawl_ros.instruments.errors.instrument import SeedPlan  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
@@ -44,7 +44,7 @@ def steady_bag(model, tmp_path_factory):
     """Instruments that look at one steady state of the gear for a while."""
     truth = Simulation(model, Command(400.0, 400.0, 2.1)).truth()
     suite = InstrumentSuite(
-        load_instruments(), surroundings=Surroundings(model.water.pressure), draws=Draws(seed=3)
+        load_instruments(), surroundings=Surroundings(model.water.pressure), draws=SeedPlan(seed=3)
     )
     path = tmp_path_factory.mktemp('steady') / 'bag'
     with BagWriter(path) as bag:

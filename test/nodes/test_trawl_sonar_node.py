@@ -10,7 +10,7 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.gear.load import load_gear  # noqa: E402
-from trawl_ros.instruments.errors.instrument import Draws  # noqa: E402
+from trawl_ros.instruments.errors.instrument import SeedPlan  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.trawl_sonar import SonarInstruments  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
@@ -96,7 +96,7 @@ def test_the_node_sends_byte_for_byte_what_the_instruments_give(graph, deck, tru
     graph.settle()
     instruments = SonarInstruments(
         load_instruments().sonar,
-        Draws(SEED),
+        SeedPlan(SEED),
         surroundings=build_surroundings(load_gear(gear_path)),
     )
     expected = {topic: [] for topic in TrawlSonarNode.SAMPLES}

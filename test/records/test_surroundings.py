@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.instruments.doors import DoorSpread, off_axis
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import SpreadParameters
 from trawl_ros.model.water import Water
 from trawl_ros.records.surroundings import Surroundings
@@ -49,14 +49,14 @@ def test_warm_water_above_cold_has_a_profile() -> None:
 def test_spread_is_wrong_by_the_ratio_of_the_speeds() -> None:
     cold = Surroundings(PRESSURE, ((0.0, 2.0),))
     parameters = SpreadParameters(rate_hz=1.0, assumed_sound_speed_m_s=1500.0, **LIMITS)
-    (sample,) = DoorSpread(parameters, cold, Draws()).observe(pair(), 0)
+    (sample,) = DoorSpread(parameters, cold, SeedPlan()).observe(pair(), 0)
     assert sample.distance == pytest.approx(120.0 * 1500.0 / cold.sound_speed(100.0))
     assert sample.distance - 120.0 > 3.0
 
 
 def test_a_sensor_that_is_set_right_reads_right() -> None:
     parameters = SpreadParameters(rate_hz=1.0, **LIMITS)
-    (sample,) = DoorSpread(parameters, Surroundings(PRESSURE), Draws()).observe(pair(), 0)
+    (sample,) = DoorSpread(parameters, Surroundings(PRESSURE), SeedPlan()).observe(pair(), 0)
     assert sample.distance == pytest.approx(120.0)
 
 
@@ -67,7 +67,7 @@ def test_the_angle_off_the_axis_is_that_of_the_boards(toe_in: float) -> None:
 
 def test_one_door_that_turns_away_is_enough_to_lose_the_sound() -> None:
     parameters = SpreadParameters(rate_hz=1.0, beam_half_angle_deg=40.0, **LIMITS)
-    sensor = DoorSpread(parameters, Surroundings(PRESSURE), Draws())
+    sensor = DoorSpread(parameters, Surroundings(PRESSURE), SeedPlan())
     heard = [
         len(sensor.observe((door(60.0, -angle), door(-60.0, 0.3)), k * 10**9))
         for k, angle in enumerate(np.radians([20.0, 39.0, 41.0, 20.0]))

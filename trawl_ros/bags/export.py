@@ -9,7 +9,7 @@ from typing import Any
 
 from trawl_ros.bags.csv_output import CsvOutput
 from trawl_ros.bags.field_units import unit_of
-from trawl_ros.bags.flattening import Column, Layout, as_seconds, as_text, singles, varies
+from trawl_ros.bags.flattening import FlatColumn, FlatLayout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.time import SECOND
@@ -111,8 +111,8 @@ class _Table:
     """Table of a topic's file: its layout, columns, and those of 32 bits."""
 
     file_name: str
-    layout: Layout
-    columns: tuple[Column, ...]
+    layout: FlatLayout
+    columns: tuple[FlatColumn, ...]
     singles: frozenset[str]
 
     def cells(self, log_time: int, message: Any) -> list[str]:
@@ -140,7 +140,7 @@ def _wanted(bag: Bag, names: Collection[str], namespace: str) -> list[str]:
 
 def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]:
     """Return the columns of each topic: of those that vary, by reading all of their messages."""
-    layouts: dict[str, Layout] = {}
+    layouts: dict[str, FlatLayout] = {}
     known: dict[str, tuple[bool, frozenset[str]]] = {}
     for topic in wanted:
         try:
@@ -158,7 +158,7 @@ def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]
             decoded = bag.decode(message)
         except MessageError:
             continue
-        layouts.setdefault(topic, Layout(array_limit)).learn(decoded)
+        layouts.setdefault(topic, FlatLayout(array_limit)).learn(decoded)
     names = _file_names(layouts)
     return {
         topic: _Table(names[topic], layout, tuple(layout.finish()), known[topic][1])

@@ -25,7 +25,7 @@ Place = tuple[int, ...]
 
 
 @dataclass(frozen=True, order=True)
-class Column:
+class FlatColumn:
     """Column: its steps, its name, and its field's path without element numbers.
 
     ``steps`` are the names and numbers by which a message's value is reached.
@@ -51,7 +51,7 @@ class Column:
 
 
 @dataclass
-class Layout:
+class FlatLayout:
     """Layout of a topic's table: its columns, and the arrays that do not go into columns.
 
     Attributes
@@ -63,7 +63,7 @@ class Layout:
     """
 
     limit: int
-    columns: set[Column] = field(default_factory=set)
+    columns: set[FlatColumn] = field(default_factory=set)
     left_out: dict[str, str] = field(default_factory=dict)
 
     def learn(self, message: Any) -> None:
@@ -72,7 +72,7 @@ class Layout:
         if self.left_out:
             self.columns = {column for column in self.columns if not self._is_out(column.path)}
 
-    def finish(self) -> list[Column]:
+    def finish(self) -> list[FlatColumn]:
         """Give the columns in the order of the fields, without fields that need too many."""
         for path, count in self._top_level().items():
             if count > MAX_COLUMNS:
@@ -92,12 +92,12 @@ class Layout:
 
     def _walk(
         self, value: Any, place: Place, name: str, path: str, steps: tuple[str | int, ...]
-    ) -> Iterator[Column]:
+    ) -> Iterator[FlatColumn]:
         if path in self.left_out:
             return
         if getattr(value, '__msgtype__', '') in _TIMES:
-            yield Column((*place, 0), f'{name}_s', f'{path}_s', steps)
-            yield Column((*place, 1), f'{name}_ns', f'{path}_ns', steps)
+            yield FlatColumn((*place, 0), f'{name}_s', f'{path}_s', steps)
+            yield FlatColumn((*place, 1), f'{name}_ns', f'{path}_ns', steps)
         elif is_dataclass(value):
             for number, part in enumerate(fields(value)):
                 # Constants stand among the fields; of those, ROS wants small letters.
@@ -117,7 +117,7 @@ class Layout:
                 deeper = (*steps, number)
                 yield from self._walk(element, (*place, number), f'{name}[{number}]', path, deeper)
         else:
-            yield Column(place, name, path, steps)
+            yield FlatColumn(place, name, path, steps)
 
     def _refusal(self, value: Any) -> str:
         blob = isinstance(value, np.ndarray) and value.dtype.itemsize == 1 and value.dtype != bool

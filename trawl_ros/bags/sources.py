@@ -71,7 +71,7 @@ class BagFacts:
     sizes: dict[str, int]
 
 
-class Source:
+class BagSource:
     """Files of a bag as one stream, with the content of ``metadata.yaml``.
 
     Attributes
@@ -194,7 +194,7 @@ class Source:
         return total
 
 
-def open_source(path: Path, report: Report, *, lenient: bool = False) -> Source:
+def open_source(path: Path, report: Report, *, lenient: bool = False) -> BagSource:
     """Detect the kind of bag at a path, and open it.
 
     Parameters
@@ -216,17 +216,17 @@ def open_source(path: Path, report: Report, *, lenient: bool = False) -> Source:
     if not path.exists():
         raise BagError(f'{path}: no such bag')
     if not path.is_dir():
-        return Source([_open_file(path, report)], None, report)
+        return BagSource([_open_file(path, report)], None, report)
     metadata = _metadata(path, report, lenient)
     if metadata is None:
         files = sorted(file for suffix in SUFFIXES for file in path.glob(f'*{suffix}'))
         if not files:
             raise BagError(f'{path}: neither {FILE_NAME} nor an .mcap file; expected a bag')
-        return Source([_open_file(file, report) for file in files], None, report)
+        return BagSource([_open_file(file, report) for file in files], None, report)
     return _by_metadata(path, metadata, report, lenient)
 
 
-def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: bool) -> Source:
+def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: bool) -> BagSource:
     _check_kind(path, metadata)
     # Bags before version 4 name their files with the folder, later ones without.
     files = [path / Path(name).name for name in metadata.relative_file_paths]
@@ -248,7 +248,7 @@ def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: boo
         files = unpacked.plain
     stated = metadata.stated()
     opened = [_open_file(file, report, stated) for file in files]
-    source = Source(opened, metadata, report, unpacked)
+    source = BagSource(opened, metadata, report, unpacked)
     for disagreement in source.disagreements():
         if not lenient:
             raise BagError(

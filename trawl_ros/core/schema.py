@@ -15,7 +15,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import reading
 from trawl_ros.core.limits import YAML_BYTES, YAML_DEPTH, YAML_VALUES
-from trawl_ros.core.validation_messages import complaints, shown
+from trawl_ros.core.validation_messages import shown, validation_messages
 
 MAX_COMPLAINTS = 10
 
@@ -134,7 +134,7 @@ def validated(
     try:
         return cls.model_validate(data)
     except ValidationError as reason:
-        lines = complaints(cls, data, reason.errors(include_url=False), prefix)
+        lines = validation_messages(cls, data, reason.errors(include_url=False), prefix)
         more = len(lines) - MAX_COMPLAINTS
         told = [f'{path}: {line}' for line in lines[:MAX_COMPLAINTS]]
         if more > 0:

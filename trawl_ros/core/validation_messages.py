@@ -70,7 +70,7 @@ _SCALARS = {
 }
 
 
-def complaints(
+def validation_messages(
     cls: type[BaseModel], data: Any, errors: list[ErrorDetails], prefix: str = ''
 ) -> list[str]:
     """Return the validation messages of a record, unknown keys first.

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect
-from trawl_ros.effects.effect_set import Active
+from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
@@ -91,7 +91,7 @@ def signatures(
         For each window an array (channels of the window, values of all candidates) per unit of the
         value; 0 in tows without.
     """
-    active = [Active(candidate.effect, candidate.start) for candidate in wanted]
+    active = [ActiveEffect(candidate.effect, candidate.start) for candidate in wanted]
     number = sum(len(one.values) for one in active)
     found = []
     for part in parts:

@@ -7,7 +7,7 @@ from scipy.stats import norm
 
 from trawl_ros.diagnosis.evidence import BLIND, evidence
 from trawl_ros.diagnosis.locating import Where
-from trawl_ros.diagnosis.score_test import Screen, blocks_of
+from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
 from trawl_ros.estimation.fit.linearised import Linearised
 
 TIME = 'time'
@@ -15,7 +15,7 @@ CHANCE = 0.01
 """Part of trials in which a jump is seen somewhere though there is none."""
 
 
-def changes(seen: Screen) -> tuple[Where, ...]:
+def changes(seen: ScoreTest) -> tuple[Where, ...]:
     """The most telling jump of each channel, where it alone explains more than all patterns of the
     channel together; the clearest first.
 

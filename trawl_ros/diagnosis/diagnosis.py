@@ -8,16 +8,16 @@ import numpy as np
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
-from trawl_ros.diagnosis.holdout import Errors, Split, errors, split
+from trawl_ros.diagnosis.holdout import HoldoutErrors, Split, errors, split
 from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import Where, telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
 from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, Verdict
-from trawl_ros.diagnosis.score_test import Screen, screen
+from trawl_ros.diagnosis.score_test import ScoreTest, score_test
 from trawl_ros.diagnosis.weighing import Weighed
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -33,14 +33,14 @@ PLACEBO_STEPS = 3
 
 
 @dataclass(frozen=True)
-class Shown:
+class HoldoutComparison:
     """Hold-out comparison: errors without, with the effect, and with the best wrong one
     (``placebo``, whose name is ``instead``).
     """
 
-    before: Errors
-    after: Errors | None
-    placebo: Errors | None
+    before: HoldoutErrors
+    after: HoldoutErrors | None
+    placebo: HoldoutErrors | None
     instead: str | None
 
     @property
@@ -89,10 +89,10 @@ class Diagnosis:
     baseline: frozenset[int]
     split: Split
     base: Refit | None = None
-    seen: Screen | None = None
+    seen: ScoreTest | None = None
     named: Named | None = None
     where: tuple[Where, ...] = ()
-    shown: Shown | None = None
+    shown: HoldoutComparison | None = None
     remarks: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
     proposals: tuple[Proposal, ...] = ()
@@ -150,7 +150,7 @@ def diagnose(
     model = build_model(gear)
     # What an earlier diagnosis has found is what the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
-    predictor = Predictor(model, acting(gear), without=baseline, new=new)
+    predictor = Predictor(model, effects_of(gear), without=baseline, new=new)
     known = Diagnosis(
         'NOT_TESTABLE', '', gear, tuple(tows), baseline, parts, remarks=over_ground(windows, tows)
     )
@@ -173,7 +173,7 @@ def diagnose(
             'from how it was towed',
         )
     told('looking for effects')
-    seen = screen(predictor, base.fit, catalogue())
+    seen = score_test(predictor, base.fit, catalogue())
     where = sorted((*telling(seen), *changes(seen)), key=lambda one: -abs(one.z))
     known = replace(known, base=base, seen=seen, where=tuple(where))
     if not seen.detected:
@@ -188,7 +188,7 @@ def diagnose(
         told('leaving out what has no steady state with the best effect')
         kept = tuple(window for window in parts.deciding if window.index not in named.lost)
         if (again := fit(predictor, prior, kept)) is not None:
-            base, seen = again, screen(predictor, again.fit, catalogue())
+            base, seen = again, score_test(predictor, again.fit, catalogue())
             known = replace(known, base=base, seen=seen)
             named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
     best = named.weighed[0].refit if named.weighed else None
@@ -232,7 +232,7 @@ def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
 
 
 def _advice(
-    predictor: Predictor, seen: Screen, named: Named
+    predictor: Predictor, seen: ScoreTest, named: Named
 ) -> tuple[tuple[str, ...], tuple[Proposal, ...]]:
     """Direct checks and tows that separate the best effect from those not excluded."""
     others = {*named.rivals, *named.alike}
@@ -247,7 +247,7 @@ def _advice(
     return tuple(dict.fromkeys(direct)), proposals
 
 
-def _placebo(predictor: Predictor, base: Refit, seen: Screen, named: Named) -> Refit | None:
+def _placebo(predictor: Predictor, base: Refit, seen: ScoreTest, named: Named) -> Refit | None:
     """Placebo: the best effect that is neither named nor of its class.
 
     Where none is named, only one that was refitted already will do.
@@ -271,7 +271,7 @@ def _shown(
     best: Refit | None,
     other: Refit | None,
     parts: Split,
-) -> Shown | None:
+) -> HoldoutComparison | None:
     if not parts.showing:
         return None
 
@@ -281,7 +281,7 @@ def _shown(
         for one in there
     ]
     found = iter(errors(list(zip(free, there, strict=True)), parts.showing))
-    return Shown(
+    return HoldoutComparison(
         before=next(found),
         after=None if best is None else next(found),
         placebo=None if other is None else next(found),
@@ -289,7 +289,7 @@ def _shown(
     )
 
 
-def _removed(before: Errors, after: Errors | None) -> float | None:
+def _removed(before: HoldoutErrors, after: HoldoutErrors | None) -> float | None:
     # In the same units: a gear with an effect may feel errors of warp lengths more.
     was = before.excess(before.expected)
     if after is None or was <= 0.0:

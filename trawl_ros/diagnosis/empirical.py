@@ -14,9 +14,9 @@ from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.naming import refitted
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import EMPIRICAL_OVER_PLACEBO, LEAST_BIC
-from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, weigh
-from trawl_ros.effects.base.term import Term
+from trawl_ros.effects.base.term import EmpiricalTerm
 from trawl_ros.effects.empirical.library import dictionary
 from trawl_ros.solver.predict import Predictor
 
@@ -44,12 +44,12 @@ class Empirical:
     left_over: LeftOver
 
     @property
-    def term(self) -> Term:
+    def term(self) -> EmpiricalTerm:
         """The term."""
         return dictionary()[self.weighed.refit.names[0]]
 
 
-def empirical(predictor: Predictor, base: Refit, seen: Screen) -> Empirical | None:
+def empirical(predictor: Predictor, base: Refit, seen: ScoreTest) -> Empirical | None:
     """Select the best term; None where placebos do nearly as well.
 
     Parameters

@@ -13,7 +13,7 @@ from scipy.stats import chi2, norm
 
 from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, spread
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.nuisance import marginalise, triangular
+from trawl_ros.estimation.fit.nuisance import eliminate_nuisance, triangular
 from trawl_ros.model.board import COEFFICIENTS
 
 BLIND = 1e-9
@@ -47,7 +47,7 @@ class Evidence:
         """Score statistic: decrease of the χ² of all data with these values free."""
         return float(self.score[list(block)] @ self.values(block))
 
-    def freedom(self, block: Sequence[int]) -> int:
+    def degrees_of_freedom(self, block: Sequence[int]) -> int:
         """Degrees of freedom: rank of the information on these values."""
         return int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
 
@@ -56,7 +56,7 @@ class Evidence:
 
         With all errors ``doubt`` times as large as they are taken to be.
         """
-        freedom = self.freedom(block)
+        freedom = self.degrees_of_freedom(block)
         return tail(self.chi2(block) / doubt**2, freedom) if freedom else 0.0
 
     def values(self, block: Sequence[int]) -> np.ndarray:
@@ -124,7 +124,7 @@ def evidence(
     for row, (part, own) in enumerate(zip(fit.windows, columns, strict=True)):
         jacobian[row, :, board:] = spread(part, own * units)
     scales = np.array(fit.scales)[GROUP_OF]
-    found = marginalise(
+    found = eliminate_nuisance(
         fit.errors if tows is None else tows,
         scales,
         fit.residual,
@@ -157,7 +157,7 @@ def threshold(
     for block in blocks:
         own = found.information[np.ix_(list(block), list(block))]
         inverse = np.linalg.pinv(own, 1e-10, hermitian=True)
-        freedom = found.freedom(block)
+        freedom = found.degrees_of_freedom(block)
         if freedom == 0:
             continue
         chosen = draws[:, list(block)]

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
 from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refit
-from trawl_ros.effects.effect_set import Active
+from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator import POOR, Estimator
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.prior import BoardPrior
@@ -38,7 +38,7 @@ def fit_beside(
     found = fit_boards(predictor, prior, windows, start=predictor.model.coefficients)
     steady = [one for one in predictor.fixed.effects if not one.effect.dynamic]
     added = [one for one in steady if one.name in predictor.new]
-    if not added or (found is not None and found.fit.misfit < POOR):
+    if not added or (found is not None and found.fit.birge_ratio < POOR):
         return found
     without = replace(predictor, fixed=predictor.fixed.without(predictor.new))
     base = fit_boards(without, prior, windows)
@@ -58,7 +58,7 @@ def fit_beside(
     return likelier(found, None if estimate is None else Refit((), estimator, estimate))
 
 
-def _nearest(active: Active, predictor: Predictor, base: Refit) -> Candidate:
+def _nearest(active: ActiveEffect, predictor: Predictor, base: Refit) -> Candidate:
     """Candidate of an effect, at the start nearest to its found values."""
     depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
     places = candidates({active.name: active.effect}, predictor, depths)

@@ -58,7 +58,7 @@ def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
 
 
 @dataclass(frozen=True)
-class Errors:
+class HoldoutErrors:
     """Root mean square errors by channel, in its unit, and ``expected``, those that the
     known errors would make.
     """
@@ -77,7 +77,7 @@ class Errors:
 
 def errors(
     fits: Sequence[tuple[Predictor, Refit]], windows: Sequence[SteadyWindow]
-) -> list[Errors]:
+) -> list[HoldoutErrors]:
     """Errors of fits on windows that none of them was fitted to.
 
     Windows for which any of them has no steady state are left out for all.
@@ -105,9 +105,9 @@ def _predicted(predictor: Predictor, one: Refit, window: SteadyWindow) -> Linear
     return linearise(predictor, OBSERVABLES, window, one.estimate.values, (near, None))
 
 
-def _gathered(parts: Sequence[Linearised]) -> Errors:
+def _gathered(parts: Sequence[Linearised]) -> HoldoutErrors:
     found = residuals(parts)
-    return Errors(
+    return HoldoutErrors(
         rms={row.channel: float(np.sqrt(np.mean(row.values**2))) for row in found},
         expected={row.channel: row.stated_std for row in found},
         windows=len(parts),

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.diagnosis.evidence import BLIND
-from trawl_ros.diagnosis.patterns import SHAPES, Pattern
-from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.diagnosis.patterns import SHAPES, ResidualPattern
+from trawl_ros.diagnosis.score_test import ScoreTest
 
 TELLING = 3.0
 """Standard deviations from where a pattern is worth a word."""
@@ -29,7 +29,7 @@ class Where:
     z: float
 
 
-def located(seen: Screen) -> tuple[Where, ...]:
+def located(seen: ScoreTest) -> tuple[Where, ...]:
     """All patterns, the most significant first."""
     found = []
     for place, pattern in enumerate(seen.patterns, seen.number):
@@ -41,12 +41,12 @@ def located(seen: Screen) -> tuple[Where, ...]:
     return tuple(sorted(found, key=lambda where: -abs(where.z)))
 
 
-def telling(seen: Screen) -> tuple[Where, ...]:
+def telling(seen: ScoreTest) -> tuple[Where, ...]:
     """Significant patterns."""
     return tuple(where for where in located(seen) if abs(where.z) >= TELLING)
 
 
-def map_of(seen: Screen) -> tuple[list[str], list[str], np.ndarray]:
+def map_of(seen: ScoreTest) -> tuple[list[str], list[str], np.ndarray]:
     """Channels, variables and z (channels, variables), NaN where a pattern is unobservable."""
     found = {(where.channel, where.variable): where.z for where in located(seen)}
     channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))
@@ -55,7 +55,7 @@ def map_of(seen: Screen) -> tuple[list[str], list[str], np.ndarray]:
     return channels, variables, np.array(z)
 
 
-def _region(seen: Screen, pattern: Pattern, z: float) -> str:
+def _region(seen: ScoreTest, pattern: ResidualPattern, z: float) -> str:
     words = DIRECTIONS.get(pattern.shape)
     if words is not None:
         return words[0] if z > 0.0 else words[1]

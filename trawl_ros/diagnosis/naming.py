@@ -20,7 +20,7 @@ from trawl_ros.diagnosis.rules import (
     Verdict,
     judge,
 )
-from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.relinearise import with_those_of
@@ -69,7 +69,7 @@ class Named:
 def name(
     predictor: Predictor,
     base: Refit,
-    seen: Screen,
+    seen: ScoreTest,
     tried: Callable[[str], None] = lambda what: None,
 ) -> Named:
     """Name the detected effect, or say why it cannot be named.
@@ -141,7 +141,7 @@ def _possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
     return weighed
 
 
-def _rivals(seen: Screen, weighed: Sequence[Weighed]) -> tuple[str, ...]:
+def _rivals(seen: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
     """Effects that are not excluded and not of the class of the best."""
     best = weighed[0]
     taken = {*best.refit.names, *twins(seen, best.refit)}
@@ -154,14 +154,14 @@ def _rivals(seen: Screen, weighed: Sequence[Weighed]) -> tuple[str, ...]:
     )
 
 
-def _near(seen: Screen, weighed: Sequence[Weighed]) -> frozenset[str]:
+def _near(seen: ScoreTest, weighed: Sequence[Weighed]) -> frozenset[str]:
     """Names of effects nearly as good as the best, or nearly the same: both may be present."""
     refitted_too = {name for other in weighed[1:] for name in other.refit.names}
     alike = refitted_too.intersection(twins(seen, weighed[0].refit, NEARLY_ALIKE))
     return frozenset({*_rivals(seen, weighed), *alike})
 
 
-def _of_one_instrument(seen: Screen, best: Weighed) -> frozenset[str]:
+def _of_one_instrument(seen: ScoreTest, best: Weighed) -> frozenset[str]:
     """Other errors of the instrument whose error is the best: one seldom comes without them."""
     (first,) = best.refit.wanted
     own = first.effect.instrument
@@ -170,7 +170,7 @@ def _of_one_instrument(seen: Screen, best: Weighed) -> frozenset[str]:
     }
 
 
-def _seconds(seen: Screen, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
+def _seconds(seen: ScoreTest, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
     """Candidates for a second effect beside the best.
 
     Some of its rivals, or else of all effects, that explain most of what is left over; and other
@@ -209,7 +209,7 @@ def _to_be_there(best: Weighed) -> float:
 def refitted(
     predictor: Predictor,
     base: Refit,
-    seen: Screen,
+    seen: ScoreTest,
     wanted: Sequence[Candidate],
     options: EstimatorOptions | None = None,
 ) -> Refit | None:
@@ -237,7 +237,7 @@ def _without_states(lost: frozenset[int]) -> Named:
 def _refitted(
     predictor: Predictor,
     base: Refit,
-    seen: Screen,
+    seen: ScoreTest,
     wanted: Sequence[Candidate],
     options: EstimatorOptions,
 ) -> Refit | None:
@@ -252,7 +252,11 @@ def _refitted(
     # First order may lead astray: then from where there is nothing but the boards.
     for start in (values, starts):
         best = likelier(best, refit(predictor, base.fit, wanted, start, parts, options))
-        if best is not None and not _lost(base, best) and best.fit.surprise < base.fit.surprise:
+        if (
+            best is not None
+            and not _lost(base, best)
+            and best.fit.negative_log_likelihood < base.fit.negative_log_likelihood
+        ):
             break
     return best
 
@@ -260,7 +264,7 @@ def _refitted(
 def _with_second(
     predictor: Predictor,
     base: Refit,
-    seen: Screen,
+    seen: ScoreTest,
     refits: Sequence[Refit],
     weighed: tuple[Weighed, ...],
     seconds: Sequence[Candidate],

@@ -9,7 +9,7 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.candidates import Candidate, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
-from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -70,7 +70,7 @@ class Proposal:
 
 def propose(
     predictor: Predictor,
-    seen: Screen,
+    seen: ScoreTest,
     best: Candidate,
     values: np.ndarray,
     rivals: Sequence[Candidate],
@@ -121,7 +121,11 @@ def propose(
 
 
 def _apart(
-    seen: Screen, there: Evidence, best: Candidate, values: np.ndarray, rivals: Sequence[Candidate]
+    seen: ScoreTest,
+    there: Evidence,
+    best: Candidate,
+    values: np.ndarray,
+    rivals: Sequence[Candidate],
 ) -> float:
     """Least χ² of an effect that a rival cannot explain."""
     block = list(seen.block(best))
@@ -133,14 +137,14 @@ def _apart(
     return min(left)
 
 
-def _places(seen: Screen) -> list[tuple[float, float, int]]:
+def _places(seen: ScoreTest) -> list[tuple[float, float, int]]:
     return [
         (float(part.inputs[:2].mean()), float(part.inputs[2]), part.window.index)
         for part in seen.fit.windows
     ]
 
 
-def _tows(seen: Screen) -> list[tuple[tuple[float, float], ...]]:
+def _tows(seen: ScoreTest) -> list[tuple[tuple[float, float], ...]]:
     """Tows of speed steps at both ends of the warp's range, and warp steps at both speeds'."""
     lengths, speeds, _ = (np.array(column) for column in zip(*_places(seen), strict=True))
     steps = [np.linspace(values.min(), values.max(), STATES) for values in (lengths, speeds)]
@@ -151,7 +155,7 @@ def _tows(seen: Screen) -> list[tuple[tuple[float, float], ...]]:
 
 def _solved(
     predictor: Predictor,
-    seen: Screen,
+    seen: ScoreTest,
     known: dict[tuple[float, float, int], Linearised],
     solved: dict[tuple[float, float], Linearised],
     state: tuple[float, float],

@@ -15,14 +15,14 @@ SHAPES = ('throughout', *VARIABLES)
 
 
 @dataclass(frozen=True)
-class Pattern:
+class ResidualPattern:
     """Pattern: residuals of one channel that follow one of `SHAPES`."""
 
     channel: str
     shape: str
 
 
-def patterns(parts: Sequence[Linearised]) -> tuple[tuple[Pattern, ...], list[np.ndarray]]:
+def patterns(parts: Sequence[Linearised]) -> tuple[tuple[ResidualPattern, ...], list[np.ndarray]]:
     """All patterns that are observable in the windows.
 
     Returns
@@ -36,7 +36,7 @@ def patterns(parts: Sequence[Linearised]) -> tuple[tuple[Pattern, ...], list[np.
     variables = _variables(parts)
     varying = [i for i in range(len(SHAPES)) if i == 0 or np.ptp(variables[:, i]) > 1e-9]
     present = [name for name in MEASURED if any(name in part.channels for part in parts)]
-    found = tuple(Pattern(name, SHAPES[i]) for name in present for i in varying)
+    found = tuple(ResidualPattern(name, SHAPES[i]) for name in present for i in varying)
     columns = []
     for row, part in enumerate(parts):
         own = np.zeros((len(part.channels), len(found)))

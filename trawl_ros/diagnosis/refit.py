@@ -100,7 +100,7 @@ def fit_boards(
     together.take(windows)
     estimate = together.finish()
     found = None if estimate is None else Refit((), together, estimate)
-    if found is not None and found.fit.misfit < POOR:
+    if found is not None and found.fit.birge_ratio < POOR:
         return found
     # Far from where they start boards may get stuck, which window by window they need not.
     by_turns = Estimator(predictor, prior, OBSERVABLES, options)
@@ -128,7 +128,7 @@ def likelier(one: Refit | None, other: Refit | None) -> Refit | None:
         return one or other
     if len(one.fit.windows) != len(other.fit.windows):
         return max(one, other, key=lambda fit: len(fit.fit.windows))
-    return min(one, other, key=lambda fit: fit.fit.surprise)
+    return min(one, other, key=lambda fit: fit.fit.negative_log_likelihood)
 
 
 def refit(

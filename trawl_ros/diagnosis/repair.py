@@ -25,14 +25,14 @@ PIECE = 1 << 20
 
 
 @dataclass(frozen=True)
-class Source:
+class SourceBag:
     """Source: a bag and the SHA-256 of its recordings."""
 
     bag: str
     sha256: str
 
 
-def source(bag: Path) -> Source:
+def source(bag: Path) -> SourceBag:
     """Identify a bag by the SHA-256 of its recordings, in the order of their names."""
     files = sorted(bag.rglob('*')) if bag.is_dir() else [bag]
     recordings = [file for file in files if file.suffix in RECORDINGS and file.is_file()]
@@ -43,10 +43,10 @@ def source(bag: Path) -> Source:
             while piece := stream.read(PIECE):
                 digest.update(piece)
         digests.append(digest.hexdigest())
-    return Source(bag.name, ' '.join(digests) or 'no recordings')
+    return SourceBag(bag.name, ' '.join(digests) or 'no recordings')
 
 
-def repaired(found: Diagnosis, sources: Sequence[Source]) -> GearRecord | None:
+def repaired(found: Diagnosis, sources: Sequence[SourceBag]) -> GearRecord | None:
     """The gear with boards as refitted and in it the effect that is named, or two, or an empirical
     term.
 
@@ -80,7 +80,7 @@ def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> Gear
     )
 
 
-def _provenance(best: Weighed, sources: Sequence[Source]) -> ProvenanceRecord:
+def _provenance(best: Weighed, sources: Sequence[SourceBag]) -> ProvenanceRecord:
     return ProvenanceRecord(
         found_by=f'trawl diagnose {__version__}',
         bags=tuple(SourceRecord(bag=one.bag, sha256=one.sha256) for one in sources),

@@ -14,12 +14,12 @@ from trawl_ros.diagnosis.candidates import (
     signatures,
 )
 from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
-from trawl_ros.diagnosis.patterns import Pattern, patterns
+from trawl_ros.diagnosis.patterns import ResidualPattern, patterns
 from trawl_ros.diagnosis.rules import DOUBT, FALSE_ALARMS, NOISE_TO_EXPLAIN
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.estimation.fit.error_terms import TowErrors
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.gauss_newton import aim
+from trawl_ros.estimation.fit.gauss_newton import gauss_newton_step
 from trawl_ros.estimation.fit.nuisance import reweighted
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.solver.predict import Predictor
@@ -29,7 +29,7 @@ USUAL_PATTERN, FAR = 3.0, 1e3
 
 
 @dataclass(frozen=True)
-class Screen:
+class ScoreTest:
     """Score tests of every candidate and every pattern.
 
     Attributes
@@ -52,7 +52,7 @@ class Screen:
     weights: tuple[np.ndarray, ...]
     wanted: tuple[Candidate, ...]
     columns: tuple[np.ndarray, ...]
-    patterns: tuple[Pattern, ...]
+    patterns: tuple[ResidualPattern, ...]
     shapes: tuple[np.ndarray, ...]
     evidence: Evidence
     limit: float
@@ -108,7 +108,7 @@ class Screen:
         """Decrease of the BIC (Bayesian information criterion) with a candidate, first order."""
         found = found or self.evidence
         block = self.block(candidate)
-        return found.chi2(block) - found.freedom(block) * float(np.log(self.readings))
+        return found.chi2(block) - found.degrees_of_freedom(block) * float(np.log(self.readings))
 
     def resampled(self, tows: Sequence[int]) -> Evidence:
         """Evidence of tows chosen with replacement, by their place (bootstrap)."""
@@ -122,7 +122,7 @@ class Screen:
         return evidence(fit, [self.columns[row] for row in rows], self.units)
 
 
-def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Screen:
+def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> ScoreTest:
     """Screen all effects.
 
     Parameters
@@ -140,11 +140,15 @@ def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Sc
     shapes, of_shapes = patterns(base.windows)
     # Noise is what no effect explains: found with all of them free.
     free = extended(base, wanted, columns, base.options)
-    explained = aim(replace(free, scales=base.scales), free.prior.low, free.prior.high)
+    explained = gauss_newton_step(
+        replace(free, scales=base.scales), free.prior.low, free.prior.high
+    )
     if max(explained.scales) > NOISE_TO_EXPLAIN:
         # Then it is no noise, but something that no effect knows: patterns are to have it.
         free = with_patterns(free, of_shapes)
-        explained = aim(replace(free, scales=base.scales), free.prior.low, free.prior.high)
+        explained = gauss_newton_step(
+            replace(free, scales=base.scales), free.prior.low, free.prior.high
+        )
     weights = reweighted(explained.marginal, base.options.huber)
     fit = replace(base, scales=explained.scales)
     both = [np.hstack(pair) for pair in zip(columns, of_shapes, strict=True)]
@@ -153,7 +157,7 @@ def screen(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -> Sc
     number = len(units) - len(shapes)
     looks = [look for block in blocks_of_candidates(wanted) for look in looks_at(block)]
     limit = threshold(found, [*looks, *blocks_of(shapes, number).values()], FALSE_ALARMS)
-    return Screen(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
+    return ScoreTest(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
 
 
 def looks_at(block: range) -> list[range]:
@@ -177,7 +181,7 @@ def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:
     )
 
 
-def blocks_of(shapes: Sequence[Pattern], first: int) -> dict[str, range]:
+def blocks_of(shapes: Sequence[ResidualPattern], first: int) -> dict[str, range]:
     """Slices of each channel's patterns, the first of all at ``first``."""
     found: dict[str, range] = {}
     for place, pattern in enumerate(shapes, first):

@@ -9,7 +9,7 @@ from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
-from trawl_ros.diagnosis.score_test import Screen, blocks_of
+from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
 from trawl_ros.model.board import COEFFICIENTS
 
 DRAWS = 100
@@ -74,9 +74,9 @@ class LeftOver:
         return leaves_too_much(self.probability, self.share)
 
 
-def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, ...]:
+def weigh(base: Refit, seen: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighed, ...]:
     """Weigh all refits at one noise scale, best first."""
-    likeliest = min(refits, key=lambda one: one.fit.surprise)
+    likeliest = min(refits, key=lambda one: one.fit.negative_log_likelihood)
     scales = likeliest.fit.scales
     before = base.cost(scales)
     penalty = float(np.log(seen.readings))
@@ -103,7 +103,7 @@ def weigh(base: Refit, seen: Screen, refits: Sequence[Refit]) -> tuple[Weighed, 
 
 
 def _resampled(
-    seen: Screen, refits: Sequence[Refit], criteria: Sequence[float]
+    seen: ScoreTest, refits: Sequence[Refit], criteria: Sequence[float]
 ) -> tuple[list[np.ndarray], list[str]]:
     """Bootstrap: gains of each unit left out, and the best effect of each resampled trial.
 
@@ -150,14 +150,14 @@ def _resampled(
     return gains, [best(part) for part in trials]
 
 
-def _penalised(seen: Screen, wanted: Sequence[Candidate]) -> float:
+def _penalised(seen: ScoreTest, wanted: Sequence[Candidate]) -> float:
     """Decrease of BIC with candidates together, to first order."""
     block = [place for candidate in wanted for place in seen.block(candidate)]
-    freedom = seen.evidence.freedom(block)
+    freedom = seen.evidence.degrees_of_freedom(block)
     return seen.evidence.chi2(block) - freedom * float(np.log(seen.readings))
 
 
-def twins(seen: Screen, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
+def twins(seen: ScoreTest, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
     """Names of effects whose signatures have at least this cosine with the refitted one's."""
     if len(one.wanted) != 1:
         return ()
@@ -171,7 +171,7 @@ def twins(seen: Screen, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
     )
 
 
-def _cosine(seen: Screen, one: Refit, other: Candidate) -> float:
+def _cosine(seen: ScoreTest, one: Refit, other: Candidate) -> float:
     """Cosine of the refitted effect's signature with another's."""
     rows = [place for candidate in one.wanted for place in seen.block(candidate)]
     starts = np.concatenate([candidate.start for candidate in one.wanted])
@@ -180,12 +180,12 @@ def _cosine(seen: Screen, one: Refit, other: Candidate) -> float:
     return seen.evidence.covered(rows, values, seen.block(other))
 
 
-def _nearest(seen: Screen, one: Refit) -> float:
+def _nearest(seen: ScoreTest, one: Refit) -> float:
     others = [other for other in seen.wanted if other.name not in one.names]
     return max((_cosine(seen, one, other) for other in others), default=0.0)
 
 
-def left_over(base: Refit, seen: Screen, one: Refit) -> LeftOver:
+def left_over(base: Refit, seen: ScoreTest, one: Refit) -> LeftOver:
     """Test of the residual patterns of the most improbable channel beside a refit.
 
     Parameters

@@ -14,7 +14,7 @@ from trawl_ros.model.gear_model import GearModel
 
 
 @dataclass(frozen=True)
-class Active:
+class ActiveEffect:
     """Effect with its values (m,) in the order of its parameters."""
 
     effect: Effect
@@ -27,18 +27,18 @@ class Active:
 
 
 @dataclass(frozen=True)
-class Acting:
+class EffectSet:
     """Effect set; each effect is applied to the result of those before it."""
 
-    effects: tuple[Active, ...] = ()
+    effects: tuple[ActiveEffect, ...] = ()
 
     def __bool__(self) -> bool:
         return bool(self.effects)
 
-    def towed(self, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         for active in self.effects:
-            inputs = active.effect.towed(active.values, inputs, at)
+            inputs = active.effect.apply_to_inputs(active.values, inputs, at)
         return inputs
 
     def gear(self, model: GearModel, at: Situation) -> GearModel:
@@ -47,34 +47,34 @@ class Acting:
             model = active.effect.gear(active.values, model, at)
         return model
 
-    def shown(self, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, readings: Readings, at: Situation) -> Readings:
         """Apply to sensors: readings with the errors of all effects."""
         for active in self.effects:
-            readings = active.effect.shown(active.values, readings, at)
+            readings = active.effect.apply_to_sensors(active.values, readings, at)
         return readings
 
-    def of(self, effect: Effect) -> Active:
+    def of(self, effect: Effect) -> ActiveEffect:
         """Effect with its values in this set, neutral where it is absent."""
         same = [active for active in self.effects if active.name == effect.name]
-        return same[0] if same else Active(effect, effect.neutral)
+        return same[0] if same else ActiveEffect(effect, effect.neutral)
 
-    def having(self, active: Active) -> 'Acting':
+    def having(self, active: ActiveEffect) -> 'EffectSet':
         """Effect set with one effect replaced by name, or added last."""
         names = [other.name for other in self.effects]
         if active.name not in names:
-            return Acting((*self.effects, active))
+            return EffectSet((*self.effects, active))
         place = names.index(active.name)
-        return Acting((*self.effects[:place], active, *self.effects[place + 1 :]))
+        return EffectSet((*self.effects[:place], active, *self.effects[place + 1 :]))
 
-    def without(self, names: Collection[str]) -> 'Acting':
+    def without(self, names: Collection[str]) -> 'EffectSet':
         """Effect set without the named effects."""
-        return Acting(tuple(active for active in self.effects if active.name not in names))
+        return EffectSet(tuple(active for active in self.effects if active.name not in names))
 
 
-NONE = Acting()
+NO_EFFECTS = EffectSet()
 
 
-def acting(gear: GearRecord) -> Acting:
+def effects_of(gear: GearRecord) -> EffectSet:
     """Effect set of a gear file.
 
     Raises
@@ -82,10 +82,10 @@ def acting(gear: GearRecord) -> Acting:
     GearError
         If there is no such effect, or a value is missing, of another effect or out of bounds.
     """
-    return Acting(tuple(_active(number, record) for number, record in enumerate(gear.effects)))
+    return EffectSet(tuple(_active(number, record) for number, record in enumerate(gear.effects)))
 
 
-def _active(number: int, record: EffectRecord) -> Active:
+def _active(number: int, record: EffectRecord) -> ActiveEffect:
     known: Mapping[str, Effect] = {**catalogue(), **dictionary()}
     key = f'effects.{number}'
     if record.name not in known:
@@ -106,4 +106,4 @@ def _active(number: int, record: EffectRecord) -> Active:
                 f'{parameter.low:g} to {parameter.high:g} {parameter.unit}'.rstrip()
             )
         values.append(value)
-    return Active(effect, np.array(values))
+    return ActiveEffect(effect, np.array(values))

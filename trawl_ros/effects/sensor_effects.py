@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.effects.base.effect import Readings, Situation
-from trawl_ros.effects.effect_set import Acting
+from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.model.water import Water
 from trawl_ros.records.samples import (
@@ -35,7 +35,7 @@ USUAL = np.array([500.0, 500.0, 2.0])
 """Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
 
 
-class Showing:
+class SensorEffects:
     """Converter of error-free samples into those of a gear with effects.
 
     Parameters
@@ -46,7 +46,7 @@ class Showing:
         Turns pressure into depth and back.
     """
 
-    def __init__(self, acting: Acting, water: Water) -> None:
+    def __init__(self, acting: EffectSet, water: Water) -> None:
         self._acting = acting
         self._water = water
         self._first: int | None = None
@@ -93,11 +93,11 @@ class Showing:
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
         """Readings of sensors; each depends on one observable, so that others need not be known."""
-        return self._acting.shown({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
+        return self._acting.apply_to_sensors({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
 
     def _instrument(self, true: np.ndarray, at: Situation) -> np.ndarray:
         """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
         shown = true
         for _ in range(ROUNDS):
-            shown = shown + true - self._acting.towed(shown, at)
+            shown = shown + true - self._acting.apply_to_inputs(shown, at)
         return shown

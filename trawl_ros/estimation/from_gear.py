@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.pipeline import Identification
@@ -39,7 +39,7 @@ def board_prior(gear: GearRecord) -> BoardPrior:
 
 def predictor_for(gear: GearRecord) -> Predictor:
     """Predictor of a gear with the effects its file switches on."""
-    return Predictor(build_model(gear), acting(gear))
+    return Predictor(build_model(gear), effects_of(gear))
 
 
 def finder_for(gear: GearRecord, options: WindowOptions | None = None) -> SteadyWindowFinder:

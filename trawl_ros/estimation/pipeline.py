@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.prediction import Predictor
+from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.screening import Screening
-from trawl_ros.estimation.window_gate import Guard
+from trawl_ros.estimation.window_gate import WindowGate
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import (
     REASONS,
@@ -57,7 +57,7 @@ class Identification:
 
     def __init__(
         self,
-        predictor: Predictor,
+        predictor: SteadyPredictor,
         prior: BoardPrior,
         observables: Sequence[str],
         pressure_to_depth: Callable[[float], float],
@@ -67,7 +67,7 @@ class Identification:
         self.window_options = window_options or WindowOptions()
         self.finder = SteadyWindowFinder(pressure_to_depth, self.window_options)
         self.estimator = Estimator(predictor, prior, observables, estimator_options)
-        self.guard = Guard(Screening(predictor, prior, observables))
+        self.guard = WindowGate(Screening(predictor, prior, observables))
         self.course: list[WindowUsed] = []
 
     def reset(self) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.fit.prediction import Prediction, Predictor
+from trawl_ros.estimation.fit.prediction import SteadyPrediction, SteadyPredictor
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.windows.operation import Unheld
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -38,7 +38,7 @@ IMPLAUSIBLE = 300.0
 
 
 @dataclass(frozen=True)
-class Judgement:
+class ScreeningResult:
     """Judgement: channels to leave out and why, or the window ``refused``; None when sound."""
 
     found: Unheld | None = None
@@ -55,7 +55,9 @@ class Screening:
         The model, the spread of its coefficients, and the names of what it predicts.
     """
 
-    def __init__(self, predictor: Predictor, prior: BoardPrior, observables: Sequence[str]) -> None:
+    def __init__(
+        self, predictor: SteadyPredictor, prior: BoardPrior, observables: Sequence[str]
+    ) -> None:
         self._predictor = predictor
         self._prior = prior
         self._observables = tuple(observables)
@@ -65,7 +67,7 @@ class Screening:
         """Reset to no windows."""
         self._start: Any = None
         self._state: int | None = None
-        self._judgement = Judgement()
+        self._judgement = ScreeningResult()
         self._tow: int | None = None
         self._unit: Misreading | None = None
 
@@ -74,7 +76,7 @@ class Screening:
         """Newest steady state found, as a start for nearby ones; None before any."""
         return self._start
 
-    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Judgement:
+    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> ScreeningResult:
         """Judge a window around the present coefficients (12,); once for each steady state.
 
         A unit that was found wrong stays so through the tow, unless a window says otherwise.
@@ -86,37 +88,37 @@ class Screening:
             self._state = window.state
         return self._judgement
 
-    def _judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Judgement:
+    def _judge(self, window: SteadyWindow, coefficients: np.ndarray) -> ScreeningResult:
         distance = self._distance(window, coefficients)
         stated = distance(window.means)
         known = self._unit
         if known is not None and distance(known.repaired(window.means)) < stated:
             return _unit_judgement(known, window)
         if stated <= SUSPICIOUS:
-            return Judgement()
+            return ScreeningResult()
         if units := _explanations(window.means, distance):
             self._unit = units[0]
             return _unit_judgement(units[0], window, units[1:])
         if not IMPLAUSIBLE < stated < np.inf:
-            return Judgement()
+            return ScreeningResult()
         for channels in (('vertical_opening',), PITCHES, ROLLS, (*PITCHES, *ROLLS)):
             rest = {name: mean for name, mean in window.means.items() if name not in channels}
             if len(rest) < len(window.means) and distance(rest) <= SUSPICIOUS:
                 names = ' and '.join(channels)
                 found = Unheld('implausible', f'{names} contradict all other channels')
-                return Judgement(found, channels)
+                return ScreeningResult(found, channels)
         found = Unheld(
             'implausible',
             f'the channels contradict each other: whatever the board may be, they lie '
             f'{stated**0.5:.0f} standard deviations from what the model expects',
         )
-        return Judgement(found, refused=True)
+        return ScreeningResult(found, refused=True)
 
     def _distance(
         self, window: SteadyWindow, coefficients: np.ndarray
     ) -> Callable[[Mapping[str, float]], float]:
         """Return the squared Mahalanobis distance of means from the model as a function."""
-        solved: dict[tuple[float, float, float], Prediction | None] = {}
+        solved: dict[tuple[float, float, float], SteadyPrediction | None] = {}
 
         def distance(means: Mapping[str, float]) -> float:
             inputs = means['port_length'], means['starboard_length'], means['speed']
@@ -128,7 +130,7 @@ class Screening:
         return distance
 
     def _compare(
-        self, prediction: Prediction, window: SteadyWindow, means: Mapping[str, float]
+        self, prediction: SteadyPrediction, window: SteadyWindow, means: Mapping[str, float]
     ) -> float:
         names = [name for name in MEASURED if name in means and name in self._observables]
         rows = [self._observables.index(name) for name in names]
@@ -149,7 +151,7 @@ class Screening:
 
     def _solve(
         self, inputs: tuple[float, float, float], coefficients: np.ndarray
-    ) -> Prediction | None:
+    ) -> SteadyPrediction | None:
         starts = [None] if self._start is None else [self._start, None]
         for start in starts:
             try:
@@ -176,13 +178,17 @@ def _explanations(
 
 def _unit_judgement(
     unit: Misreading, window: SteadyWindow, others: Sequence[Misreading] = ()
-) -> Judgement:
+) -> ScreeningResult:
     sentence = unit.sentence(window.means)
     rivals = [other for other in others if not set(other.channels) & set(unit.channels)]
     if rivals:
         sentence += f' (or {" and ".join(rivals[0].channels)} are in {rivals[0].unit})'
     found = Unheld('wrong unit', sentence)
-    return Judgement(found, unit.channels) if unit.optional else Judgement(found, refused=True)
+    return (
+        ScreeningResult(found, unit.channels)
+        if unit.optional
+        else ScreeningResult(found, refused=True)
+    )
 
 
 def without(window: SteadyWindow, channels: Sequence[str]) -> SteadyWindow:

@@ -11,7 +11,7 @@ from trawl_ros.estimation.windows.records import RejectedWindow, Rejections, Ste
 
 
 @dataclass(frozen=True)
-class Guarded:
+class GatedWindow:
     """Verdict of the gate: a window to be used, or None and the reason.
 
     ``near`` is a steady state to start from. ``withdraw``: what was found holds for the whole tow,
@@ -24,7 +24,7 @@ class Guarded:
     near: Any = None
 
 
-class Guard:
+class WindowGate:
     """Window gate: judges windows by all of their channels and by their tow.
 
     Parameters
@@ -43,21 +43,23 @@ class Guard:
         self._over_ground = OverGround()
         self._screening.reset()
 
-    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> Guarded:
+    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> GatedWindow:
         """Judge a window, by the model at the present coefficients (12,)."""
         over_ground = self._over_ground.judge(window.tow, window.track)
         if over_ground is not None:
             return self._refuse(window, 'speed over ground', over_ground, withdraw=True)
         judgement = self._screening.judge(window, coefficients)
         if judgement.found is None:
-            return Guarded(window, near=self._screening.near)
+            return GatedWindow(window, near=self._screening.near)
         reason, detail = judgement.found.reason, judgement.found.detail
         if judgement.refused:
             return self._refuse(window, reason, detail, withdraw=reason == 'wrong unit')
         self.rejections.add(reason, detail)
-        return Guarded(without(window, judgement.without), near=self._screening.near)
+        return GatedWindow(without(window, judgement.without), near=self._screening.near)
 
-    def _refuse(self, window: SteadyWindow, reason: str, detail: str, *, withdraw: bool) -> Guarded:
+    def _refuse(
+        self, window: SteadyWindow, reason: str, detail: str, *, withdraw: bool
+    ) -> GatedWindow:
         self.rejections.add(reason, detail)
         rejected = RejectedWindow(reason, window.start_ns, window.end_ns, detail)
-        return Guarded(None, rejected, withdraw)
+        return GatedWindow(None, rejected, withdraw)

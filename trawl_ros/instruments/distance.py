@@ -2,7 +2,7 @@
 
 import math
 
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import RangeParameters
 from trawl_ros.records.samples import RangeSample
 
@@ -17,7 +17,7 @@ def within(distance: float, low: float, high: float) -> float:
 class RangeInstrument(Instrument[float, RangeSample]):
     """Range sensor. Observes a distance (m) and reports it."""
 
-    def __init__(self, name: str, what: str, parameters: RangeParameters, draws: Draws) -> None:
+    def __init__(self, name: str, what: str, parameters: RangeParameters, draws: SeedPlan) -> None:
         super().__init__(name, parameters.timing(), {'distance': parameters.model()}, draws)
         self._what = what
         self._limits = parameters.min_range_m, parameters.max_range_m

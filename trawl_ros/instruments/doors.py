@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.instruments.distance import within
 from trawl_ros.instruments.errors.faults import Faulty
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import AttitudeParameters, DoorParameters, SpreadParameters
 from trawl_ros.instruments.pressure import PressureInstrument
 from trawl_ros.records.samples import AttitudeSample, RangeSample, Sample
@@ -48,7 +48,7 @@ def off_axis(doors: Doors) -> float:
 class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
     """Inclinometer of a door. Observes the door's orientation, a quaternion (4,)."""
 
-    def __init__(self, side: str, parameters: AttitudeParameters, draws: Draws) -> None:
+    def __init__(self, side: str, parameters: AttitudeParameters, draws: SeedPlan) -> None:
         errors = {'pitch': parameters.model(), 'roll': parameters.model()}
         super().__init__(f'door/{side}/attitude', parameters.timing(), errors, draws)
         self._side = side
@@ -72,7 +72,7 @@ class DoorSpread(Instrument[Doors, RangeSample]):
     """
 
     def __init__(
-        self, parameters: SpreadParameters, surroundings: Surroundings, draws: Draws
+        self, parameters: SpreadParameters, surroundings: Surroundings, draws: SeedPlan
     ) -> None:
         errors = {'distance': parameters.model()}
         super().__init__('door/spread', parameters.timing(), errors, draws)
@@ -99,7 +99,7 @@ class DoorInstruments:
     """Instruments of both doors; ``pressure`` and ``attitude`` in the order of `SIDES`."""
 
     def __init__(
-        self, parameters: DoorParameters, draws: Draws, *, surroundings: Surroundings
+        self, parameters: DoorParameters, draws: SeedPlan, *, surroundings: Surroundings
     ) -> None:
         self.pressure = tuple(
             PressureInstrument(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.instruments.distance import within
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
 from trawl_ros.instruments.sonar.schools import inside
 from trawl_ros.records.samples import RangeSample, Sample
@@ -55,7 +55,7 @@ class _Sounding(Instrument[Below, RangeSample]):
         parameters: RangeParameters,
         assumed_sound_speed: float,
         surroundings: Surroundings,
-        draws: Draws,
+        draws: SeedPlan,
     ) -> None:
         errors = {'distance': parameters.model()}
         super().__init__(f'vessel/echo_sounder/{what}', parameters.timing(), errors, draws)
@@ -98,7 +98,7 @@ class SchoolSounding(_Sounding):
         parameters: RangeParameters,
         assumed_sound_speed: float,
         surroundings: Surroundings,
-        draws: Draws,
+        draws: SeedPlan,
         *,
         half_angle: float,
     ) -> None:
@@ -123,7 +123,7 @@ class EchoSounder:
         parameters: EchoSounderParameters,
         draught: float,
         surroundings: Surroundings,
-        draws: Draws,
+        draws: SeedPlan,
     ) -> None:
         assumed = parameters.assumed_sound_speed_m_s
         self.depth = DepthSounding('depth', parameters.depth, assumed, surroundings, draws)

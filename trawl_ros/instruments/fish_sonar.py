@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.special import expit
 
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.errors.random_streams import generator
 from trawl_ros.instruments.parameters import FishSonarParameters
 from trawl_ros.instruments.sonar.absorption import absorption
@@ -43,7 +43,7 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         parameters: FishSonarParameters,
         draught: float,
         surroundings: Surroundings,
-        draws: Draws,
+        draws: SeedPlan,
     ) -> None:
         errors = {
             'range': parameters.range.model(),

@@ -1,6 +1,6 @@
 """Pressure sensors of doors and trawl sonar."""
 
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import PressureParameters
 from trawl_ros.records.samples import PressureSample
 from trawl_ros.records.surroundings import PressureAt
@@ -18,7 +18,7 @@ class PressureInstrument(Instrument[float, PressureSample]):
         place: str,
         parameters: PressureParameters,
         pressure_at: PressureAt,
-        draws: Draws,
+        draws: SeedPlan,
     ) -> None:
         super().__init__(name, parameters.timing(), {'pressure': parameters.model()}, draws)
         self._place = place

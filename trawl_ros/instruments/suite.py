@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from trawl_ros.instruments.doors import DoorInstruments
 from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
 from trawl_ros.instruments.errors.faults import FaultPanel, Faulty
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import InstrumentParameters
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.instruments.vessel import VesselInstruments
@@ -40,7 +40,7 @@ class InstrumentSuite:
         parameters: InstrumentParameters,
         *,
         surroundings: Surroundings,
-        draws: Draws,
+        draws: SeedPlan,
         faults: Sequence[PlannedFault] = (),
     ) -> None:
         self.winch = WinchInstruments(parameters.winch, draws)

@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument, within
 from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.errors.random_streams import generator
 from trawl_ros.instruments.errors.sampling import TOLERANCE
 from trawl_ros.instruments.parameters import (
@@ -20,7 +20,7 @@ from trawl_ros.instruments.pressure import PressureInstrument
 from trawl_ros.instruments.sonar.detection import first_echoes
 from trawl_ros.instruments.sonar.echoes import Ping
 from trawl_ros.instruments.sonar.reading import read_openings
-from trawl_ros.instruments.sonar.sweep import Luck, Sweep, image_of
+from trawl_ros.instruments.sonar.sweep import Sweep, SweepGenerators, image_of
 from trawl_ros.records.samples import (
     RangeSample,
     Sample,
@@ -53,7 +53,7 @@ class TrawlSonar(Instrument[Truth, Sweep]):
     """
 
     def __init__(
-        self, parameters: SweepParameters, surroundings: Surroundings, draws: Draws
+        self, parameters: SweepParameters, surroundings: Surroundings, draws: SeedPlan
     ) -> None:
         errors = {'gain': parameters.gain.model(), 'angle': parameters.angle.model()}
         super().__init__('sonar/image', parameters.timing(), errors, draws)
@@ -75,7 +75,7 @@ class TrawlSonar(Instrument[Truth, Sweep]):
         luck = (
             generator(self._seed, f'{self.name}/{kind}') for kind in ('fish', 'speckle', 'dead')
         )
-        self._luck = Luck(*luck)
+        self._luck = SweepGenerators(*luck)
         record = self._parameters
         freezes = BurstModel(record.freezes_per_hour, record.freeze_s)
         self._hangs = Bursts(freezes, generator(self._seed, f'{self.name}/freezes'))
@@ -158,7 +158,7 @@ class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
     when there is no new image. ``what`` is 'opening_height' or 'opening_width'.
     """
 
-    def __init__(self, what: str, parameters: OpeningParameters, draws: Draws) -> None:
+    def __init__(self, what: str, parameters: OpeningParameters, draws: SeedPlan) -> None:
         errors = {'distance': parameters.model()}
         super().__init__(f'sonar/{what}', parameters.timing(), errors, draws)
         self._what = what
@@ -177,7 +177,7 @@ class SonarBottom(RangeInstrument):
     """Sounder that looks down from the headrope. Observes the seabed below it (m)."""
 
     def __init__(
-        self, parameters: BottomParameters, surroundings: Surroundings, draws: Draws
+        self, parameters: BottomParameters, surroundings: Surroundings, draws: SeedPlan
     ) -> None:
         super().__init__('sonar/bottom', 'bottom', parameters, draws)
         self._assumed = parameters.assumed_sound_speed_m_s
@@ -196,7 +196,7 @@ class SonarInstruments:
     """Instruments of the trawl sonar."""
 
     def __init__(
-        self, parameters: SonarParameters, draws: Draws, *, surroundings: Surroundings
+        self, parameters: SonarParameters, draws: SeedPlan, *, surroundings: Surroundings
     ) -> None:
         self.pressure = PressureInstrument(
             'sonar/pressure', 'sonar', parameters.pressure, surroundings.pressure_at, draws

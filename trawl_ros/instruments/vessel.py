@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.core.geodesy import Datum, to_latitude_longitude
 from trawl_ros.instruments.echo_sounder import EchoSounder
 from trawl_ros.instruments.errors.faults import Faulty
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.fish_sonar import FishSonar
 from trawl_ros.instruments.parameters import (
     FixParameters,
@@ -26,7 +26,7 @@ Moving = tuple[np.ndarray, float]
 class _Velocity(Instrument[Moving, VelocitySample]):
     """Velocity sensor of two horizontal components; the vertical one is reported as 0."""
 
-    def __init__(self, over: str, parameters: VelocityParameters, draws: Draws) -> None:
+    def __init__(self, over: str, parameters: VelocityParameters, draws: SeedPlan) -> None:
         speed = parameters.velocity.model()
         errors = {'x': speed, 'y': speed, 'yaw_rate': parameters.yaw_rate.model()}
         super().__init__(f'vessel/velocity_{over}', parameters.timing(), errors, draws)
@@ -48,21 +48,21 @@ class _Velocity(Instrument[Moving, VelocitySample]):
 class SpeedLog(_Velocity):
     """Two-axis speed log with a rate-of-turn indicator. Observes velocity through the water."""
 
-    def __init__(self, parameters: VelocityParameters, draws: Draws) -> None:
+    def __init__(self, parameters: VelocityParameters, draws: SeedPlan) -> None:
         super().__init__('water', parameters, draws)
 
 
 class GpsVelocity(_Velocity):
     """GPS velocity over ground with the rate of turn. Observes velocity in ``map``, `Moving`."""
 
-    def __init__(self, parameters: VelocityParameters, draws: Draws) -> None:
+    def __init__(self, parameters: VelocityParameters, draws: SeedPlan) -> None:
         super().__init__('ground', parameters, draws)
 
 
 class GpsFix(Instrument[np.ndarray, FixSample]):
     """GPS position on Earth. Observes the ship's position (3,) in ``map``."""
 
-    def __init__(self, parameters: FixParameters, datum: Datum, draws: Draws) -> None:
+    def __init__(self, parameters: FixParameters, datum: Datum, draws: SeedPlan) -> None:
         errors = {'east': parameters.model(), 'north': parameters.model()}
         super().__init__('vessel/fix', parameters.timing(), errors, draws)
         self._datum = datum
@@ -82,7 +82,7 @@ class GpsFix(Instrument[np.ndarray, FixSample]):
 class Heading(Instrument[float, HeadingSample]):
     """Compass. Observes the heading as ENU yaw (rad) and reports it within ±π."""
 
-    def __init__(self, parameters: HeadingParameters, draws: Draws) -> None:
+    def __init__(self, parameters: HeadingParameters, draws: SeedPlan) -> None:
         super().__init__(
             'vessel/heading', parameters.timing(), {'heading': parameters.model()}, draws
         )
@@ -98,7 +98,7 @@ class VesselInstruments:
     """Instruments of the ship herself, but for her winches."""
 
     def __init__(
-        self, parameters: VesselParameters, draws: Draws, *, surroundings: Surroundings
+        self, parameters: VesselParameters, draws: SeedPlan, *, surroundings: Surroundings
     ) -> None:
         datum = Datum(parameters.datum_lat_deg, parameters.datum_lon_deg)
         self.velocity_water = SpeedLog(parameters.velocity_water, draws)

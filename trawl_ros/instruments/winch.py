@@ -2,7 +2,7 @@
 
 import math
 
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import WinchParameters
 from trawl_ros.records.samples import Sample, WinchSample
 from trawl_ros.records.truth import SIDES, Truth, WinchTruth
@@ -56,7 +56,7 @@ class LoadCell:
 class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
     """Instrument of both winches, port first, reported in one sample."""
 
-    def __init__(self, parameters: WinchParameters, draws: Draws) -> None:
+    def __init__(self, parameters: WinchParameters, draws: SeedPlan) -> None:
         quantities = {
             'length': parameters.length,
             'speed': parameters.speed,
@@ -106,7 +106,7 @@ class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
 class WinchInstruments:
     """Instruments of the winches."""
 
-    def __init__(self, parameters: WinchParameters, draws: Draws) -> None:
+    def __init__(self, parameters: WinchParameters, draws: SeedPlan) -> None:
         self.winch = WinchInstrument(parameters, draws)
         self.instruments = (self.winch,)
 

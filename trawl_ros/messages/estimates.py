@@ -23,7 +23,7 @@ INNOVATION = 'identification/innovation'
 
 
 @dataclass(frozen=True)
-class Innovation:
+class ChannelInnovation:
     """Innovation of a channel: measured minus predicted, its standard deviation, and test ratio.
 
     ``innovation`` and ``std`` are in the channel's unit; a ratio below 0.5 is normal, above
@@ -47,7 +47,7 @@ def covariance_message(matrix: np.ndarray) -> TopicMessage:
     return COVARIANCE, _array(np.asarray(matrix, dtype=float), (size, size))
 
 
-def innovation_message(stamp: int, innovations: Sequence[Innovation]) -> TopicMessage:
+def innovation_message(stamp: int, innovations: Sequence[ChannelInnovation]) -> TopicMessage:
     """Turn the innovations of one window into a message stamped with it (ns)."""
     columns = (
         [float(getattr(item, field)) for item in innovations]
@@ -83,7 +83,7 @@ def read_covariance(message: Any) -> np.ndarray:
     return _values(COVARIANCE, message, (size, size))
 
 
-def read_innovations(message: Any) -> tuple[Innovation, ...]:
+def read_innovations(message: Any) -> tuple[ChannelInnovation, ...]:
     """Read the innovations of one window.
 
     Raises
@@ -92,7 +92,9 @@ def read_innovations(message: Any) -> tuple[Innovation, ...]:
         If channels repeat or the fields differ in length.
     """
     columns = [joint_column(INNOVATION, message, f) for f in ('position', 'velocity', 'effort')]
-    return tuple(Innovation(name, *(column[name] for column in columns)) for name in message.name)
+    return tuple(
+        ChannelInnovation(name, *(column[name] for column in columns)) for name in message.name
+    )
 
 
 def _array(values: np.ndarray, shape: tuple[int, ...]) -> ros.std_msgs__msg__Float64MultiArray:

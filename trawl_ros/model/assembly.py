@@ -1,4 +1,4 @@
-"""One assembly of all forces on the gear, with its exact Jacobian and its mass matrix.
+"""Assembly of all forces on the gear, with its exact Jacobian and its mass matrix.
 
 `forces` is the whole right-hand side of eq. 15, 25 and 29 as a function of state, towing
 boundary and parameters; it accepts complex arguments. `linearised` gives the same
@@ -182,7 +182,7 @@ def bar_tensions(model: GearModel, state: State, tow: Tow) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Linearised:
+class LinearisedForces:
     """Forces (dof,), K = -∂F/∂q and C = -∂F/∂v as data on the model's pattern."""
 
     force: np.ndarray
@@ -190,7 +190,7 @@ class Linearised:
     damping: np.ndarray
 
 
-def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
+def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
     """Forces with their exact derivatives at one state."""
     points = points_of(model, state, tow)
     motion = motion_of(model, points, tow)
@@ -226,7 +226,7 @@ def linearised(model: GearModel, state: State, tow: Tow) -> Linearised:
     np.add.at(total, held.nodes, outer(held.shares, kite_force))
     ropes = total[n : n + 6].reshape(2, 3, 3)
     boards = body_force + np.concatenate([ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1)
-    return Linearised(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
+    return LinearisedForces(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
 
 
 @compiled

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from trawl_ros.model.hooks import Bend
+from trawl_ros.model.hooks import CoefficientModifier
 from trawl_ros.model.numerics import about_axis, angle, cross, dot, length, transpose
 from trawl_ros.model.water import Water
 
@@ -80,7 +80,7 @@ class Board:
     flow_axes: bool
     rotary_slope: float
     added_mass: np.ndarray
-    bend: Bend | None = None
+    bend: CoefficientModifier | None = None
 
     @cached_property
     def fastening_points(self) -> np.ndarray:

@@ -16,7 +16,7 @@ from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import Kite, KiteNodes
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.netting import NetMesh, build_net
-from trawl_ros.model.pattern import Pattern, build_pattern
+from trawl_ros.model.pattern import SparsityPattern, build_pattern
 from trawl_ros.model.water import Water
 
 OUTWARD = np.array([1.0, -1.0])
@@ -24,7 +24,7 @@ OUTWARD = np.array([1.0, -1.0])
 
 
 @dataclass(frozen=True)
-class Layout:
+class NodeLayout:
     """Node numbering: the nodes of warps, bridles, net, headrope, footrope and kite.
 
     ``warps`` and ``bridles`` are tuples of node arrays (warps from block to board, port and
@@ -66,10 +66,10 @@ class GearModel:
     lump_volume: np.ndarray
     lump_drag_area: np.ndarray
     lump_added: np.ndarray
-    layout: Layout
+    layout: NodeLayout
     first_guess: np.ndarray
     net_mesh: NetMesh
-    pattern: Pattern
+    pattern: SparsityPattern
     node_forces: tuple[NodeForce, ...] = ()
 
     @property
@@ -325,7 +325,7 @@ def build_model(gear: GearRecord) -> GearModel:
         lump_volume=lumps[1],
         lump_drag_area=lumps[2],
         lump_added=lumps[3],
-        layout=Layout(
+        layout=NodeLayout(
             warps=(warps[0], warps[1]),
             bridles=tuple(bridles),
             net=net,

@@ -13,7 +13,7 @@ LIFT = 1
 """Place of C_y^F among the coefficients that a board's law gives."""
 
 
-class Bend(Protocol):
+class CoefficientModifier(Protocol):
     """Coefficient modifier: changes the law of the boards (eq. 14)."""
 
     def __call__(

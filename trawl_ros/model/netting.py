@@ -19,7 +19,7 @@ import numpy as np
 
 from trawl_ros.gear.records import NettingRecord
 from trawl_ros.model.kite import KiteNodes
-from trawl_ros.model.netting_rows import Profile, Row, rows_of
+from trawl_ros.model.netting_rows import NettingRow, Profile, rows_of
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,8 @@ def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
     wing_rows = n // 12
     wing_row = net.body[0].front_circumference_m / (2 * n)
     wings = [
-        Row(k * wing_row, (k + 1) * wing_row, n, k % 2 == 1, False) for k in range(-wing_rows, 0)
+        NettingRow(k * wing_row, (k + 1) * wing_row, n, k % 2 == 1, False)
+        for k in range(-wing_rows, 0)
     ]
     index: dict[tuple[int, int], int] = {}
     positions: list[tuple[float, float, float]] = []
@@ -130,7 +131,7 @@ def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
 
 
 def _kite_nodes(
-    rows: tuple[Row, ...], index: dict[tuple[int, int], int], chord: float
+    rows: tuple[NettingRow, ...], index: dict[tuple[int, int], int], chord: float
 ) -> KiteNodes:
     """The headrope's centre, and a point ``chord`` (m, stretched) behind it between the nodes
     that lie along the top.
@@ -157,7 +158,7 @@ def _bar(a: int, b: int, rest: float, sums: dict[str, float], group: str) -> Net
     )
 
 
-def _behind(row: Row, j: int) -> tuple[int, ...]:
+def _behind(row: NettingRow, j: int) -> tuple[int, ...]:
     """Nodes of the back edge that the bars of node ``j`` of the front edge go to."""
     if row.joins:
         return (((j + 1) // 2) % row.columns,)

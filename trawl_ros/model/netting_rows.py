@@ -16,7 +16,7 @@ LEAST_ROWS = 3
 
 
 @dataclass(frozen=True)
-class Row:
+class NettingRow:
     """A row of bars over the stretched distances ``front`` to ``back`` (m) from the mouth.
 
     ``around`` nodes are on its front edge, those of an odd edge (``odd``) half a pitch further
@@ -98,7 +98,7 @@ class Profile:
         return total
 
 
-def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tuple[Row, ...]:
+def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tuple[NettingRow, ...]:
     """Rows as long as makes ``around`` meshes as wide as the real ones, as many as fit into the
     body.
 
@@ -116,7 +116,7 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
     GearError
         If they have more nodes than `GEAR_NODES` allows, or there are too few to carry a kite.
     """
-    rows: list[Row] = []
+    rows: list[NettingRow] = []
     x, odd, pending, nodes = 0.0, False, list(halved_at), 0
     while True:
         _, circumference = profile.at(x)
@@ -132,7 +132,7 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
                 f'{GEAR_NODES}, expected fewer meshes around or less netting'
             )
         joins = bool(pending) and circumference <= pending[0] and odd and around % 2 == 0
-        rows.append(Row(x, end, around, odd, joins))
+        rows.append(NettingRow(x, end, around, odd, joins))
         x, odd = end, not odd
         if joins:
             around, odd = around // 2, False

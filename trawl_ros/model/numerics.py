@@ -1,4 +1,4 @@
-"""Small mathematics shared by the physics, all of it safe under a complex step.
+"""Mathematics shared by the physics, all of it safe under a complex step.
 
 A complex step differentiates a function to rounding: f'(x) = Im f(x + i h) / h. It needs
 every operation to be analytic, which numpy's ``abs``, ``norm`` and ``arctan2`` are not.

@@ -9,7 +9,7 @@ from trawl_ros.model.compiled import compiled
 
 
 @dataclass(frozen=True, eq=False)
-class Pattern:
+class SparsityPattern:
     """Sparsity pattern: slots of the blocks of bars, boards, nodes and kite in a (dof, dof) matrix.
 
     ``plain``, ``hung`` and ``rigged`` are the numbers of the bars between two nodes, from a
@@ -56,7 +56,7 @@ def _add(values: np.ndarray, slots: np.ndarray, data: np.ndarray) -> None:
         data[slots[k]] += values[k]
 
 
-def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> Pattern:
+def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> SparsityPattern:
     """The pattern of a gear with ``nodes`` free nodes bars between the points ``ends``
     and a kite held at the three nodes ``kite``.
     """
@@ -81,7 +81,7 @@ def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> Pattern:
     cols = np.concatenate([np.tile(g, (1, g.shape[1])).ravel() for g in groups])
     slots, slot = np.unique(cols.astype(np.int64) * dof + rows, return_inverse=True)
     counts = np.bincount(slots // dof, minlength=dof)
-    return Pattern(
+    return SparsityPattern(
         dof=dof,
         plain=plain,
         hung=hung,

@@ -20,7 +20,7 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.messages.commands import VESSEL_COMMAND, vessel_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Number, ParameterError, Parameters, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
@@ -108,7 +108,7 @@ class AutopilotNode(TrawlNode):
         self._datum = Datum(datum['datum_lat'], datum['datum_lon'])
         self._begin()
         self.advertise(VESSEL_COMMAND)
-        self._progress = Progress(self, idle=lambda: True)
+        self._progress = ConsumerProgress(self, idle=lambda: True)
         for topic in SENSORS:
             self._listen_to(topic)
         self.every(1.0, self._watch)

@@ -11,7 +11,7 @@ from trawl_ros.core.errors import MessageError
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.commands import WINCH_COMMAND, winch_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
@@ -67,7 +67,7 @@ class AutotrawlNode(TrawlNode):
         self._heard_at = time.monotonic()
         self._found = (math.nan, math.nan)
         self.advertise(WINCH_COMMAND)
-        self._progress = Progress(self, idle=lambda: True)
+        self._progress = ConsumerProgress(self, idle=lambda: True)
         self.listen(WINCH, self._take, CONSUMER, settled=True)
 
     def parameter_changed(self, name: str) -> None:

@@ -16,7 +16,7 @@ from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.nodes.playback.recorded_qos import matching, profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
-from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
@@ -88,7 +88,7 @@ class BagRecorder(TrawlNode):
             max_file_bytes=self.parameters['max_bag_size'],
             max_file_ns=round(self.parameters['max_bag_duration'] * SECOND),
         )
-        self._progress = Progress(self)
+        self._progress = ConsumerProgress(self)
         # What paces the progress: truth comes at every instant, markers now and then.
         self._pacing = {
             absolute(topic.name, namespace): topic.name for topic in TRUTH if topic.rate != 1.0

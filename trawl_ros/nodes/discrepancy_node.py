@@ -17,7 +17,7 @@ from trawl_ros.estimation.windows.records import RejectedWindow, SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
@@ -66,7 +66,7 @@ class DiscrepancyNode(TrawlNode):
         self._rewinding = Rewinding()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._told)
-        self._progress = Progress(self, idle=lambda: self._watching.idle)
+        self._progress = ConsumerProgress(self, idle=lambda: self._watching.idle)
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
         # Alone in its group: samples still come in while the service waits for a diagnosis.

@@ -10,7 +10,7 @@ from std_srvs.srv import Trigger
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder, packaged
-from trawl_ros.estimation.checkpoint.file import load_state, save_state
+from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.from_gear import estimator_options, identification_for, predictor_for
 from trawl_ros.estimation.pipeline import Identification
@@ -28,7 +28,7 @@ from trawl_ros.messages.estimates import (
     innovation_message,
 )
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.nodes.runtime.credit import Progress
+from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
@@ -41,7 +41,7 @@ from trawl_ros.nodes.workers.estimate_status import (
     innovations_of,
 )
 from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
-from trawl_ros.nodes.workers.outcome import Outcome
+from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.scenario.scenario import true_coefficients
@@ -92,7 +92,7 @@ class IdentificationNode(TrawlNode):
         identification = self._identification()
         for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
             self.advertise(topic)
-        self._progress = Progress(self, idle=lambda: self._worker.idle)
+        self._progress = ConsumerProgress(self, idle=lambda: self._worker.idle)
         self._resets = 0
         self._rewinding = Rewinding(identification.finder.newest('port_length'))
         self._sent: Estimate | None = None
@@ -129,7 +129,7 @@ class IdentificationNode(TrawlNode):
         )
         if self._state is None or not self._state.exists():
             return fresh
-        found = load_state(self._state, fresh, self._gear)
+        found = load_checkpoint(self._state, fresh, self._gear)
         self.get_logger().info(
             f'{self._state}: goes on after {len(found.estimator.windows)} windows'
         )
@@ -149,7 +149,7 @@ class IdentificationNode(TrawlNode):
         }
         return [self._about_estimate(outcome, values), *self._about_state(outcome)]
 
-    def _about_estimate(self, outcome: Outcome, values: dict[str, str]) -> Status:
+    def _about_estimate(self, outcome: EstimatorOutcome, values: dict[str, str]) -> Status:
         level, message = OK, 'estimating'
         if outcome.finished is not None:
             level, message = ERROR if outcome.failed else OK, outcome.finished
@@ -159,7 +159,7 @@ class IdentificationNode(TrawlNode):
             level, message = WARN, outcome.why_not
         return Status('estimate', level, message, values)
 
-    def _about_state(self, outcome: Outcome) -> list[Status]:
+    def _about_state(self, outcome: EstimatorOutcome) -> list[Status]:
         if self._state is None:
             return []
         trouble = outcome.troubles.get('saving')
@@ -193,7 +193,7 @@ class IdentificationNode(TrawlNode):
 
     def _save(self, identification: Identification) -> None:
         if self._state is not None:
-            save_state(self._state, identification, self._gear)
+            save_checkpoint(self._state, identification, self._gear)
 
     def _report(self, identification: Identification) -> str:
         found = identification.estimate
@@ -204,7 +204,7 @@ class IdentificationNode(TrawlNode):
         write_report(report(identification, self._truth, gear=self._gear), self._folder)
         return f'{self._folder}: identification.json of {found.windows} windows'
 
-    def _publish(self, outcome: Outcome) -> None:
+    def _publish(self, outcome: EstimatorOutcome) -> None:
         estimate = outcome.estimate
         new = estimate is not self._sent
         if estimate is not None and new:
@@ -222,7 +222,7 @@ class IdentificationNode(TrawlNode):
         if str(before) != str(self._advice):
             self._say_status(self._worker.outcome)
 
-    def _say_status(self, outcome: Outcome) -> None:
+    def _say_status(self, outcome: EstimatorOutcome) -> None:
         # Both threads come here, and of two statuses the newer one has to go out last.
         with self._telling:
             statuses = identification_statuses(outcome)
@@ -239,7 +239,7 @@ class IdentificationNode(TrawlNode):
         self._tell(wish.outcome)
         return response
 
-    def _tell(self, outcome: Outcome) -> None:
+    def _tell(self, outcome: EstimatorOutcome) -> None:
         if outcome.finished is not None:
             log = self.get_logger()
             (log.warning if outcome.failed else log.info)(outcome.finished)

@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 from trawl_ros.core.errors import InstrumentError, MessageError
 from trawl_ros.core.files import packaged
 from trawl_ros.core.limits import TRUTH
-from trawl_ros.effects.effect_set import acting
-from trawl_ros.effects.sensor_effects import Showing
+from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.effects.sensor_effects import SensorEffects
 from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
 from trawl_ros.instruments.errors.faults import FaultPanel, Faulty
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
 from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
@@ -22,7 +22,7 @@ from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.gear_model import build_water
-from trawl_ros.nodes.runtime.credit import Consumers, Progress
+from trawl_ros.nodes.runtime.credit import ConsumerProgress, Consumers
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
@@ -43,8 +43,8 @@ class Setup:
 
     parameters: InstrumentParameters
     surroundings: Surroundings
-    draws: Draws
-    showing: Showing
+    draws: SeedPlan
+    showing: SensorEffects
     faults: tuple[PlannedFault, ...] = ()
 
 
@@ -88,7 +88,7 @@ class InstrumentNode(TrawlNode, ABC):
         for topic in self.SAMPLES:
             self.advertise(topic)
         self.listen(FAULT_COMMAND, self._command_fault, STREAM)
-        self._progress = Progress(self, self._ready())
+        self._progress = ConsumerProgress(self, self._ready())
         for topic in self.TRUTH:
             self._look_at(topic)
 
@@ -161,7 +161,7 @@ class InstrumentNode(TrawlNode, ABC):
         seed = self.parameters['seed']
         if name := self.parameters['scenario']:
             scenario = load_scenario(packaged(Path(name), 'scenarios'))
-            draws = scenario.draws if seed < 0 else Draws(seed, scenario.state_changes_s)
+            draws = scenario.draws if seed < 0 else SeedPlan(seed, scenario.state_changes_s)
             return Setup(
                 scenario.instruments,
                 scenario.surroundings,
@@ -173,8 +173,8 @@ class InstrumentNode(TrawlNode, ABC):
         return Setup(
             load_instruments(self.parameters['instruments']),
             build_surroundings(gear),
-            Draws(max(seed, 0)),
-            Showing(acting(gear), build_water(gear)),
+            SeedPlan(max(seed, 0)),
+            SensorEffects(effects_of(gear), build_water(gear)),
         )
 
     def _look_at(self, topic: str) -> None:

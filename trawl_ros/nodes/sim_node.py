@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.files import packaged
 from trawl_ros.core.time import SECOND
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
@@ -25,7 +25,7 @@ from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
-from trawl_ros.nodes.towing import CommandedTow, Tow
+from trawl_ros.nodes.towing import CommandedTow, TowSetup
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -165,7 +165,7 @@ class SimNode(TrawlNode):
         name = self.parameters['scenario']
         return load_scenario(packaged(Path(name), 'scenarios')) if name else None
 
-    def _prepare(self) -> tuple[Tow, int]:
+    def _prepare(self) -> tuple[TowSetup, int]:
         """Prepare the tow, and the time (ns) from one truth to the next."""
         if self._scenario is not None:
             return Trial(self._scenario), round(SECOND / self._scenario.record.truth_rate_hz)
@@ -177,7 +177,7 @@ class SimNode(TrawlNode):
             Command(length, length, speed),
             heading=math.radians(self.parameters['heading_deg']),
             truth_rate_hz=rate,
-            acting=acting(gear),
+            acting=effects_of(gear),
         )
         return tow, round(SECOND / rate)
 

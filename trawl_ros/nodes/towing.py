@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from trawl_ros.core.errors import ScenarioError
-from trawl_ros.effects.effect_set import NONE, Acting
+from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -12,7 +12,7 @@ from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
 from trawl_ros.solver.stepper import StepFailed
 
 
-class Tow(Protocol):
+class TowSetup(Protocol):
     """Tow that `sim_node` advances."""
 
     simulation: Simulation
@@ -59,7 +59,7 @@ class CommandedTow:
         *,
         heading: float,
         truth_rate_hz: float,
-        acting: Acting = NONE,
+        acting: EffectSet = NO_EFFECTS,
     ) -> None:
         every = MAX_TRUTH_HZ / truth_rate_hz
         if abs(every - round(every)) > 1e-9 * every:

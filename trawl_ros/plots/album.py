@@ -18,7 +18,7 @@ from trawl_ros.plots.histories import history_figure, left_out
 from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments
 from trawl_ros.plots.page import PAGE, Picture, write_page
 from trawl_ros.plots.reading import read_tow
-from trawl_ros.plots.records import SonarPicture, Tow
+from trawl_ros.plots.records import SonarPicture, TowHistory
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.plots.sonar import sonar_figure
 from trawl_ros.plots.sweeps import read_sweeps
@@ -112,7 +112,7 @@ def plot(
     return DrawnTow(out / PAGE, tuple(album.pictures), tuple(album.notes), not interrupted)
 
 
-def _chosen(times: Sequence[float], tow: Tow) -> list[float]:
+def _chosen(times: Sequence[float], tow: TowHistory) -> list[float]:
     if len(times) > MOST_TIMES:
         raise TrawlError(f'found {len(times)} times, expected at most {MOST_TIMES}')
     for time in times:
@@ -127,7 +127,9 @@ def _chosen(times: Sequence[float], tow: Tow) -> list[float]:
 class Album:
     """Pictures of one tow as they are made, and what could not be drawn."""
 
-    def __init__(self, bag: Path, folder: Path, tow: Tow, gear: GearRecord, namespace: str) -> None:
+    def __init__(
+        self, bag: Path, folder: Path, tow: TowHistory, gear: GearRecord, namespace: str
+    ) -> None:
         self.pictures: list[Picture] = []
         self.notes = [*tow.problems, *left_out(tow)]
         self._bag, self._folder, self._tow = bag, folder, tow

@@ -10,7 +10,7 @@ from matplotlib.artist import Artist
 
 from trawl_ros.core.files import written
 from trawl_ros.plots import gear, sonar
-from trawl_ros.plots.records import GearShape, SonarPicture, Tow
+from trawl_ros.plots.records import GearShape, SonarPicture, TowHistory
 from trawl_ros.report import style
 
 MOST_FRAMES = 100
@@ -30,7 +30,7 @@ class Frame:
     picture: SonarPicture | None
 
 
-def frame_times(tow: Tow) -> list[float]:
+def frame_times(tow: TowHistory) -> list[float]:
     """Times (s) of the frames, even from the start to the end."""
     frames = int(np.clip(tow.duration_s / LEAST_APART_S + 1, 1, MOST_FRAMES))
     return [float(time) for time in np.linspace(0.0, tow.duration_s, frames)]

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
 
-from trawl_ros.plots.records import Series, Tow
+from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.records.truth import SIDES
 from trawl_ros.report import style
 
@@ -32,7 +32,7 @@ MANY = 1000
 
 @dataclass(frozen=True)
 class Curve:
-    """Curve: a quantity of `Tow` with its label and the colours of readings and truth."""
+    """Curve: a quantity of `TowHistory` with its label and the colours of readings and truth."""
 
     name: str
     label: str
@@ -86,7 +86,7 @@ PANELS = (
 )
 
 
-def drawn(tow: Tow) -> list[Panel]:
+def drawn(tow: TowHistory) -> list[Panel]:
     """Panels for which the bag holds anything."""
     return [
         panel
@@ -95,7 +95,7 @@ def drawn(tow: Tow) -> list[Panel]:
     ]
 
 
-def left_out(tow: Tow) -> list[str]:
+def left_out(tow: TowHistory) -> list[str]:
     """Sentence on all that is missing in the histories, none where nothing is."""
     sentences = []
     shown = drawn(tow)
@@ -119,7 +119,7 @@ def _plain(panel: Panel) -> str:
     return panel.label.partition(' /')[0].partition(',')[0]
 
 
-def history_figure(tow: Tow) -> Figure:
+def history_figure(tow: TowHistory) -> Figure:
     """Draw all panels of which the bag holds anything, over the same minutes."""
     panels = drawn(tow)
     rows = (len(panels) + 1) // 2
@@ -149,7 +149,7 @@ _GREY = '#666666'
 _SIDES = (Patch(color=style.PORT), Patch(color=style.STARBOARD))
 
 
-def _draw(axes: Axes, panel: Panel, tow: Tow, marks: dict[str, Line2D | Patch]) -> None:
+def _draw(axes: Axes, panel: Panel, tow: TowHistory, marks: dict[str, Line2D | Patch]) -> None:
     """Draw one panel, and put into ``marks`` what is seen of readings in it."""
     style.quiet(axes)
     truth, measured = (

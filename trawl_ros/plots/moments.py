@@ -9,7 +9,7 @@ import numpy as np
 
 from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.core.time import SECOND
-from trawl_ros.plots.records import Tow
+from trawl_ros.plots.records import TowHistory
 from trawl_ros.records.topics import absolute
 
 GEAR, MOUTH, POSE = 'truth/gear', 'truth/net/mouth', 'truth/sonar/pose'
@@ -27,7 +27,7 @@ class Moment:
 
 
 def read_moments(
-    path: Path, tow: Tow, times: Sequence[float], namespace: str, topics: Iterable[str]
+    path: Path, tow: TowHistory, times: Sequence[float], namespace: str, topics: Iterable[str]
 ) -> Iterator[Moment]:
     """Yield the messages nearest to each of the times (s, rising).
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from trawl_ros.core.files import write_text
 from trawl_ros.core.version import __version__
-from trawl_ros.plots.records import Tow
+from trawl_ros.plots.records import TowHistory
 from trawl_ros.report import style
 from trawl_ros.report.rendering import page
 
@@ -22,7 +22,9 @@ class Picture:
     section: str
 
 
-def write_page(folder: Path, tow: Tow, pictures: Sequence[Picture], notes: Sequence[str]) -> None:
+def write_page(
+    folder: Path, tow: TowHistory, pictures: Sequence[Picture], notes: Sequence[str]
+) -> None:
     """Write ``index.html`` into a folder that has the pictures."""
     sections: dict[str, list[Picture]] = {}
     for picture in pictures:

@@ -14,7 +14,7 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.messages.from_messages import to_sample, winch_truth
 from trawl_ros.messages.rotations import about_z, to_angles
 from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.plots.records import Series, Tow
+from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
@@ -122,7 +122,7 @@ MEASURED = (
 
 
 def sample_columns(sample: Sample, depth_at: Callable[[float], float]) -> Columns:
-    """Split a sample into the quantities of `Tow.measured`; depths come from pressures."""
+    """Split a sample into the quantities of `TowHistory.measured`; depths come from pressures."""
     match sample:
         case WinchSample():
             return _winch_columns(sample.lengths, sample.tensions)
@@ -172,7 +172,7 @@ class _Rows:
                 del rows[1::2]
 
 
-def read_tow(path: Path, depth_at: Callable[[float], float], namespace: str) -> Tow:
+def read_tow(path: Path, depth_at: Callable[[float], float], namespace: str) -> TowHistory:
     """Read the series for the figures of a bag.
 
     Parameters
@@ -221,7 +221,7 @@ def read_tow(path: Path, depth_at: Callable[[float], float], namespace: str) -> 
     ]
     stamps = [stamp for table in rows.values() for stamp in table.stamps]
     start, end = min(stamps), max(stamps)
-    return Tow(
+    return TowHistory(
         name=path.stem,
         start=start,
         duration_s=(end - start) / SECOND,

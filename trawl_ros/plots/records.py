@@ -37,7 +37,7 @@ class Series:
 
 
 @dataclass(frozen=True)
-class Tow:
+class TowHistory:
     """Series of a tow.
 
     Attributes

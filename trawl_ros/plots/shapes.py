@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, corners
-from trawl_ros.plots.records import SCHOOLS, GearShape, Strand, Tow
+from trawl_ros.plots.records import SCHOOLS, GearShape, Strand, TowHistory
 from trawl_ros.records.topics import VESSEL, WINCH_NAMES
 from trawl_ros.records.truth import SIDES
 from trawl_ros.report.style import NETTING, PORT, STARBOARD
@@ -28,7 +28,7 @@ READING_AWAY_S = 30.0
 """A reading is good for a picture that is not further away."""
 
 
-def gear_shape(moment: Moment, tow: Tow, gear: GearRecord) -> GearShape | None:
+def gear_shape(moment: Moment, tow: TowHistory, gear: GearRecord) -> GearShape | None:
     """Return the shape of the gear at a moment; None where the bag holds too little to draw it.
 
     ``gear`` gives what straight lines need: distance of the blocks, size of the doors, length
@@ -42,7 +42,7 @@ def gear_shape(moment: Moment, tow: Tow, gear: GearRecord) -> GearShape | None:
     return _from_readings(moment.time, tow, gear)
 
 
-def _from_markers(moment: Moment, tow: Tow) -> GearShape | None:
+def _from_markers(moment: Moment, tow: TowHistory) -> GearShape | None:
     strands = [strand for marker in moment.messages[GEAR].markers for strand in _strands_of(marker)]
     blocks = [strand.pieces[0, 0] for strand in strands if strand.name in WINCH_NAMES]
     if not blocks:
@@ -108,7 +108,7 @@ def _rings(marker: Any) -> np.ndarray:
     )
 
 
-def _true_door(tow: Tow, side: str, time: float) -> tuple[np.ndarray, np.ndarray] | None:
+def _true_door(tow: TowHistory, side: str, time: float) -> tuple[np.ndarray, np.ndarray] | None:
     """Position (3,) in ``map`` and axes (3, 3) of a door; its yaw is taken as the ship's."""
     names = [f'{side}_{axis}' for axis in 'xyz']
     if not all(name in tow.truth for name in names) or 'heading' not in tow.truth:
@@ -121,7 +121,10 @@ def _true_door(tow: Tow, side: str, time: float) -> tuple[np.ndarray, np.ndarray
 
 
 def _from_truth(
-    moment: Moment, tow: Tow, gear: GearRecord, doors: Sequence[tuple[np.ndarray, np.ndarray]]
+    moment: Moment,
+    tow: TowHistory,
+    gear: GearRecord,
+    doors: Sequence[tuple[np.ndarray, np.ndarray]],
 ) -> GearShape | None:
     ship = [tow.truth[name].at(moment.time) for name in ('east', 'north', 'heading')]
     if not all(math.isfinite(value) for value in ship):
@@ -147,7 +150,7 @@ def _from_truth(
     )
 
 
-def _from_readings(time: float, tow: Tow, gear: GearRecord) -> GearShape | None:
+def _from_readings(time: float, tow: TowHistory, gear: GearRecord) -> GearShape | None:
     def reading(name: str) -> float:
         series = tow.measured.get(name)
         return math.nan if series is None else series.near(time, READING_AWAY_S)

@@ -11,7 +11,7 @@ from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.point_clouds import read_point_cloud
 from trawl_ros.plots.moments import IMAGE, MOUTH, POSE, SCAN, SECTION, Moment, corners, read_moments
-from trawl_ros.plots.records import SonarPicture, Tow
+from trawl_ros.plots.records import SonarPicture, TowHistory
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
 Sweep = tuple[SonarImageSample, SonarScanSample]
@@ -21,7 +21,7 @@ READING_AWAY_S = 60.0
 
 
 def read_sweeps(
-    path: Path, tow: Tow, times: Sequence[float], namespace: str
+    path: Path, tow: TowHistory, times: Sequence[float], namespace: str
 ) -> tuple[list[SonarPicture | None], list[str]]:
     """Find the sweep that came in nearest to each of the times (s, rising).
 
@@ -57,7 +57,7 @@ def read_sweeps(
     return pictures, problems
 
 
-def sweep_of(moment: Moment, tow: Tow) -> Sweep | None:
+def sweep_of(moment: Moment, tow: TowHistory) -> Sweep | None:
     """Image with the scan that belongs to it; None without an image.
 
     Raises
@@ -82,7 +82,7 @@ def sweep_of(moment: Moment, tow: Tow) -> Sweep | None:
     return image, scan
 
 
-def _picture(sweep: Sweep, moment: Moment, tow: Tow) -> SonarPicture:
+def _picture(sweep: Sweep, moment: Moment, tow: TowHistory) -> SonarPicture:
     image, scan = sweep
     time = tow.time(image.stamp)
     height, width = (

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trawl_ros.core.geodesy import Datum, to_east_north
-from trawl_ros.plots.records import Series, Tow
+from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.report import style
 
 ARROWS = 9
@@ -18,7 +18,7 @@ LEAST_CURRENT = 0.03
 """m/s; less than this is not told from the noise of log and GPS."""
 
 
-def track_figure(tow: Tow) -> Figure | None:
+def track_figure(tow: TowHistory) -> Figure | None:
     """Draw the ship's track from above, north up; None where no position is in the bag."""
     fixes = fixes_on_map(tow)
     if 'east' not in tow.truth and fixes is None:
@@ -52,7 +52,7 @@ def track_figure(tow: Tow) -> Figure | None:
     return figure
 
 
-def fixes_on_map(tow: Tow) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+def fixes_on_map(tow: TowHistory) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Times (s), east and north (m) of the fixes; the first valid one lies where truth had it,
     or at the origin, for a bag does not say where ``map`` is on Earth.
     """
@@ -73,7 +73,7 @@ def fixes_on_map(tow: Tow) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     return times, east + origin[0], north + origin[1]
 
 
-def current(tow: Tow) -> tuple[Series, Series] | None:
+def current(tow: TowHistory) -> tuple[Series, Series] | None:
     """Current to the east and to the north (m/s): velocity over ground less that through water.
 
     From truth, or else as log, GPS and compass tell it; None where one of them is missing.
@@ -115,7 +115,9 @@ def _roomy(axes: Axes, east: np.ndarray, north: np.ndarray) -> None:
         limit(centre - room, centre + room)
 
 
-def _arrows(axes: Axes, tow: Tow, times: np.ndarray, east: np.ndarray, north: np.ndarray) -> None:
+def _arrows(
+    axes: Axes, tow: TowHistory, times: np.ndarray, east: np.ndarray, north: np.ndarray
+) -> None:
     moments = np.linspace(times[0], times[-1], ARROWS)
     places = np.interp(moments, times, east), np.interp(moments, times, north)
     heading = tow.best('heading')

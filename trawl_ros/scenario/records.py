@@ -21,7 +21,7 @@ MAX_TRUTH_HZ = 10.0
 """The simulation gives truth at this rate."""
 
 
-def _check_lengths(record: 'StartRecord | StepRecord', *, needed: bool) -> None:
+def _check_lengths(record: 'SteadyStartRecord | StepRecord', *, needed: bool) -> None:
     both = record.warp_length_m is not None
     sides = [record.port_warp_length_m, record.starboard_warp_length_m]
     given = sum(side is not None for side in sides)
@@ -37,7 +37,7 @@ def _check_lengths(record: 'StartRecord | StepRecord', *, needed: bool) -> None:
         )
 
 
-class StartRecord(Record):
+class SteadyStartRecord(Record):
     """The steady tow a trial starts from."""
 
     warp_length_m: Length | None = None
@@ -46,7 +46,7 @@ class StartRecord(Record):
     speed_m_s: Speed
 
     @model_validator(mode='after')
-    def _lengths(self) -> 'StartRecord':
+    def _lengths(self) -> 'SteadyStartRecord':
         _check_lengths(self, needed=True)
         return self
 
@@ -141,7 +141,7 @@ class ScenarioRecord(Record):
     faults: Annotated[tuple[FaultRecord, ...], Field(max_length=1000)] = ()
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     heading_deg: Annotated[float, Field(ge=-360, le=360)] = 0.0
-    start: StartRecord
+    start: SteadyStartRecord
     steps: Annotated[tuple[StepRecord, ...], Field(min_length=1, max_length=1000)]
     truth_rate_hz: Annotated[float, Field(ge=0.1, le=MAX_TRUTH_HZ)] = MAX_TRUTH_HZ
     record: Annotated[

@@ -11,12 +11,12 @@ import numpy as np
 
 from trawl_ros.core.errors import InstrumentError, ScenarioError, TrawlError
 from trawl_ros.core.schema import load_yaml, validated
-from trawl_ros.effects.effect_set import Acting, acting
-from trawl_ros.effects.sensor_effects import Showing
+from trawl_ros.effects.effect_set import EffectSet, effects_of
+from trawl_ros.effects.sensor_effects import SensorEffects
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.errors.fault_plan import PlannedFault
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import (
     InstrumentParameters,
     default_instruments_with,
@@ -27,7 +27,7 @@ from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_water
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.scenario.driving import NOBODY, AutotrawlRecord, SteerRecord
-from trawl_ros.scenario.records import ScenarioRecord, StartRecord, StepRecord
+from trawl_ros.scenario.records import ScenarioRecord, SteadyStartRecord, StepRecord
 from trawl_ros.scenario.sea import build_surroundings
 from trawl_ros.simulation.simulation import Command
 
@@ -113,9 +113,9 @@ class Scenario:
         return tuple(after[0] for before, after in pairwise(steps) if after[1:] != before[1:])
 
     @property
-    def draws(self) -> Draws:
+    def draws(self) -> SeedPlan:
         """Seed plan of the instruments: the seed, and the times of changes."""
-        return Draws(self.record.seed, self.state_changes_s)
+        return SeedPlan(self.record.seed, self.state_changes_s)
 
     @cached_property
     def surroundings(self) -> Surroundings:
@@ -123,13 +123,13 @@ class Scenario:
         return build_surroundings(self.plant)
 
     @cached_property
-    def acting(self) -> Acting:
+    def acting(self) -> EffectSet:
         """Effect set of the plant beyond the model."""
-        return acting(self.plant)
+        return effects_of(self.plant)
 
-    def showing(self) -> Showing:
+    def showing(self) -> SensorEffects:
         """Return the converter of samples for a plant with these effects."""
-        return Showing(self.acting, build_water(self.plant))
+        return SensorEffects(self.acting, build_water(self.plant))
 
     @property
     def faults(self) -> tuple[PlannedFault, ...]:
@@ -235,7 +235,7 @@ def _turn_rate(command: Command, step: StepRecord) -> float:
     return command.turn_rate if step.turn_deg_s is None else math.radians(step.turn_deg_s)
 
 
-def _lengths(record: StartRecord | StepRecord) -> tuple[float | None, float | None]:
+def _lengths(record: SteadyStartRecord | StepRecord) -> tuple[float | None, float | None]:
     if record.warp_length_m is not None:
         return record.warp_length_m, record.warp_length_m
     return record.port_warp_length_m, record.starboard_warp_length_m

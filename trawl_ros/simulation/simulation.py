@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.errors import ScenarioError
 from trawl_ros.effects.base.effect import Situation, sense
-from trawl_ros.effects.effect_set import NONE, Acting
+from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import Tow, halfway
 from trawl_ros.records.truth import GearPicture, Truth
@@ -97,7 +97,7 @@ class Simulation:
         stamp: int = 0,
         period: float = 0.1,
         sea: Sea = CALM,
-        acting: Acting = NONE,
+        acting: EffectSet = NO_EFFECTS,
     ) -> None:
         if command.turn_rate:
             raise ScenarioError(
@@ -203,7 +203,9 @@ class Simulation:
         if not self._acting:
             return command
         shown = (command.port_length, command.starboard_length, command.speed)
-        port, starboard, speed = map(float, self._acting.towed(np.array(shown), Situation(shown)))
+        port, starboard, speed = map(
+            float, self._acting.apply_to_inputs(np.array(shown), Situation(shown))
+        )
         return replace(command, port_length=port, starboard_length=starboard, speed=speed)
 
     def _gear_at(self, stamp: int, command: Command, heading: float) -> GearModel:

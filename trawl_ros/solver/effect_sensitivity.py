@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.effects.effect_set import Acting, Active
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
@@ -25,11 +25,11 @@ INPUT_STEP = 1e-4
 """And over this much of warp length (m) and speed (m/s)."""
 
 
-def shown_values(acting: Acting, values: np.ndarray, at: Situation) -> np.ndarray:
+def shown_values(acting: EffectSet, values: np.ndarray, at: Situation) -> np.ndarray:
     """Sensor readings (n_observables,) of observables: sensor effects applied."""
     if not acting:
         return values
-    readings = acting.shown(dict(zip(OBSERVABLES, map(float, values), strict=True)), at)
+    readings = acting.apply_to_sensors(dict(zip(OBSERVABLES, map(float, values), strict=True)), at)
     return np.array([readings[name] for name in OBSERVABLES])
 
 
@@ -37,7 +37,7 @@ def chained(
     model: GearModel,
     found: Equilibrium,
     jacobian: np.ndarray,
-    acting: Acting,
+    acting: EffectSet,
     inputs: np.ndarray,
     at: Situation,
 ) -> np.ndarray:
@@ -74,8 +74,8 @@ def by_effects(
     model: GearModel,
     found: Equilibrium,
     jacobian: np.ndarray,
-    acting: Acting,
-    wanted: Sequence[Active],
+    acting: EffectSet,
+    wanted: Sequence[ActiveEffect],
     inputs: np.ndarray,
     at: Situation,
 ) -> np.ndarray:
@@ -107,7 +107,7 @@ def by_effects(
             size = PART * parameter.std
             step = size * np.eye(len(active.values))[index]
             both = [
-                acting.having(Active(active.effect, active.values + sign * step))
+                acting.having(ActiveEffect(active.effect, active.values + sign * step))
                 for sign in (1.0, -1.0)
             ]
             rows.append(_slopes(model, found, 2.0 * size, [(one, inputs, at) for one in both]))
@@ -118,7 +118,7 @@ def _slopes(
     model: GearModel,
     found: Equilibrium,
     size: float,
-    both: Sequence[tuple[Acting, np.ndarray, Situation]],
+    both: Sequence[tuple[EffectSet, np.ndarray, Situation]],
 ) -> tuple[np.ndarray, ...]:
     """Slopes of forces (dof,), observables, true inputs (3,) and sensor readings, between two
     cases that are ``size`` apart, at a gear that stays where it is.
@@ -130,7 +130,7 @@ def _slopes(
             (
                 forces(gear, found.state, found.tow),
                 observe(gear, found.state, found.tow).array(),
-                there.towed(inputs, at),
+                there.apply_to_inputs(inputs, at),
                 shown_values(there, found.observables.array(), at),
             )
         )
@@ -141,7 +141,7 @@ def _carried(
     model: GearModel,
     found: Equilibrium,
     jacobian: np.ndarray,
-    acting: Acting,
+    acting: EffectSet,
     rows: Sequence[tuple[np.ndarray, ...]],
     at: Situation,
 ) -> np.ndarray:
@@ -162,7 +162,7 @@ def _carried(
     return sensor_slopes(acting, found, at)[:, None] * change + shown
 
 
-def sensor_slopes(acting: Acting, found: Equilibrium, at: Situation) -> np.ndarray:
+def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> np.ndarray:
     """Gain (n_observables,) of each sensor: slope of its reading over the observable."""
     values = found.observables.array()
     if not acting:

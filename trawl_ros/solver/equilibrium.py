@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.effects.base.effect import Situation, sense
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.model.board import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import Observables, highest_point, observe, outward_normal_lift
@@ -168,10 +168,10 @@ def steady_state(
         the range of its law.
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
-    effects = acting(model.gear)
+    effects = effects_of(model.gear)
     if effects:
         at = Situation((port, starboard, float(speed)), heading, sense(heading))
-        port, starboard, speed = effects.towed(np.array(at.inputs), at)
+        port, starboard, speed = effects.apply_to_inputs(np.array(at.inputs), at)
         model = effects.gear(model, at)
     point = OperatingPoint(float(port), float(starboard), float(speed), float(heading))
     return require_usable(model, find_equilibrium(model, point, start, near=near))

@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
-from trawl_ros.model.pattern import Pattern
+from trawl_ros.model.pattern import SparsityPattern
 
 PIVOT_THRESHOLD = 0.01
 """Least ratio of a diagonal pivot to the largest of its column with which it is kept. The
@@ -46,7 +46,7 @@ class _Elimination:
 
 
 @lru_cache(maxsize=16)
-def _elimination(pattern: Pattern) -> _Elimination:
+def _elimination(pattern: SparsityPattern) -> _Elimination:
     """Minimum-degree ordering; it depends on the pattern alone, so it is found once for a gear."""
     columns = np.repeat(np.arange(pattern.dof), np.diff(pattern.indptr))
     diagonal = pattern.indices == columns
@@ -70,7 +70,7 @@ def _ordered(matrix: sp.csc_matrix, ordering: str) -> SuperLU:
     )
 
 
-def factorised(pattern: Pattern, data: np.ndarray) -> Factor:
+def factorised(pattern: SparsityPattern, data: np.ndarray) -> Factor:
     """LU factors of the matrix of ``data`` on a gear's pattern.
 
     Raises
@@ -96,7 +96,7 @@ def factorised_part(matrix: sp.csc_matrix) -> SuperLU:
     return _ordered(matrix, 'MMD_AT_PLUS_A')
 
 
-def solve_refined(pattern: Pattern, data: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solve_refined(pattern: SparsityPattern, data: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solve once, to rounding: one step of refinement makes up for the weaker pivots."""
     factor = factorised(pattern, data)
     solution = factor.solve(right)

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Situation
-from trawl_ros.effects.effect_set import NONE, Acting, Active
+from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.effect_sensitivity import by_effects, chained, sensor_slopes, shown_values
@@ -38,7 +38,7 @@ class Prediction:
     state: Equilibrium
 
 
-class Towed(Protocol):
+class TowStretch(Protocol):
     """Covariates of a towing window that effects may depend on."""
 
     @property
@@ -80,7 +80,7 @@ class Predictor:
     """
 
     model: GearModel
-    fixed: Acting = NONE
+    fixed: EffectSet = NO_EFFECTS
     free: tuple[Effect, ...] = ()
     at: Situation = ANYWHERE
     without: frozenset[int] = frozenset()
@@ -90,22 +90,22 @@ class Predictor:
         default_factory=dict, init=False, repr=False, compare=False
     )
 
-    def acting(self, coefficients: np.ndarray) -> Acting:
+    def acting(self, coefficients: np.ndarray) -> EffectSet:
         """Effect set with the values behind the coefficients."""
         there = self.fixed.without(self.new) if self.absent else self.fixed
         place = len(COEFFICIENTS)
         for effect in self.free:
             number = len(effect.parameters)
             if not self.absent:
-                there = there.having(Active(effect, coefficients[place : place + number]))
+                there = there.having(ActiveEffect(effect, coefficients[place : place + number]))
             place += number
         return there
 
-    def in_window(self, window: Towed) -> 'Predictor':
+    def in_window(self, window: TowStretch) -> 'Predictor':
         """Predictor for a window of steady towing; itself where no effect depends on the window."""
         return self.situated(window) if self.fixed or self.free else self
 
-    def situated(self, window: Towed) -> 'Predictor':
+    def situated(self, window: TowStretch) -> 'Predictor':
         """Predictor in the situation of a window of steady towing."""
         at = Situation((0.0, 0.0, 0.0), sense=window.sense, hours=window.hours)
         return replace(self, at=at, absent=window.tow in self.without)
@@ -171,7 +171,7 @@ class Predictor:
         at, acting = self._situation(inputs), self.acting(coefficients)
         board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
         gear = acting.gear(board, at)
-        port, starboard, through = map(float, acting.towed(inputs, at))
+        port, starboard, through = map(float, acting.apply_to_inputs(inputs, at))
         point = OperatingPoint(port, starboard, through)
         found = find_equilibrium(gear, point, start, cold=start is None)
         values, jacobian = found.observables.array(), sensitivities(gear, found)
@@ -194,7 +194,7 @@ class Predictor:
         coefficients: np.ndarray,
         inputs: np.ndarray,
         found: Equilibrium,
-        wanted: Sequence[Active],
+        wanted: Sequence[ActiveEffect],
     ) -> np.ndarray:
         """Signatures of effects: changes of the readings (n_observables, m) per unit.
 

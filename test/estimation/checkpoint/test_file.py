@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.estimation.checkpoint import file
-from trawl_ros.estimation.checkpoint.file import StateError, load_state, save_state
+from trawl_ros.estimation.checkpoint.file import CheckpointError, load_checkpoint, save_checkpoint
 from trawl_ros.estimation.checkpoint.names import FIELDS, present
 from trawl_ros.estimation.checkpoint.packing import Packer, Unpacker
 from trawl_ros.estimation.from_gear import identification_for
@@ -47,7 +47,7 @@ def state(fresh, samples, gear, tmp_path):
     for sample in samples[: len(samples) // 2]:
         identification.feed(sample)
     assert identification.estimate.windows >= 2
-    save_state(tmp_path / 'state', identification, gear)
+    save_checkpoint(tmp_path / 'state', identification, gear)
     return tmp_path / 'state'
 
 
@@ -58,8 +58,8 @@ def test_it_goes_on_with_the_same_estimates(fresh, samples, gear, tmp_path, ever
     windows = 0
     for number, sample in enumerate(samples):
         if number % every == every - 1 and number > len(samples) // 3:
-            save_state(tmp_path / 'state', torn, gear)
-            torn = load_state(tmp_path / 'state', fresh(), gear)
+            save_checkpoint(tmp_path / 'state', torn, gear)
+            torn = load_checkpoint(tmp_path / 'state', fresh(), gear)
         expected, found = whole.feed(sample), torn.feed(sample)
         assert [type(event) for event in found] == [type(event) for event in expected]
         for one, other in zip(used(found), used(expected), strict=True):
@@ -93,8 +93,8 @@ def test_the_solver_goes_on_from_the_same_shapes(steady_tow, coarse_gear, tmp_pa
     for number, sample in enumerate(samples):
         if number == len(samples) // 2:
             assert torn.estimate is not None
-            save_state(tmp_path / 'state', torn, gear)
-            torn = load_state(tmp_path / 'state', build(), gear)
+            save_checkpoint(tmp_path / 'state', torn, gear)
+            torn = load_checkpoint(tmp_path / 'state', build(), gear)
         expected, found = used(whole.feed(sample)), used(torn.feed(sample))
         for one, other in zip(found, expected, strict=True):
             np.testing.assert_array_equal(one.estimate.values, other.estimate.values)
@@ -105,7 +105,7 @@ def test_the_solver_goes_on_from_the_same_shapes(steady_tow, coarse_gear, tmp_pa
 
 
 def test_one_that_was_resumed_can_be_reset(fresh, samples, state, gear):
-    resumed = load_state(state, fresh(), gear)
+    resumed = load_checkpoint(state, fresh(), gear)
     resumed.reset()
     assert resumed.estimate is None
     assert not resumed.rejected
@@ -117,7 +117,7 @@ def test_one_that_was_resumed_can_be_reset(fresh, samples, state, gear):
 
 
 def test_objects_that_share_something_share_it_afterwards(fresh, state, gear):
-    finder = load_state(state, fresh(), gear).finder
+    finder = load_checkpoint(state, fresh(), gear).finder
     before = dict(finder.rejected)
     buffer = finder._buffers['door_spread']
     buffer._rejections.counts['outlier'] += 1
@@ -126,32 +126,32 @@ def test_objects_that_share_something_share_it_afterwards(fresh, state, gear):
 
 def test_of_another_gear_or_other_settings_is_refused_by_name(fresh, state, gear):
     other = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 24})})
-    with pytest.raises(StateError, match=r'gear\.netting\.around \d+, expected 24'):
-        load_state(state, fresh(), other)
-    with pytest.raises(StateError, match=r'windows\.settle_s 60\.0, expected 90\.0'):
-        load_state(state, fresh(settle_s=90.0), gear)
+    with pytest.raises(CheckpointError, match=r'gear\.netting\.around \d+, expected 24'):
+        load_checkpoint(state, fresh(), other)
+    with pytest.raises(CheckpointError, match=r'windows\.settle_s 60\.0, expected 90\.0'):
+        load_checkpoint(state, fresh(settle_s=90.0), gear)
 
 
 @pytest.mark.parametrize(('name', 'value'), [('FORMAT', 2), ('__version__', '9.9')])
 def test_of_another_version_is_refused(fresh, state, gear, monkeypatch, name, value):
     monkeypatch.setattr(file, name, value)
-    with pytest.raises(StateError, match=f'expected format .*{value}'):
-        load_state(state, fresh(), gear)
+    with pytest.raises(CheckpointError, match=f'expected format .*{value}'):
+        load_checkpoint(state, fresh(), gear)
 
 
 def test_what_is_no_state_is_refused(fresh, gear, tmp_path):
     path = tmp_path / 'state'
-    with pytest.raises(StateError, match='cannot be read'):
-        load_state(path, fresh(), gear)
+    with pytest.raises(CheckpointError, match='cannot be read'):
+        load_checkpoint(path, fresh(), gear)
     for content in (b'', b'{}', b'PK\x03\x04 and no more'):
         path.write_bytes(content)
-        with pytest.raises(StateError, match='no undamaged state'):
-            load_state(path, fresh(), gear)
+        with pytest.raises(CheckpointError, match='no undamaged state'):
+            load_checkpoint(path, fresh(), gear)
 
 
 def test_a_damaged_file_is_refused_wherever_the_damage_is(fresh, state, gear):
     whole = state.read_bytes()
-    expected = load_state(state, fresh(), gear).estimate
+    expected = load_checkpoint(state, fresh(), gear).estimate
     refused = 0
     places = np.random.default_rng(0).integers(len(whole), size=60)
     headers = [*range(0, 60, 4), *range(len(whole) - 160, len(whole), 4)]
@@ -160,8 +160,8 @@ def test_a_damaged_file_is_refused_wherever_the_damage_is(fresh, state, gear):
         damaged[place] ^= 0x55
         state.write_bytes(damaged)
         try:
-            found = load_state(state, fresh(), gear)
-        except StateError:
+            found = load_checkpoint(state, fresh(), gear)
+        except CheckpointError:
             refused += 1
         else:
             # Dates and flags of the archive's entries are read by nobody.
@@ -169,8 +169,8 @@ def test_a_damaged_file_is_refused_wherever_the_damage_is(fresh, state, gear):
     assert refused > 50
     for share in (0.0, 0.3, 0.99):
         state.write_bytes(whole[: int(share * len(whole))])
-        with pytest.raises(StateError):
-            load_state(state, fresh(), gear)
+        with pytest.raises(CheckpointError):
+            load_checkpoint(state, fresh(), gear)
 
 
 def rewritten(state, change):
@@ -206,34 +206,34 @@ def test_a_file_builds_no_other_classes_and_takes_no_more_memory_than_it_is_long
     for change in (other_class, imported_class, other_attributes, huge, unknown):
         state.write_bytes(whole)
         rewritten(state, change)
-        with pytest.raises(StateError, match='of this version'):
-            load_state(state, fresh(), gear)
+        with pytest.raises(CheckpointError, match='of this version'):
+            load_checkpoint(state, fresh(), gear)
 
 
 def test_a_state_larger_than_allowed_is_neither_read_nor_written(fresh, state, gear, monkeypatch):
-    resumed = load_state(state, fresh(), gear)
+    resumed = load_checkpoint(state, fresh(), gear)
     before = state.read_bytes()
     monkeypatch.setattr(file, 'MAX_BYTES', 1000)
-    with pytest.raises(StateError, match='expected at most'):
-        load_state(state, fresh(), gear)
-    with pytest.raises(StateError, match='are not saved'):
-        save_state(state, resumed, gear)
+    with pytest.raises(CheckpointError, match='expected at most'):
+        load_checkpoint(state, fresh(), gear)
+    with pytest.raises(CheckpointError, match='are not saved'):
+        save_checkpoint(state, resumed, gear)
     assert state.read_bytes() == before
 
 
 def test_a_failed_write_leaves_the_state_before_it(fresh, state, gear, monkeypatch):
-    resumed = load_state(state, fresh(), gear)
+    resumed = load_checkpoint(state, fresh(), gear)
     before = state.read_bytes()
 
     def full(descriptor):
         raise OSError(28, 'No space left on device')
 
     monkeypatch.setattr(file.os, 'fsync', full)
-    with pytest.raises(StateError, match='No space left'):
-        save_state(state, resumed, gear)
+    with pytest.raises(CheckpointError, match='No space left'):
+        save_checkpoint(state, resumed, gear)
     assert state.read_bytes() == before
-    with pytest.raises(StateError, match='cannot be written'):
-        save_state(state.parent / 'nowhere' / 'state', resumed, gear)
+    with pytest.raises(CheckpointError, match='cannot be written'):
+        save_checkpoint(state.parent / 'nowhere' / 'state', resumed, gear)
 
 
 def test_what_is_no_data_is_named():
@@ -298,7 +298,7 @@ def test_a_file_of_0_1_0_is_read_by_the_names_that_classes_had(fresh, samples, s
         module, _, own = now.rpartition('.')
         assert isinstance(resolve_name(f'{module}:{own}'), type), name
         former[now] = f'trawl_ros.{name}'
-    expected = load_state(state, fresh(), gear)
+    expected = load_checkpoint(state, fresh(), gear)
     with zipfile.ZipFile(state) as archive:
         record, numbers = archive.read(file.JSON).decode(), archive.read(file.NUMBERS)
     for now, name in former.items():
@@ -310,7 +310,7 @@ def test_a_file_of_0_1_0_is_read_by_the_names_that_classes_had(fresh, samples, s
     with zipfile.ZipFile(state, 'w') as archive:
         archive.writestr(file.JSON, record)
         archive.writestr(file.NUMBERS, numbers)
-    found = load_state(state, fresh(), gear)
+    found = load_checkpoint(state, fresh(), gear)
     for sample in samples[len(samples) // 2 :]:
         for one, other in zip(used(found.feed(sample)), used(expected.feed(sample)), strict=True):
             same(one.estimate, other.estimate)

@@ -93,13 +93,13 @@ def test_intervals_are_widened_by_what_no_error_explains(sea, model, prior, exac
             replace(window, means={**window.means, 'speed': window.means['speed'] * wrong})
         )
     estimate = estimator.finish()
-    assert estimate.misfit > 1.3
-    np.testing.assert_allclose(estimate.std, estimate.misfit * estimator.fit.std)
+    assert estimate.birge_ratio > 1.3
+    np.testing.assert_allclose(estimate.std, estimate.birge_ratio * estimator.fit.std)
     np.testing.assert_allclose(np.diag(estimate.covariance), estimate.std**2)
     half = 0.5 * (estimate.high - estimate.low)
     assert np.all(half <= 3.0 * estimate.std)
     readings = len(estimator.fit.windows[0].channels) * len(exact)
-    assert estimate.misfit == pytest.approx(np.sqrt(2.0 * estimate.cost / readings))
+    assert estimate.birge_ratio == pytest.approx(np.sqrt(2.0 * estimate.cost / readings))
 
 
 def test_readings_that_are_as_stated_leave_no_misfit(sea, model, prior):
@@ -107,4 +107,4 @@ def test_readings_that_are_as_stated_leave_no_misfit(sea, model, prior):
     estimator = Estimator(model, prior, sea.OBSERVABLES, EstimatorOptions(unsettled=0.0))
     for window in windows:
         estimator.add(window)
-    assert estimator.finish().misfit < 1.1
+    assert estimator.finish().birge_ratio < 1.1

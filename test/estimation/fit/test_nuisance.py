@@ -84,8 +84,10 @@ def test_own_errors_and_their_shares_are_those_of_the_whole(fit, dense):
     known = inverse @ jacobian
     posterior = np.linalg.inv(jacobian.T @ known + np.eye(12))
     shares = own * np.diag(inverse - known @ posterior @ known.T)
-    np.testing.assert_allclose(fit.own_shares.reshape(-1)[there], shares, rtol=1e-6, atol=1e-9)
-    assert not fit.own_shares.reshape(-1)[~there].any()
+    np.testing.assert_allclose(
+        fit.redundancy_numbers.reshape(-1)[there], shares, rtol=1e-6, atol=1e-9
+    )
+    assert not fit.redundancy_numbers.reshape(-1)[~there].any()
 
 
 def test_a_wild_reading_loses_weight_and_its_neighbours_do_not(fit):
@@ -134,5 +136,5 @@ def test_errors_of_the_model_may_change_with_the_warps(fit):
         np.testing.assert_allclose(changing, constant * longer[:, None, None], rtol=0.02, atol=1e-4)
         assert np.ptp(longer) > 0.2
     # What may change is known less well.
-    before, after = (np.linalg.norm(one.knowledge.root, axis=1) for one in (fit, trend))
+    before, after = (np.linalg.norm(one.posterior.root, axis=1) for one in (fit, trend))
     assert np.all(after >= before * (1.0 - 1e-9))

@@ -72,8 +72,8 @@ def test_the_promise_is_what_the_fit_gives_when_the_windows_come(adviser, fit, p
         )
         come.append(solved)
     after = replace(fit, windows=(*fit.windows, *come))
-    fall = np.linalg.slogdet(fit.knowledge.covariance)[1]
-    fall -= np.linalg.slogdet(after.knowledge.covariance)[1]
+    fall = np.linalg.slogdet(fit.posterior.covariance)[1]
+    fall -= np.linalg.slogdet(after.posterior.covariance)[1]
     assert advice.nats == pytest.approx(0.5 * fall, rel=1e-9)
     assert advice.nats > 0.0
 
@@ -91,7 +91,7 @@ def test_no_other_manoeuvre_tells_more_per_minute(adviser, fit):
 def test_what_ranks_manoeuvres_is_what_the_fit_knows(fit):
     ours = covariance_from(information_in(fit), fit.prior)
     size = np.sqrt(np.outer(np.diag(ours), np.diag(ours)))
-    assert np.max(np.abs(ours - fit.knowledge.covariance) / size) < 1e-8
+    assert np.max(np.abs(ours - fit.posterior.covariance) / size) < 1e-8
 
 
 def test_adding_to_a_fit_is_adding_information(adviser, fit):
@@ -99,7 +99,7 @@ def test_adding_to_a_fit_is_adding_information(adviser, fit):
     parts = expected_windows(fit, found, 2)
     taught = information_of(parts, fit.prior, fit.options, fit.scales)
     ours = covariance_from(information_in(fit) + taught, fit.prior)
-    fits = replace(fit, windows=(*fit.windows, *parts)).knowledge.covariance
+    fits = replace(fit, windows=(*fit.windows, *parts)).posterior.covariance
     # Windows that agree with the fit change its weights a little, since its calibration moves.
     assert np.sqrt(np.diag(ours)) == pytest.approx(np.sqrt(np.diag(fits)), rel=0.05)
 

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.channel import Channel, ErrorModel
+from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
 
 N = 20_000
 
 
 def readings(errors: ErrorModel, *, seed: int = 5, name: str = 'a/b', n: int = N) -> np.ndarray:
-    channel = Channel(name, errors, seed)
+    channel = ErrorChannel(name, errors, seed)
     return np.array([channel.measure(100.0, k * SECOND) for k in range(n)])
 
 
 def test_without_errors_the_truth_is_reported() -> None:
-    assert Channel('a', ErrorModel(), 0).measure(math.pi, 0) == math.pi
+    assert ErrorChannel('a', ErrorModel(), 0).measure(math.pi, 0) == math.pi
 
 
 def test_white_noise_is_normal_unbiased_and_without_memory() -> None:
@@ -39,7 +39,7 @@ def test_correlated_noise_forgets_with_its_correlation_time(lag: int) -> None:
 
 def test_correlated_noise_is_stationary_from_the_first_reading() -> None:
     errors = ErrorModel(correlated_std=2.0, correlation_time=1000.0)
-    first = [Channel('a', errors, seed).measure(0.0, 0) for seed in range(2000)]
+    first = [ErrorChannel('a', errors, seed).measure(0.0, 0) for seed in range(2000)]
     assert np.std(first) == pytest.approx(2.0, rel=0.07)
 
 
@@ -47,14 +47,14 @@ def test_correlation_goes_by_time_and_not_by_the_number_of_samples() -> None:
     errors = ErrorModel(correlated_std=1.0, correlation_time=10.0)
     pairs = []
     for seed in range(3000):
-        channel = Channel('a', errors, seed)
+        channel = ErrorChannel('a', errors, seed)
         pairs.append([channel.measure(0.0, stamp * SECOND) for stamp in (0, 20)])
     assert np.corrcoef(np.transpose(pairs))[0, 1] == pytest.approx(math.exp(-2.0), abs=0.07)
 
 
 def test_a_bias_stays_within_a_state_and_is_drawn_anew_for_the_next() -> None:
     errors = ErrorModel(bias_std=3.0)
-    channel = Channel('a', errors, 1)
+    channel = ErrorChannel('a', errors, 1)
     biases = [[channel.measure(0.0, 0, state) for _ in range(3)] for state in range(2000)]
     assert np.ptp(biases, axis=1).max() == 0.0
     assert np.std([b[0] for b in biases]) == pytest.approx(3.0, rel=0.07)
@@ -62,13 +62,13 @@ def test_a_bias_stays_within_a_state_and_is_drawn_anew_for_the_next() -> None:
 
 def test_the_bias_of_a_state_does_not_depend_on_the_states_seen_before() -> None:
     errors = ErrorModel(bias_std=3.0)
-    all_of_them, late = Channel('a', errors, 1), Channel('a', errors, 1)
+    all_of_them, late = ErrorChannel('a', errors, 1), ErrorChannel('a', errors, 1)
     seen = [all_of_them.measure(0.0, 0, state) for state in range(5)]
     assert late.measure(0.0, 0, 4) == seen[4]
 
 
 def test_readings_are_multiples_of_the_resolution_nearest_to_the_truth() -> None:
-    channel = Channel('a', ErrorModel(resolution=0.1), 0)
+    channel = ErrorChannel('a', ErrorModel(resolution=0.1), 0)
     truth = np.linspace(-3.0, 900.0, 777)
     measured = np.array([channel.measure(value, 0) for value in truth])
     assert np.abs(measured - truth).max() <= 0.05 + 1e-9
@@ -94,5 +94,5 @@ def test_one_kind_of_error_leaves_the_draws_of_the_others_alone() -> None:
 
 
 def test_an_unknown_truth_stays_unknown() -> None:
-    channel = Channel('a', ErrorModel(white_std=1.0, resolution=0.1), 0)
+    channel = ErrorChannel('a', ErrorModel(white_std=1.0, resolution=0.1), 0)
     assert math.isnan(channel.measure(math.nan, 0))

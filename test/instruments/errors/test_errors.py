@@ -7,13 +7,13 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.bursts import BurstModel
-from trawl_ros.instruments.errors.channel import Channel, ErrorModel
+from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
 
 HOUR = 3600
 
 
 def readings(errors: ErrorModel, truth: np.ndarray, *, seed: int = 8) -> np.ndarray:
-    channel = Channel('a/b', errors, seed)
+    channel = ErrorChannel('a/b', errors, seed)
     return np.array([channel.measure(value, k * SECOND) for k, value in enumerate(truth)])
 
 
@@ -24,7 +24,7 @@ def test_scale_and_offset_bend_the_reading_as_a_wrong_calibration_does() -> None
 
 
 def test_drift_grows_with_time_from_the_first_reading() -> None:
-    channel = Channel('a', ErrorModel(drift=6.0), 0)
+    channel = ErrorChannel('a', ErrorModel(drift=6.0), 0)
     start = 1_700_000_000 * SECOND
     found = [channel.measure(10.0, start + h * HOUR * SECOND // 2) for h in range(5)]
     assert found == pytest.approx([10.0, 13.0, 16.0, 19.0, 22.0])

@@ -10,7 +10,7 @@ from trawl_ros.core.errors import InstrumentError
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
 from trawl_ros.instruments.errors.faults import KINDS, FaultPanel, parse_fault
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.instruments.winch import WinchInstrument
 from trawl_ros.records.samples import WinchSample
@@ -21,7 +21,7 @@ WINCH = 'winch/joint_states'
 
 
 def winch() -> WinchInstrument:
-    return WinchInstrument(load_instruments().winch, Draws(3))
+    return WinchInstrument(load_instruments().winch, SeedPlan(3))
 
 
 def towed(

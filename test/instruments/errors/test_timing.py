@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.bursts import BurstModel
 from trawl_ros.instruments.errors.channel import ErrorModel
-from trawl_ros.instruments.errors.instrument import Draws, Instrument
+from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.errors.timing import Timing
 from trawl_ros.records.samples import HeadingSample
 
@@ -17,7 +17,7 @@ class Compass(Instrument[float, HeadingSample]):
     """An instrument of one quantity; a truth of NaN cannot be measured."""
 
     def __init__(self, timing: Timing, errors: ErrorModel | None = None, seed: int = 2) -> None:
-        super().__init__('compass', timing, {'heading': errors or ErrorModel()}, Draws(seed))
+        super().__init__('compass', timing, {'heading': errors or ErrorModel()}, SeedPlan(seed))
 
     def _read(self, part: float, stamp: int) -> HeadingSample | None:
         measured = self._measure('heading', part, stamp)

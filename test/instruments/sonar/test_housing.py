@@ -8,7 +8,7 @@ import pytest
 
 from trawl_ros.core.errors import InstrumentError
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.model.water import Water
@@ -39,7 +39,7 @@ def test_the_sounder_measures_the_seabed_below_the_headrope() -> None:
     told = {'noise_m': 0.0, 'assumed_sound_speed_m_s': SEA.mean_sound_speed(DEPTH, 190.0)}
     instruments = SonarInstruments(
         exact.model_copy(update={'bottom': exact.bottom.model_copy(update=told)}),
-        Draws(1),
+        SeedPlan(1),
         surroundings=SEA,
     )
     readings = [
@@ -53,7 +53,7 @@ def test_a_set_speed_of_sound_stretches_the_sounding_too() -> None:
     record = load_instruments().sonar
     quiet = record.bottom.model_copy(update={'noise_m': 0.0, 'resolution_m': 0.0})
     instruments = SonarInstruments(
-        record.model_copy(update={'bottom': quiet}), Draws(1), surroundings=SEA
+        record.model_copy(update={'bottom': quiet}), SeedPlan(1), surroundings=SEA
     )
     (sample,) = sounded(instruments, truth(0, 190.0))
     assert sample.distance == pytest.approx(90.0 * 1500.0 / SEA.mean_sound_speed(DEPTH, 190.0))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, Differences
+from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, FiniteDifferencePredictor
 from trawl_ros.lab.benchmark.fit_trial import plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.growth import exponent
@@ -53,7 +53,10 @@ def test_shorter_steps_of_the_haul_come_closer_to_the_converged_run(coarse):
 
 
 def test_differences_are_derivatives_and_cost_a_solution_each(coarse):
-    exact, differences = Counting(coarse.model), Differences(coarse.model, coarse.prior.std)
+    exact, differences = (
+        Counting(coarse.model),
+        FiniteDifferencePredictor(coarse.model, coarse.prior.std),
+    )
     at = (coarse.model.coefficients, 500.0, 500.0, 2.1)
     known = exact.predict(*at)
     found = differences.predict(*at, known.state)

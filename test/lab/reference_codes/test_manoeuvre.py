@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from trawl_ros.lab.reference_codes.manoeuvre import Manoeuvre, haul_and_turn
+from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn
 
 
 @pytest.fixture
-def manoeuvre() -> Manoeuvre:
+def manoeuvre() -> WireManoeuvre:
     return haul_and_turn()
 
 
-def test_it_hauls_two_hundred_metres_and_turns_by_ninety_degrees(manoeuvre: Manoeuvre) -> None:
+def test_it_hauls_two_hundred_metres_and_turns_by_ninety_degrees(manoeuvre: WireManoeuvre) -> None:
     assert manoeuvre.length_at(0.0) == 600.0
     assert manoeuvre.length_at(manoeuvre.duration) == pytest.approx(400.0)
     assert manoeuvre.velocity(0.0) == pytest.approx([2.0, 0.0, 0.0])
@@ -22,7 +22,7 @@ def test_it_hauls_two_hundred_metres_and_turns_by_ninety_degrees(manoeuvre: Mano
     assert manoeuvre.haul.end < manoeuvre.turn.start < manoeuvre.turn.end < manoeuvre.duration
 
 
-def test_lengths_are_the_integral_of_their_rate(manoeuvre: Manoeuvre) -> None:
+def test_lengths_are_the_integral_of_their_rate(manoeuvre: WireManoeuvre) -> None:
     haul = manoeuvre.haul
     corners = (haul.start, haul.start + haul.rise, haul.end - haul.rise, haul.end)
     for time in (21.0, 29.5, 200.0, haul.end - 3.0, haul.end + 5.0):
@@ -31,7 +31,7 @@ def test_lengths_are_the_integral_of_their_rate(manoeuvre: Manoeuvre) -> None:
         assert manoeuvre.length_at(time) == pytest.approx(600.0 + hauled, abs=1e-8)
 
 
-def test_the_track_is_the_integral_of_the_velocity(manoeuvre: Manoeuvre) -> None:
+def test_the_track_is_the_integral_of_the_velocity(manoeuvre: WireManoeuvre) -> None:
     track = manoeuvre.track(np.arange(0.0, manoeuvre.duration, 0.1))
     finer = manoeuvre.track(np.arange(0.0, manoeuvre.duration, 0.05))[::2]
     assert np.abs(track - finer[: len(track)]).max() < 1e-6

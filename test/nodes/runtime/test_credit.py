@@ -8,7 +8,7 @@ from trawl_ros.core.limits import Limit  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.stamps import header  # noqa: E402
 from trawl_ros.nodes.runtime import credit  # noqa: E402
-from trawl_ros.nodes.runtime.credit import HEADER, SYNC, Consumers, Progress  # noqa: E402
+from trawl_ros.nodes.runtime.credit import HEADER, SYNC, ConsumerProgress, Consumers  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
@@ -153,7 +153,7 @@ class Follower(TrawlNode):
 
     def __init__(self, **kwargs):
         super().__init__('follower', **kwargs)
-        self.progress = Progress(self, idle=lambda: self.idle)
+        self.progress = ConsumerProgress(self, idle=lambda: self.idle)
         self.time = 5 * SECOND
         self.idle = False
 

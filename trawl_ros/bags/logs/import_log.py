@@ -14,8 +14,14 @@ from typing import Literal
 import numpy as np
 
 from trawl_ros.bags.logs.clock import ClockReader
-from trawl_ros.bags.logs.layout import BadRow, Row, read_rows
-from trawl_ros.bags.logs.mapping import Column, LogMapping, TopicMapping, Water, load_mapping
+from trawl_ros.bags.logs.layout import BadRow, LogRow, read_rows
+from trawl_ros.bags.logs.mapping import (
+    ColumnMapping,
+    LogMapping,
+    LogWater,
+    TopicMapping,
+    load_mapping,
+)
 from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
 from trawl_ros.bags.logs.units import UNITS
 from trawl_ros.bags.possible import impossible, impossible_compass
@@ -177,7 +183,7 @@ class _Reading:
                     raise
                 self.left[bad.reason] += 1
 
-    def _row(self, row: Row) -> list[Sample]:
+    def _row(self, row: LogRow) -> list[Sample]:
         for column, texts in self._mapping.only.items():
             if row.text(column) not in texts:
                 self.left[f'column {column!r} is not {" or ".join(texts)}'] += 1
@@ -202,7 +208,12 @@ class _Reading:
         return found
 
     def _refuse_impossible(
-        self, row: Row, topic: str, entry: TopicMapping, sample: Sample, readings: dict[str, float]
+        self,
+        row: LogRow,
+        topic: str,
+        entry: TopicMapping,
+        sample: Sample,
+        readings: dict[str, float],
     ) -> None:
         angles = [value for field, value in readings.items() if field.startswith('compass_')]
         why = impossible(sample) or next(
@@ -215,7 +226,7 @@ class _Reading:
                 f'column {columns}: {why}',
             )
 
-    def _stamp(self, row: Row, number: int) -> int | None:
+    def _stamp(self, row: LogRow, number: int) -> int | None:
         clock, reader = self._clocks[number]
         text = ' '.join(row.text(column) for column in clock.columns)
         # A topic that has a clock of its own may have no reading here, and then has no time.
@@ -230,11 +241,11 @@ class _Reading:
                 f'column {named}: expected {expected}',
             ) from None
 
-    def _readings(self, row: Row, entry: TopicMapping) -> dict[str, float]:
+    def _readings(self, row: LogRow, entry: TopicMapping) -> dict[str, float]:
         """Give the fields of one topic in SI units; NaN where the row has none."""
         return {field: self._reading(row, source) for field, source in entry.fields.items()}
 
-    def _reading(self, row: Row, source: Column) -> float:
+    def _reading(self, row: LogRow, source: ColumnMapping) -> float:
         text = row.text(source.column)
         if text.lower() in self._missing:
             return math.nan
@@ -270,7 +281,7 @@ def _sample(
     stamp: int,
     readings: dict[str, float],
     entry: TopicMapping,
-    water: Water | None,
+    water: LogWater | None,
 ) -> Sample | None:
     """Assemble the sample of a topic; None if there is no reading for it."""
     missing = [math.isnan(value) for value in readings.values()]

@@ -32,7 +32,7 @@ class Long(Record):
     value: str
 
 
-class Layout(Record):
+class LogLayout(Record):
     """Layout of a log in its file.
 
     ``separator`` is one character, ``tab``, or ``blanks`` for any number of them. ``skip_lines``
@@ -52,7 +52,7 @@ class Layout(Record):
     long: Long | None = None
 
     @model_validator(mode='after')
-    def _makes_sense(self) -> 'Layout':
+    def _makes_sense(self) -> 'LogLayout':
         try:
             codecs.lookup(self.encoding)
         except LookupError:
@@ -77,7 +77,7 @@ class BadRow(LogError):
 
 
 @dataclass(frozen=True)
-class Row:
+class LogRow:
     """Row of a log: its file, line, and cells by column name."""
 
     path: Path
@@ -98,8 +98,8 @@ class Row:
 
 
 def read_rows(
-    path: Path, layout: Layout, needed: Mapping[str, str], keys: Sequence[str]
-) -> Iterator[Row | BadRow]:
+    path: Path, layout: LogLayout, needed: Mapping[str, str], keys: Sequence[str]
+) -> Iterator[LogRow | BadRow]:
     """Read a log row by row; lines without anything in them count for nothing.
 
     Parameters
@@ -142,7 +142,7 @@ def read_rows(
 class _Lines:
     """Lines of a log, bounded in length, without comments, with their numbers."""
 
-    def __init__(self, path: Path, stream: TextIO, layout: Layout) -> None:
+    def __init__(self, path: Path, stream: TextIO, layout: LogLayout) -> None:
         self.number = 0
         self._path = path
         self._stream = stream
@@ -172,8 +172,8 @@ class _Lines:
 
 
 def _wide(
-    path: Path, layout: Layout, needed: Mapping[str, str], lines: _Lines
-) -> Iterator[Row | BadRow]:
+    path: Path, layout: LogLayout, needed: Mapping[str, str], lines: _Lines
+) -> Iterator[LogRow | BadRow]:
     table = _cells(lines, layout)
     names = [name.strip() for name in layout.names or next(table, [])]
     if not names:
@@ -202,10 +202,10 @@ def _wide(
             )
             continue
         texts = (cell.strip() for cell in cells)
-        yield Row(path, lines.number, dict(zip(names, texts, strict=True)))
+        yield LogRow(path, lines.number, dict(zip(names, texts, strict=True)))
 
 
-def _cells(lines: _Lines, layout: Layout) -> Iterator[list[str]]:
+def _cells(lines: _Lines, layout: LogLayout) -> Iterator[list[str]]:
     if layout.separator == BLANKS:
         return (line.split() for line in lines)
     separator = _NAMED.get(layout.separator, layout.separator)
@@ -215,10 +215,10 @@ def _cells(lines: _Lines, layout: Layout) -> Iterator[list[str]]:
 def _joined(
     path: Path,
     long: Long,
-    rows: Iterator[Row | BadRow],
+    rows: Iterator[LogRow | BadRow],
     needed: Mapping[str, str],
     keys: Sequence[str],
-) -> Iterator[Row | BadRow]:
+) -> Iterator[LogRow | BadRow]:
     """Join the readings of one instant, which follow each other, into one row."""
     seen: set[str] = set()
     instant: dict[str, str] = {}
@@ -231,14 +231,14 @@ def _joined(
         name = row.text(long.name)
         now = {key: row.text(key) for key in keys if key in row.cells}
         if cells and (now != instant or name in cells):
-            yield Row(path, line, {**instant, **cells})
+            yield LogRow(path, line, {**instant, **cells})
             cells = {}
         if not cells:
             instant, line = now, row.line
         seen.add(name)
         cells[name] = row.text(long.value)
     if cells:
-        yield Row(path, line, {**instant, **cells})
+        yield LogRow(path, line, {**instant, **cells})
     for column, where in needed.items():
         if column not in seen and where not in OF_THE_ROW:
             raise LogError(

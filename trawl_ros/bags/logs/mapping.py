@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from trawl_ros.bags.logs.clock import Clock
-from trawl_ros.bags.logs.layout import Layout
+from trawl_ros.bags.logs.layout import LogLayout
 from trawl_ros.bags.logs.units import UNITS, units_of
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.schema import Record, load_yaml, validated
@@ -73,7 +73,7 @@ class Quantity(Record):
         return self.value * UNITS[self.unit][1]
 
 
-class Column(Record):
+class ColumnMapping(Record):
     """Column of a reading: (cell x scale + offset) in the unit.
 
     ``hemisphere`` names a column with N, S, E or W for a latitude or longitude.
@@ -90,7 +90,7 @@ class Column(Record):
         return (cell * self.scale + self.offset) * UNITS[self.unit][1]
 
 
-class Water(Record):
+class LogWater(Record):
     """Conversion of depths into absolute pressures: surface + density x gravity x depth."""
 
     density_kg_m3: Annotated[float, Field(gt=900, lt=1100)]
@@ -114,7 +114,7 @@ class TopicMapping(Record):
     loggers repeat the last one until the next comes.
     """
 
-    fields: Annotated[dict[str, Column], Field(min_length=1)]
+    fields: Annotated[dict[str, ColumnMapping], Field(min_length=1)]
     clock: Clock | None = None
     changes_only: bool = False
     std: Quantity | None = None
@@ -131,9 +131,9 @@ class LogMapping(Record):
 
     clock: Clock
     topics: Annotated[dict[str, TopicMapping], Field(min_length=1)]
-    layout: Layout = Layout()
+    layout: LogLayout = LogLayout()
     only: dict[str, tuple[str, ...]] = Field(default_factory=dict)
-    water: Water | None = None
+    water: LogWater | None = None
     missing: tuple[str, ...] = ('', 'nan', 'na', 'n/a', 'null')
 
     def clocks(self) -> list[Clock]:
@@ -162,7 +162,9 @@ class LogMapping(Record):
             self._check_limits(where, mapping, topic in RANGE_TOPICS)
         return self
 
-    def _check_fields(self, where: str, fields: dict[str, Column], known: dict[str, str]) -> None:
+    def _check_fields(
+        self, where: str, fields: dict[str, ColumnMapping], known: dict[str, str]
+    ) -> None:
         for field, column in fields.items():
             if field not in known:
                 raise ValueError(

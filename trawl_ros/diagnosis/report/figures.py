@@ -7,10 +7,10 @@ from matplotlib.figure import Figure
 
 from trawl_ros.core.files import write_figure
 from trawl_ros.diagnosis.candidates import Candidate
-from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown
+from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison
 from trawl_ros.diagnosis.locating import map_of
-from trawl_ros.diagnosis.score_test import Screen
-from trawl_ros.estimation.report.figures import Drawing
+from trawl_ros.diagnosis.score_test import ScoreTest
+from trawl_ros.estimation.report.figures import ReportFigure
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.report.style import DPI, FAINT, MEASURED, SECOND, quiet
 
@@ -23,12 +23,12 @@ BARS = 10
 """So many effects are drawn."""
 
 
-def drawings(found: Diagnosis) -> list[Drawing]:
+def drawings(found: Diagnosis) -> list[ReportFigure]:
     """Return all figures for which there are numbers."""
     seen, shown, made = found.seen, found.shown, []
     if seen is not None:
         made.append(
-            Drawing(
+            ReportFigure(
                 'where.png', WHERE,
                 'Residuals of each channel with each variable, in standard deviations of what '
                 'errors would make, boards and calibration taken out. Red: grows with it.',
@@ -36,7 +36,7 @@ def drawings(found: Diagnosis) -> list[Drawing]:
             )
         )  # fmt: skip
         made.append(
-            Drawing(
+            ReportFigure(
                 'evidence.png', WHICH,
                 'By how much each effect alone lowers χ² of all readings, boards refitted (dark: '
                 'solved anew, light: to first order).',
@@ -44,7 +44,7 @@ def drawings(found: Diagnosis) -> list[Drawing]:
             )
         )  # fmt: skip
         made.append(
-            Drawing(
+            ReportFigure(
                 'confusable.png', WHICH,
                 'How alike effects look in these tows: the cosine of what the one changes with '
                 'the nearest that the other could do. 1 cannot be told apart.',
@@ -53,7 +53,7 @@ def drawings(found: Diagnosis) -> list[Drawing]:
         )  # fmt: skip
     if shown is not None and shown.after is not None:
         made.append(
-            Drawing(
+            ReportFigure(
                 'gap.png', GAP,
                 'Errors of each channel on what was kept back, over what errors of instruments '
                 'alone would make (1): boards refitted alone, with '
@@ -63,7 +63,7 @@ def drawings(found: Diagnosis) -> list[Drawing]:
         )  # fmt: skip
     if found.base is not None and found.added is not None:
         made.append(
-            Drawing(
+            ReportFigure(
                 'coefficients.png', GAP,
                 'The coefficients of the boards with and without '
                 f'{found.added_as}, in standard deviations of the prior: what moves had been '
@@ -74,7 +74,7 @@ def drawings(found: Diagnosis) -> list[Drawing]:
     return made
 
 
-def draw_figures(found: Diagnosis, folder: Path) -> list[Drawing]:
+def draw_figures(found: Diagnosis, folder: Path) -> list[ReportFigure]:
     """Draw all figures into a folder."""
     made = drawings(found)
     for drawing in made:
@@ -82,7 +82,7 @@ def draw_figures(found: Diagnosis, folder: Path) -> list[Drawing]:
     return made
 
 
-def where_figure(seen: Screen) -> Figure:
+def where_figure(seen: ScoreTest) -> Figure:
     """Map of residual patterns: channels by variables."""
     channels, variables, z = map_of(seen)
     figure = Figure(figsize=(8.0, 0.35 * len(channels) + 1.8), layout='constrained')
@@ -97,7 +97,7 @@ def where_figure(seen: Screen) -> Figure:
     return figure
 
 
-def evidence_figure(found: Diagnosis, seen: Screen) -> Figure:
+def evidence_figure(found: Diagnosis, seen: ScoreTest) -> Figure:
     """Bars of the effects in order of the χ² they explain."""
     first: dict[str, float] = {}
     for candidate in seen.wanted:
@@ -118,7 +118,7 @@ def evidence_figure(found: Diagnosis, seen: Screen) -> Figure:
     return figure
 
 
-def confusable_figure(seen: Screen) -> Figure:
+def confusable_figure(seen: ScoreTest) -> Figure:
     """Matrix of the cosines of all effects' signatures."""
     wanted = [one for one in seen.wanted if not one.place]
     size = len(wanted)
@@ -139,7 +139,7 @@ def confusable_figure(seen: Screen) -> Figure:
     return figure
 
 
-def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
+def largest_cosine(seen: ScoreTest, one: Candidate, other: Candidate) -> float:
     """Largest cosine of the signatures of two effects."""
     a, b = (list(seen.block(which)) for which in (one, other))
     information = seen.evidence.information
@@ -154,7 +154,7 @@ def largest_cosine(seen: Screen, one: Candidate, other: Candidate) -> float:
     return float(min(1.0, np.linalg.svd(between, compute_uv=False)[0]))
 
 
-def gap_figure(shown: Shown, added: str) -> Figure:
+def gap_figure(shown: HoldoutComparison, added: str) -> Figure:
     """Errors before and after the repair, and with the placebo."""
     channels = list(shown.before.rms)
     figure = Figure(figsize=(9.0, 4.5), layout='constrained')

@@ -5,16 +5,16 @@ from collections.abc import Sequence
 from typing import Any
 
 from trawl_ros.core.version import __version__
-from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown, values_of
+from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, values_of
 from trawl_ros.diagnosis.refit import Refit
-from trawl_ros.diagnosis.repair import Source
-from trawl_ros.diagnosis.score_test import Screen
+from trawl_ros.diagnosis.repair import SourceBag
+from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.records.channels import CHANNELS
 
 
-def result(found: Diagnosis, sources: Sequence[Source]) -> dict[str, Any]:
+def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, Any]:
     """Build the content of ``diagnosis.json``; numbers that are not finite are null."""
     named, best = found.named, found.best
     sure = found.verdict in ('NAMED', 'AMBIGUOUS')
@@ -135,7 +135,7 @@ def _evidence(weighed: Sequence[Weighed]) -> dict[str, Any]:
     }
 
 
-def _channels(shown: Shown | None) -> dict[str, Any]:
+def _channels(shown: HoldoutComparison | None) -> dict[str, Any]:
     if shown is None:
         return {}
     return {
@@ -167,7 +167,7 @@ def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, Any]:
     }
 
 
-def _detectable(seen: Screen) -> dict[str, Any]:
+def _detectable(seen: ScoreTest) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for candidate in seen.wanted:
         if candidate.place:

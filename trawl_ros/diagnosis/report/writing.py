@@ -8,18 +8,18 @@ from typing import Any
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import write_json, write_text
 from trawl_ros.diagnosis.diagnosis import Diagnosis
-from trawl_ros.diagnosis.repair import Source, gear_text, repaired
+from trawl_ros.diagnosis.repair import SourceBag, gear_text, repaired
 from trawl_ros.diagnosis.report.figures import draw_figures
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline, sentences
-from trawl_ros.estimation.report.figures import Drawing
+from trawl_ros.estimation.report.figures import ReportFigure
 from trawl_ros.estimation.report.page import Embedded
 from trawl_ros.report.rendering import page
 
 MODEL = 'model.yaml'
 
 
-def write_diagnosis(found: Diagnosis, sources: Sequence[Source], folder: Path) -> None:
+def write_diagnosis(found: Diagnosis, sources: Sequence[SourceBag], folder: Path) -> None:
     """Write ``diagnosis.json``, both reports, the figures, and ``model.yaml`` where there is one.
 
     Parameters
@@ -55,7 +55,7 @@ def _page(
     found: Diagnosis,
     numbers: dict[str, Any],
     folder: Path,
-    drawn: Sequence[Drawing],
+    drawn: Sequence[ReportFigure],
     repaired: bool,
 ) -> str:
     figures: dict[str, list[Embedded]] = {}

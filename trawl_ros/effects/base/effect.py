@@ -1,9 +1,9 @@
 """Base class of effects: physics beyond the model, or an error of an instrument.
 
 Each effect is a small file of this folder. It acts in one or more of three places: on what the
-gear is towed with (`Effect.towed`), on the gear and its water (`Effect.gear`), and on what
-sensors show of it (`Effect.shown`). All three are pure functions of the effect's values, so that
-one implementation serves prediction, sensitivities and simulation.
+gear is towed with (`Effect.apply_to_inputs`), on the gear and its water (`Effect.gear`), and on
+what sensors show of it (`Effect.apply_to_sensors`). All three are pure functions of the effect's
+values, so that one implementation serves prediction, sensitivities and simulation.
 """
 
 import math
@@ -125,7 +125,7 @@ class Effect:
         """
         return (self.neutral,)
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         return inputs
 
@@ -133,7 +133,7 @@ class Effect:
         """Gear model with the effect applied."""
         return model
 
-    def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
         """Apply to sensors: readings with the effect's errors."""
         return readings
 

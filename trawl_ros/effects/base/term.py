@@ -6,7 +6,7 @@ from trawl_ros.effects.base.effect import Effect, Parameter
 
 
 @dataclass(frozen=True)
-class Term(Effect):
+class EmpiricalTerm(Effect):
     """Empirical term: a force or sensor error of a form that is dimensionally sound and no more.
 
     Attributes

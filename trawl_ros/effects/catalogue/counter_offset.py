@@ -8,7 +8,7 @@ from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 class CounterOffset(Effect):
     """Offset of both counters against the warp out, m."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Warp lengths without the offset."""
         return inputs - values[0] * np.array([1.0, 1.0, 0.0])
 

@@ -8,7 +8,7 @@ from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 class CounterScale(Effect):
     """Counters that show (1 + scale) times the warp out, at port more of it than at starboard."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Warp lengths without the scale error."""
         scale, port_more = values
         shown = 1.0 + scale + 0.5 * port_more * np.array([1.0, -1.0])

@@ -11,7 +11,7 @@ NET = 'net_depth'
 class DepthSensor(Effect):
     """Offsets of doors and net, and scale and drift of all three depth sensors."""
 
-    def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
         """Readings with the errors of the depth sensors."""
         doors, net, scale, drift = values
         offsets = {**dict.fromkeys(DOORS, doors), NET: net}

@@ -5,16 +5,16 @@ import numpy as np
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 
-class Heave(Effect):
+class HeaveEffect(Effect):
     """Increase of mean drag, which goes with the mean of the squared speed."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Root-mean-square speed through the water beside both warp lengths."""
         port, starboard, speed = inputs
         return np.array([port, starboard, np.sqrt(speed**2 + values[0])])
 
 
-EFFECT = Heave(
+EFFECT = HeaveEffect(
     name='heave',
     sentence='Waves pull the gear to and fro, which adds to its mean drag.',
     parameters=(Parameter('variance', 'm²/s²', 0.0, 0.0, 1.5, 0.2),),

@@ -5,17 +5,17 @@ import numpy as np
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 
-class SpeedLog(Effect):
+class SpeedLogError(Effect):
     """Speed log that shows (1 + scale) times the speed, and a bias."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Speed without scale and bias, beside both warp lengths."""
         scale, bias = values
         port, starboard, speed = inputs
         return np.array([port, starboard, (speed - bias) / (1.0 + scale)])
 
 
-EFFECT = SpeedLog(
+EFFECT = SpeedLogError(
     name='speed_log',
     sentence='The log shows too much or too little speed through the water.',
     parameters=(

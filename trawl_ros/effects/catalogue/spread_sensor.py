@@ -10,7 +10,7 @@ SPREAD = 'door_spread'
 class SpreadSensor(Effect):
     """Spread sensor that shows (1 + scale) times the spread, and an offset."""
 
-    def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
         """Readings with the error of the spread sensor."""
         scale, offset = values
         return readings | {SPREAD: (1.0 + scale) * readings[SPREAD] + offset}

@@ -8,7 +8,7 @@ from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 class WarpAsymmetry(Effect):
     """Port warp longer than shown, and starboard warp shorter by as much."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """True warp lengths beside the speed."""
         return inputs + 0.5 * values[0] * np.array([1.0, -1.0, 0.0])
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.effects.base.term import Term, size
+from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.hooks import Bend
+from trawl_ros.model.hooks import CoefficientModifier
 
 DIRECTIONS = ('ahead', 'outward', 'up')
 SIDES = np.array([0.5, -0.5])
@@ -24,7 +24,7 @@ class More:
 
     place: int
     sizes: np.ndarray
-    before: Bend | None
+    before: CoefficientModifier | None
 
     def __call__(
         self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
@@ -39,7 +39,7 @@ class More:
 
 
 @dataclass(frozen=True)
-class BoardForce(Term):
+class BoardForce(EmpiricalTerm):
     """Force on the boards as a share of ½ρU²A: difference of the sides, or drift per hour."""
 
     place: int = 0
@@ -51,7 +51,7 @@ class BoardForce(Term):
         return model.with_board(bend=More(self.place, sizes, model.board.bend))
 
 
-def board_terms() -> Iterator[Term]:
+def board_terms() -> Iterator[EmpiricalTerm]:
     """Yield all terms of force on the boards."""
     for place, direction in enumerate(DIRECTIONS):
         yield BoardForce(

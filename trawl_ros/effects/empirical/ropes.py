@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.effects.base.term import Term, size
+from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import dot
 
 
 @dataclass(frozen=True)
-class BridleDrag(Term):
+class BridleDrag(EmpiricalTerm):
     """Normal drag of the bridles of both sides, or of starboard against port."""
 
     difference: bool = False
@@ -31,7 +31,7 @@ class BridleDrag(Term):
 
 
 @dataclass(frozen=True)
-class WarpFriction(Term):
+class WarpFriction(EmpiricalTerm):
     """Tangential drag of the warps."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
@@ -42,7 +42,7 @@ class WarpFriction(Term):
 
 
 @dataclass(frozen=True)
-class NetWeight(Term):
+class NetWeight(EmpiricalTerm):
     """Weight of the net in water."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
@@ -64,7 +64,7 @@ class Lifted:
 
 
 @dataclass(frozen=True)
-class HeadropeLift(Term):
+class HeadropeLift(EmpiricalTerm):
     """Lift on the middle of the headrope."""
 
     def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
@@ -76,24 +76,24 @@ class HeadropeLift(Term):
 
 
 @dataclass(frozen=True)
-class TideAlong(Term):
+class TideAlong(EmpiricalTerm):
     """Tidal current along the track that changes with time."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Warp lengths, and the speed through the water with the tide."""
         return inputs + np.array([0.0, 0.0, values[0] * at.hours])
 
 
 @dataclass(frozen=True)
-class WarpWithTime(Term):
+class WarpWithTime(EmpiricalTerm):
     """Drift of both counters per hour: warp out beside the length shown."""
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Warp lengths with the drift, and the speed."""
         return inputs + np.array([1.0, 1.0, 0.0]) * values[0] * at.hours
 
 
-def rope_terms() -> Iterator[Term]:
+def rope_terms() -> Iterator[EmpiricalTerm]:
     """Yield all terms of force on ropes and net."""
     yield BridleDrag(
         name='empirical_bridles_drag',

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.effects.base.effect import Readings, Situation
-from trawl_ros.effects.base.term import Term, size
+from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.records.channels import CHANNELS, MEASURED
 
 READINGS = {
@@ -19,13 +19,13 @@ EXCITED_BY = {'offset': 'any tow', 'scale': 'what changes the channel', 'hours':
 
 
 @dataclass(frozen=True)
-class SensorError(Term):
+class SensorError(EmpiricalTerm):
     """Error of one channel: its reading beside the observable."""
 
     channel: str = ''
     by: str = ''
 
-    def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
         """Readings with the channel's error."""
         (value,), there = values, readings[self.channel]
         error = {
@@ -36,7 +36,7 @@ class SensorError(Term):
         return readings | {self.channel: there + error}
 
 
-def sensor_terms() -> Iterator[Term]:
+def sensor_terms() -> Iterator[EmpiricalTerm]:
     """Yield all sensor terms: three of each channel."""
     for name in MEASURED:
         channel = CHANNELS[name]

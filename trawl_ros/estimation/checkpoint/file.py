@@ -36,11 +36,11 @@ DAMAGE = (zipfile.BadZipFile, zlib.error, struct.error)
 """Exceptions of damaged archives besides Python's own."""
 
 
-class StateError(TrawlError):
+class CheckpointError(TrawlError):
     """Checkpoint file that is missing, damaged, too large or of something else."""
 
 
-def save_state(path: Path, identification: Identification, gear: GearRecord) -> None:
+def save_checkpoint(path: Path, identification: Identification, gear: GearRecord) -> None:
     """Save a checkpoint; an existing one is replaced atomically.
 
     Parameters
@@ -67,7 +67,7 @@ def save_state(path: Path, identification: Identification, gear: GearRecord) -> 
     }
     text = json.dumps(record).encode()
     if len(text) + len(packer.numbers) > MAX_BYTES:
-        raise StateError(
+        raise CheckpointError(
             f'{path}: {len(identification.estimator.windows)} windows take more than '
             f'{MAX_BYTES / 1e6:g} MB and are not saved'
         )
@@ -80,10 +80,10 @@ def save_state(path: Path, identification: Identification, gear: GearRecord) -> 
             # Renamed before its content is on the disk, it could be empty after a power cut.
             os.fsync(stream.fileno())
     except TrawlError as reason:
-        raise StateError(f'the state is not saved: {reason}') from reason
+        raise CheckpointError(f'the state is not saved: {reason}') from reason
 
 
-def load_state(path: Path, fresh: Identification, gear: GearRecord) -> Identification:
+def load_checkpoint(path: Path, fresh: Identification, gear: GearRecord) -> Identification:
     """Load a checkpoint.
 
     Parameters
@@ -111,12 +111,12 @@ def load_state(path: Path, fresh: Identification, gear: GearRecord) -> Identific
     try:
         record = json.loads(text)
         if record['what'] != WHAT:
-            raise StateError(unfit)
+            raise CheckpointError(unfit)
         made_by = record['format'], record['version']
     except (LookupError, TypeError, ValueError, RecursionError) as reason:
-        raise StateError(f'{unfit} ({reason})') from reason
+        raise CheckpointError(f'{unfit} ({reason})') from reason
     if made_by != (FORMAT, __version__):
-        raise StateError(
+        raise CheckpointError(
             f'{path}: the state is of format {made_by[0]} by version {made_by[1]}, expected '
             f'format {FORMAT} by version {__version__}'
         )
@@ -124,13 +124,13 @@ def load_state(path: Path, fresh: Identification, gear: GearRecord) -> Identific
     packer.pack(fresh)
     settings = json.loads(json.dumps(_settings(fresh, gear)))
     for difference in _differences(record.get('settings'), settings):
-        raise StateError(f'{path}: the state is of an identification with {difference}')
+        raise CheckpointError(f'{path}: the state is of an identification with {difference}')
     try:
         found = Unpacker(numbers, packer).unpack(record['identification'])
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as reason:
-        raise StateError(f'{unfit} of this version ({reason})') from reason
+        raise CheckpointError(f'{unfit} of this version ({reason})') from reason
     if not isinstance(found, Identification):
-        raise StateError(unfit)
+        raise CheckpointError(unfit)
     return found
 
 
@@ -140,15 +140,15 @@ def _read(path: Path) -> tuple[bytes, bytes]:
             members = [archive.getinfo(name) for name in (JSON, NUMBERS)]
             size = sum(member.file_size for member in members)
             if size > MAX_BYTES:
-                raise StateError(
+                raise CheckpointError(
                     f'{path}: the state takes {size / 1e6:.0f} MB, expected at most '
                     f'{MAX_BYTES / 1e6:g} MB'
                 )
             text, numbers = (archive.read(member) for member in members)
     except OSError as reason:
-        raise StateError(f'{path}: the state cannot be read ({reason.strerror})') from reason
+        raise CheckpointError(f'{path}: the state cannot be read ({reason.strerror})') from reason
     except (*DAMAGE, LookupError, ValueError, EOFError, RuntimeError) as reason:
-        raise StateError(f'{path}: found no undamaged {WHAT} ({reason})') from reason
+        raise CheckpointError(f'{path}: found no undamaged {WHAT} ({reason})') from reason
     return text, numbers
 
 

@@ -28,10 +28,19 @@ MODULES: Mapping[str, str] = MappingProxyType(
     }
 )
 
-CLASSES: Mapping[str, str] = MappingProxyType({})
+CLASSES: Mapping[str, str] = MappingProxyType(
+    {
+        'Guard': 'WindowGate',
+        'Order': 'TimestampCheck',
+        'Judgement': 'ScreeningResult',
+        'Timeline': 'Watermark',
+    }
+)
 
 
-FIELDS: Mapping[str, str] = MappingProxyType({})
+FIELDS: Mapping[str, str] = MappingProxyType(
+    {'freedom': 'degrees_of_freedom', 'misfit': 'birge_ratio'}
+)
 
 
 def present(name: str, has: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:

@@ -12,7 +12,7 @@ from trawl_ros.records.channels import CHANNELS
 def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
     """Return the calibration errors by tow and channel, inputs included."""
     share = fit.scheme.tow_share
-    joint = joint_root(fit.marginal, fit.knowledge.root)
+    joint = joint_root(fit.marginal, fit.posterior.root)
     found = []
     for part in fit.marginal.tows:
         root = calibration_root(part, joint)
@@ -47,7 +47,7 @@ def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
     if fit.net is None:
         return ()
     std = fit.scheme.net_std
-    root = joint_root(fit.marginal, fit.knowledge.root)
+    root = joint_root(fit.marginal, fit.posterior.root)
     rows = range(len(fit.marginal.model) - 2, len(fit.marginal.model))
     return tuple(
         NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))

@@ -77,7 +77,7 @@ class Scheme:
 
 
 @dataclass(frozen=True)
-class Term:
+class ErrorTerm:
     """Calibration error: the channel or input it belongs to, and its std there.
 
     ``relative`` errors are parts of the value, others are in the channel's unit.
@@ -89,7 +89,7 @@ class Term:
 
 
 TERMS = tuple(
-    Term(name, std, relative)
+    ErrorTerm(name, std, relative)
     for name in (*MEASURED, *INPUTS)
     for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
     if std > 0.0
@@ -256,7 +256,7 @@ def _of_inputs(part: Linearised, scheme: Scheme) -> np.ndarray:
     return columns
 
 
-def _size(part: Linearised, term: Term, scheme: Scheme) -> float:
+def _size(part: Linearised, term: ErrorTerm, scheme: Scheme) -> float:
     mean = part.window.means[term.channel]
     return scheme.tow_share * term.std * (mean if term.relative else 1.0)
 

@@ -76,7 +76,7 @@ class NetFactor:
 
 
 @dataclass(frozen=True)
-class Knowledge:
+class Posterior:
     """Posterior of the coefficients from prior and data, by whitened rows.
 
     ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
@@ -110,7 +110,7 @@ class Estimate:
         End (ns) of the newest window.
     values, std, covariance
         Estimate (12,), standard deviations (12,), covariance (12, 12). Noise as found and
-        ``misfit`` are in them.
+        ``birge_ratio`` are in them.
     low, high
         95 % interval (12,) by Student's t, cut at the bounds.
     shrink
@@ -132,9 +132,9 @@ class Estimate:
         What the instruments of each tow read too high by.
     net
         Drag and weight of the net; empty where they are held.
-    freedom
+    degrees_of_freedom
         Degrees of freedom of Student's t.
-    misfit
+    birge_ratio
         By how much standard deviations are widened, since the readings differ from the model by
         more than all errors known of explain; 1 where they do not.
     cost
@@ -161,8 +161,8 @@ class Estimate:
     noise_scales: Mapping[str, float]
     tow_biases: tuple[TowBias, ...]
     net: tuple[NetFactor, ...]
-    freedom: float
-    misfit: float
+    degrees_of_freedom: float
+    birge_ratio: float
     cost: float
     objective: float
     innovation: Innovation | None
@@ -175,7 +175,7 @@ class Estimate:
         return float(np.sqrt(np.mean(np.square(list(self.noise_scales.values())))))
 
 
-def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowledge:
+def posterior_of(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Posterior:
     """Posterior covariance and singular directions.
 
     Parameters
@@ -194,7 +194,7 @@ def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowle
     # Where neither data nor prior say anything, the std is a million times the scale.
     information = singular**2 + max(prior_weight, 1e-12)
     root = directions.T / np.sqrt(information)
-    return Knowledge(
+    return Posterior(
         covariance=(root @ root.T) * np.outer(prior_std, prior_std),
         singular=singular,
         directions=directions,
@@ -203,7 +203,7 @@ def know(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Knowle
 
 
 def undetermined(
-    knowledge: Knowledge, names: Sequence[str] = COEFFICIENTS
+    knowledge: Posterior, names: Sequence[str] = COEFFICIENTS
 ) -> tuple[Combination, ...]:
     """Directions that the data know less well than the prior, rotated by varimax."""
     weak = knowledge.singular < 1.0

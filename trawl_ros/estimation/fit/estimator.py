@@ -16,11 +16,11 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import Estimate, Innovation
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
-from trawl_ros.estimation.fit.gauss_newton import aim
+from trawl_ros.estimation.fit.gauss_newton import gauss_newton_step
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
-from trawl_ros.estimation.fit.posterior import conclude, innovation_of
-from trawl_ros.estimation.fit.prediction import Predictor
+from trawl_ros.estimation.fit.posterior import innovation_of, posterior_estimate
+from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.fit.relinearise import comparable, far, moved, with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -86,7 +86,7 @@ class Estimator:
 
     def __init__(
         self,
-        predictor: Predictor,
+        predictor: SteadyPredictor,
         prior: BoardPrior,
         observables: Sequence[str],
         options: EstimatorOptions | None = None,
@@ -151,7 +151,7 @@ class Estimator:
             # First order has led the estimate where the gear has no steady state at all.
             self._from_start()
         converged, reason = self._rest_with_all()
-        doubtful = self._fit.misfit > POOR or not converged
+        doubtful = self._fit.birge_ratio > POOR or not converged
         if self.options.second_start and self._fit.windows and doubtful:
             # The first windows, with what was known then, may have led into another valley.
             first, without, course = self._fit, self._without, list(self.history)
@@ -301,7 +301,7 @@ class Estimator:
         reach = options.largest_step * prior.std
         low = np.maximum(prior.low, fit.coefficients - reach)
         high = np.minimum(prior.high, fit.coefficients + reach)
-        aimed = aim(fit, low, high)
+        aimed = gauss_newton_step(fit, low, high)
         fit = replace(fit, scales=aimed.scales)
         size = float(np.max(np.abs(aimed.coefficients - fit.coefficients) / aimed.std))
         step = _Step(size, fit.cost - aimed.cost)
@@ -346,10 +346,13 @@ class Estimator:
 
     def _publish(self, innovation: Innovation | None, converged: bool, reason: str) -> Estimate:
         self._revision += 1
-        self.estimate = conclude(self._fit, self._revision, innovation, converged, reason)
+        self.estimate = posterior_estimate(self._fit, self._revision, innovation, converged, reason)
         return self.estimate
 
 
 def _likelier(fit: Fit, other: Fit) -> bool:
     """True if a fit explains more windows than another, or as many with higher likelihood."""
-    return (-len(fit.windows), fit.surprise) < (-len(other.windows), other.surprise)
+    return (-len(fit.windows), fit.negative_log_likelihood) < (
+        -len(other.windows),
+        other.negative_log_likelihood,
+    )

@@ -13,14 +13,14 @@ from trawl_ros.estimation.fit.error_terms import (
     spread,
     tow_errors,
 )
-from trawl_ros.estimation.fit.estimate import Knowledge, know
+from trawl_ros.estimation.fit.estimate import Posterior, posterior_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised, measured_inputs
 from trawl_ros.estimation.fit.nuisance import (
-    Marginal,
+    NuisanceElimination,
     clipped_variance,
-    marginalise,
-    own_shares,
+    eliminate_nuisance,
+    redundancy_numbers,
     triangular,
 )
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
@@ -117,14 +117,14 @@ class Fit:
         return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior.std))
 
     @cached_property
-    def marginal(self) -> Marginal:
+    def marginal(self) -> NuisanceElimination:
         """Square-root information after elimination of all nuisance parameters."""
         return self._marginal(self.errors, self.jacobian)
 
-    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> Marginal:
+    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> NuisanceElimination:
         scales = np.array(self.scales)[GROUP_OF]
         huber = self.options.huber
-        return marginalise(errors, scales, self.residual, jacobian, huber, self.weights)
+        return eliminate_nuisance(errors, scales, self.residual, jacobian, huber, self.weights)
 
     @property
     def cost(self) -> float:
@@ -158,27 +158,27 @@ class Fit:
         return triangle[:number, :-1], triangle[:number, -1]
 
     @cached_property
-    def knowledge(self) -> Knowledge:
+    def posterior(self) -> Posterior:
         """Posterior covariance and singular directions."""
-        return know(self.marginal.triangle, self.prior.std, self.options.prior_weight)
+        return posterior_of(self.marginal.triangle, self.prior.std, self.options.prior_weight)
 
     @property
     def std(self) -> np.ndarray:
         """Standard deviations (12,) of the coefficients."""
-        return np.sqrt(np.diag(self.knowledge.covariance))
+        return np.sqrt(np.diag(self.posterior.covariance))
 
     @cached_property
-    def own_shares(self) -> np.ndarray:
+    def redundancy_numbers(self) -> np.ndarray:
         """Redundancy numbers (windows, k) of the readings, for their own errors."""
-        return own_shares(self.marginal, self.jacobian, self.knowledge.root)
+        return redundancy_numbers(self.marginal, self.jacobian, self.posterior.root)
 
     @property
-    def freedom(self) -> float:
+    def degrees_of_freedom(self) -> float:
         """Degrees of freedom: readings less all that they determine."""
-        return float((self.own_shares * self._numbers).sum())
+        return float((self.redundancy_numbers * self._numbers).sum())
 
     @property
-    def misfit(self) -> float:
+    def birge_ratio(self) -> float:
         """Birge ratio: root mean square of the residuals over their expected spread; at least 1.
 
         The least cost is half a χ² with as many degrees of freedom as there are readings. Noise is
@@ -190,7 +190,7 @@ class Fit:
         return float(np.sqrt(max(1.0, 2.0 * self.cost / max(readings, 1.0))))
 
     @property
-    def surprise(self) -> float:
+    def negative_log_likelihood(self) -> float:
         """Negative log-likelihood, up to a constant of the windows alone.
 
         Unlike costs, these compare between fits that have found different noise.
@@ -226,7 +226,7 @@ class Fit:
         readings that speak for what they have in common.
         """
         # Windows that share an error vary less than each of them is taken to.
-        shares = np.clip(self.own_shares, 0.0, 1.0) * self._numbers
+        shares = np.clip(self.redundancy_numbers, 0.0, 1.0) * self._numbers
         huber, stated = self.options.huber, self.options.stated_noise_readings
         own = np.zeros(shares.shape)
         for part in self.marginal.tows:

@@ -20,7 +20,7 @@ SETTLED = 1e-3
 are the end."""
 
 
-def aim(fit: Fit, low: np.ndarray, high: np.ndarray) -> Fit:
+def gauss_newton_step(fit: Fit, low: np.ndarray, high: np.ndarray) -> Fit:
     """Gauss–Newton step: the fit of least cost within bounds, to first order around its windows.
 
     Parameters

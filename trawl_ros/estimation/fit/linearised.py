@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.fit.prediction import NetPredictor, Predictor, WindowPredictor
+from trawl_ros.estimation.fit.prediction import NetPredictor, SteadyPredictor, WindowPredictor
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.channels import INPUTS, MEASURED
 
@@ -54,7 +54,7 @@ class Linearised:
 
 
 def linearise(
-    predictor: Predictor,
+    predictor: SteadyPredictor,
     observables: Sequence[str],
     window: SteadyWindow,
     coefficients: np.ndarray,

@@ -63,7 +63,7 @@ class TowPart:
 
 
 @dataclass(frozen=True)
-class Marginal:
+class NuisanceElimination:
     """Result of the nuisance elimination over all tows.
 
     Attributes
@@ -88,14 +88,14 @@ class Marginal:
     cost: float
 
 
-def marginalise(
+def eliminate_nuisance(
     tows: Sequence[TowErrors],
     scales: np.ndarray,
     residual: np.ndarray,
     jacobian: np.ndarray,
     huber: float,
     weights: Sequence[np.ndarray] | None = None,
-) -> Marginal:
+) -> NuisanceElimination:
     """Eliminate all nuisance parameters, robustly.
 
     Parameters
@@ -129,7 +129,7 @@ def marginalise(
     return found
 
 
-def reweighted(found: Marginal, huber: float) -> tuple[np.ndarray, ...]:
+def reweighted(found: NuisanceElimination, huber: float) -> tuple[np.ndarray, ...]:
     """Huber weights (n, k) of each tow for the readings' own errors."""
     return tuple(huber / np.maximum(np.abs(part.own), huber) for part in found.tows)
 
@@ -141,7 +141,7 @@ def _solved(
     residual: np.ndarray,
     jacobian: np.ndarray,
     huber: float,
-) -> Marginal:
+) -> NuisanceElimination:
     m = tows[0].model.shape[2] if tows else 0
     q = jacobian.shape[2]
     whitened, remainders = [], []
@@ -172,7 +172,7 @@ def _solved(
         _explained(tow, weight, *solution, model, residual, huber)
         for tow, weight, solution in zip(tows, weights, whitened, strict=True)
     )
-    return Marginal(
+    return NuisanceElimination(
         tows=parts,
         triangle=last[:q, :q],
         right=last[:q, q],
@@ -234,7 +234,9 @@ def _explained(
     )
 
 
-def own_shares(marginal: Marginal, jacobian: np.ndarray, root: np.ndarray) -> np.ndarray:
+def redundancy_numbers(
+    marginal: NuisanceElimination, jacobian: np.ndarray, root: np.ndarray
+) -> np.ndarray:
     """Redundancy numbers (windows, k): share of each reading's variance kept by its own error.
 
     The rest goes into inputs, calibration, the model's errors and the coefficients: diagonal of
@@ -243,7 +245,7 @@ def own_shares(marginal: Marginal, jacobian: np.ndarray, root: np.ndarray) -> np
     Parameters
     ----------
     marginal
-        From `marginalise` with the same ``jacobian``.
+        From `eliminate_nuisance` with the same ``jacobian``.
     jacobian
         Sensitivities (windows, k, q) per prior std.
     root
@@ -266,7 +268,7 @@ def own_shares(marginal: Marginal, jacobian: np.ndarray, root: np.ndarray) -> np
     return shares
 
 
-def joint_root(marginal: Marginal, root: np.ndarray) -> np.ndarray:
+def joint_root(marginal: NuisanceElimination, root: np.ndarray) -> np.ndarray:
     """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
 
     ``root`` (q, q) is that of the coefficients alone.

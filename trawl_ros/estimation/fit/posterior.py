@@ -45,7 +45,7 @@ def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
     return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
 
 
-def conclude(
+def posterior_estimate(
     fit: Fit, revision: int, innovation: Innovation | None, converged: bool, reason: str
 ) -> Estimate:
     """Posterior estimate of a fit; the arguments beside it go into the estimate as they are.
@@ -55,8 +55,8 @@ def conclude(
     """
     prior, options = fit.prior, fit.options
     values = np.array(fit.coefficients)
-    std = fit.misfit * fit.std
-    freedom = fit.freedom + options.stated_noise_readings
+    std = fit.birge_ratio * fit.std
+    freedom = fit.degrees_of_freedom + options.stated_noise_readings
     low, high = interval(values, std, freedom, options.confidence, prior)
     return Estimate(
         revision=revision,
@@ -64,19 +64,19 @@ def conclude(
         windows=len(fit.windows),
         values=values,
         std=std,
-        covariance=fit.misfit**2 * fit.knowledge.covariance,
+        covariance=fit.birge_ratio**2 * fit.posterior.covariance,
         low=low,
         high=high,
         shrink=1.0 - std / prior.std,
         determined=is_determined(values, std, prior),
         active_bounds=active_bounds(values, prior),
-        condition_number=fit.knowledge.condition_number,
-        undetermined=undetermined(fit.knowledge, prior.names),
+        condition_number=fit.posterior.condition_number,
+        undetermined=undetermined(fit.posterior, prior.names),
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
         tow_biases=tow_biases(fit),
         net=net_factors(fit),
-        freedom=freedom,
-        misfit=fit.misfit,
+        degrees_of_freedom=freedom,
+        birge_ratio=fit.birge_ratio,
         cost=fit.cost,
         objective=fit.objective,
         innovation=innovation,

@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 
-class Prediction(Protocol):
+class SteadyPrediction(Protocol):
     """Prediction of a steady state."""
 
     @property
@@ -31,7 +31,7 @@ class Prediction(Protocol):
         ...
 
 
-class Predictor(Protocol):
+class SteadyPredictor(Protocol):
     """Predictor of the gear's steady state."""
 
     def predict(
@@ -41,7 +41,7 @@ class Predictor(Protocol):
         starboard_length: float,
         speed: float,
         start: Any = None,
-    ) -> Prediction:
+    ) -> SteadyPrediction:
         """Solve for coefficients (12,), warp lengths (m) and speed (m/s).
 
         Raises
@@ -53,16 +53,16 @@ class Predictor(Protocol):
 
 
 @runtime_checkable
-class WindowPredictor(Predictor, Protocol):
+class WindowPredictor(SteadyPredictor, Protocol):
     """Predictor that depends on more of a window than warp lengths and speed."""
 
-    def in_window(self, window: SteadyWindow) -> Predictor:
+    def in_window(self, window: SteadyWindow) -> SteadyPredictor:
         """Return the predictor for this window."""
         ...
 
 
 @runtime_checkable
-class NetPredictor(Predictor, Protocol):
+class NetPredictor(SteadyPredictor, Protocol):
     """Predictor with factors on drag and weight of the net."""
 
     def with_net(self, drag: float, weight: float) -> 'NetPredictor':

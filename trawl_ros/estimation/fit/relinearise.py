@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
-from trawl_ros.estimation.fit.prediction import Predictor
+from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 WELL_KNOWN = 0.5
@@ -45,7 +45,7 @@ def moved(
     aimed: Fit,
     share: float,
     threshold: float,
-    predictor: Predictor,
+    predictor: SteadyPredictor,
     observables: tuple[str, ...],
     spare: int = 0,
 ) -> Fit:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
-from trawl_ros.estimation.planning.states import DEPTHS, Candidate, Manoeuvre
+from trawl_ros.estimation.planning.states import DEPTHS, Manoeuvre, TowableManoeuvre
 from trawl_ros.estimation.windows.operation import Block, Operation
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
@@ -125,7 +125,7 @@ class Rest:
         return self.drift * options.slow_s / self.window
 
 
-def rest_of(candidate: Candidate, options: WindowOptions) -> Rest:
+def rest_of(candidate: TowableManoeuvre, options: WindowOptions) -> Rest:
     """Settling of the gear at a candidate, by the windows' criterion."""
     part = candidate.part
     depths = {
@@ -198,7 +198,7 @@ class Timetable:
     """
 
     def __init__(
-        self, ability: Ability, options: WindowOptions, candidates: Iterable[Candidate]
+        self, ability: Ability, options: WindowOptions, candidates: Iterable[TowableManoeuvre]
     ) -> None:
         self.ability = ability
         self.options = options

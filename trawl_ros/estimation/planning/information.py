@@ -96,4 +96,4 @@ def fitted_covariance(
     numbered = tuple(
         replace(part, window=replace(part.window, index=index)) for index, part in enumerate(parts)
     )
-    return Fit(numbered, coefficients, AS_STATED, prior, options).knowledge.covariance
+    return Fit(numbered, coefficients, AS_STATED, prior, options).posterior.covariance

@@ -24,7 +24,13 @@ from trawl_ros.estimation.planning.information import (
     information_of,
 )
 from trawl_ros.estimation.planning.search import shortfall
-from trawl_ros.estimation.planning.states import Candidate, Explorer, Limits, Manoeuvre, Refused
+from trawl_ros.estimation.planning.states import (
+    Explorer,
+    Limits,
+    Manoeuvre,
+    Refused,
+    TowableManoeuvre,
+)
 from trawl_ros.estimation.planning.windows import imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
@@ -110,10 +116,10 @@ class Adviser:
         self._limits = limits or Limits()
         self._explorer: Explorer | None = None
         self._waiting: list[Manoeuvre] = []
-        self._known: dict[Manoeuvre, Candidate] = {}
+        self._known: dict[Manoeuvre, TowableManoeuvre] = {}
 
     @property
-    def known(self) -> Mapping[Manoeuvre, Candidate]:
+    def known(self) -> Mapping[Manoeuvre, TowableManoeuvre]:
         """Feasible manoeuvres among those solved so far."""
         return MappingProxyType(self._known)
 
@@ -154,7 +160,7 @@ class Adviser:
         if not fit.windows or not self._known:
             return None
         question = _Question.of(fit, self._gear)
-        before = shortfall(question.quantities(fit.knowledge.covariance))
+        before = shortfall(question.quantities(fit.posterior.covariance))
         information = information_in(fit)
         timetable = self._timetable()
         best, most = None, -np.inf
@@ -180,8 +186,8 @@ class Adviser:
         question = _Question.of(fit, self._gear)
         number = self._windows.max_windows_per_state
         parts = expected_windows(fit, self._known[manoeuvre], number)
-        now = fit.knowledge.covariance
-        then = replace(fit, windows=(*fit.windows, *parts)).knowledge.covariance
+        now = fit.posterior.covariance
+        then = replace(fit, windows=(*fit.windows, *parts)).posterior.covariance
         return Advice(
             manoeuvre=manoeuvre,
             minutes=_minutes(self._timetable(), fit, manoeuvre),
@@ -199,7 +205,7 @@ class Adviser:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)
 
 
-def expected_windows(fit: Fit, candidate: Candidate, number: int) -> tuple[Linearised, ...]:
+def expected_windows(fit: Fit, candidate: TowableManoeuvre, number: int) -> tuple[Linearised, ...]:
     """Predicted windows of a manoeuvre in a fit's newest tow, at its noise."""
     newest = fit.windows[-1].window
     parts = imagined_windows(

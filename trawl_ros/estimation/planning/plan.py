@@ -20,15 +20,15 @@ from trawl_ros.estimation.planning.duration import Leg, ability_of
 from trawl_ros.estimation.planning.limits import limits_of
 from trawl_ros.estimation.planning.search import Designer, Question
 from trawl_ros.estimation.planning.states import (
-    Candidate,
-    Choice,
     Explorer,
     Limits,
     Manoeuvre,
+    ManoeuvreChoice,
     Refused,
+    TowableManoeuvre,
     explore,
 )
-from trawl_ros.estimation.planning.sweep import Trial, best_sweep, paper_noise
+from trawl_ros.estimation.planning.sweep import SweepTrial, best_sweep, paper_noise
 from trawl_ros.estimation.planning.windows import TABLE_NOISE
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
@@ -77,12 +77,12 @@ class TrialPlan:
 
     gear: str
     question: Question
-    choice: Choice
-    trial: Trial
+    choice: ManoeuvreChoice
+    trial: SweepTrial
     gains: tuple[Gain, ...]
     limits: Mapping[str, str]
     before: LawQuantities
-    sweeps: tuple[Trial, ...]
+    sweeps: tuple[SweepTrial, ...]
 
 
 Progress = Callable[[str, int, int], None]
@@ -138,7 +138,7 @@ def plan_trial(
         minutes=60.0 * hours,
     )
     filed = Explorer(predictor, filed_coefficients(gear), limits)
-    seen: dict[Manoeuvre, Candidate] = {}
+    seen: dict[Manoeuvre, TowableManoeuvre] = {}
     while True:
         designer = Designer(question, choice.candidates)
         legs = designer.best()
@@ -169,7 +169,7 @@ def plan_trial(
                 (there, seen.values()),
             )
         )
-        trials.append(Trial(name, chosen, known, by_data, as_filed))
+        trials.append(SweepTrial(name, chosen, known, by_data, as_filed))
     trial = trials[0]
     return TrialPlan(
         gear=gear.name,
@@ -188,15 +188,15 @@ def filed_coefficients(gear: GearRecord) -> np.ndarray:
     return np.array([getattr(gear.board.coefficients, name) for name in COEFFICIENTS])
 
 
-def _angles(candidates: Sequence[Candidate], gear: GearRecord) -> WorkingAngles:
+def _angles(candidates: Sequence[TowableManoeuvre], gear: GearRecord) -> WorkingAngles:
     return working_angles([one.part.state.observables for one in candidates], gear.board.slip_sign)
 
 
 def _look_up(
     legs: Sequence[Leg],
     explorer: Explorer,
-    near: Sequence[Candidate],
-    seen: dict[Manoeuvre, Candidate],
+    near: Sequence[TowableManoeuvre],
+    seen: dict[Manoeuvre, TowableManoeuvre],
     progress: Progress,
 ) -> dict[Manoeuvre, Refused]:
     """Look the legs up with another board, from the states near them that are known; give those
@@ -206,7 +206,7 @@ def _look_up(
     lost = {}
     for done, manoeuvre in enumerate(wanted, 1):
         found = explorer.look_up(manoeuvre, near)
-        if isinstance(found, Candidate):
+        if isinstance(found, TowableManoeuvre):
             seen[manoeuvre] = found
         else:
             lost[manoeuvre] = found
@@ -234,7 +234,9 @@ def _gains(designer: Designer, manoeuvres: Sequence[Manoeuvre]) -> tuple[Gain, .
     return tuple(gains)
 
 
-def _as_filed(question: Question, candidates: Sequence[Candidate], gear: GearRecord) -> Question:
+def _as_filed(
+    question: Question, candidates: Sequence[TowableManoeuvre], gear: GearRecord
+) -> Question:
     """The same design question with the board that the gear file describes."""
     coefficients = filed_coefficients(gear)
     return replace(

@@ -3,10 +3,10 @@
 from typing import Any
 
 from trawl_ros.estimation.planning.states import Manoeuvre
-from trawl_ros.estimation.planning.sweep import Trial
+from trawl_ros.estimation.planning.sweep import SweepTrial
 
 
-def scenario_of(trial: Trial, gear: str) -> dict[str, Any]:
+def scenario_of(trial: SweepTrial, gear: str) -> dict[str, Any]:
     """Return the content of the scenario file, to be written as YAML.
 
     Parameters

@@ -24,7 +24,7 @@ from trawl_ros.estimation.planning.information import (
     information_before,
     information_of,
 )
-from trawl_ros.estimation.planning.states import Candidate, Manoeuvre
+from trawl_ros.estimation.planning.states import Manoeuvre, TowableManoeuvre
 from trawl_ros.estimation.planning.windows import TABLE_NOISE, imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
 
@@ -83,7 +83,7 @@ class Designer:
     def __init__(
         self,
         question: Question,
-        candidates: Iterable[Candidate],
+        candidates: Iterable[TowableManoeuvre],
         noise: Mapping[str, float] = TABLE_NOISE,
     ) -> None:
         self.question = question
@@ -107,7 +107,7 @@ class Designer:
         legs = self.timetable.legs(ordered)
         return legs if minutes_of(legs) <= self.question.minutes else None
 
-    def _windows(self, candidate: Candidate, state: int) -> tuple[Linearised, ...]:
+    def _windows(self, candidate: TowableManoeuvre, state: int) -> tuple[Linearised, ...]:
         question = self.question
         return imagined_windows(
             candidate,

@@ -79,7 +79,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class TowableManoeuvre:
     """Candidate: a feasible manoeuvre, the linearised model there, and the decay time (s, to 1/e)
     of its slowest motion.
     """
@@ -98,16 +98,16 @@ class Refused:
 
 
 @dataclass(frozen=True)
-class Choice:
+class ManoeuvreChoice:
     """Choice: feasible and refused manoeuvres."""
 
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[TowableManoeuvre, ...]
     refused: tuple[Refused, ...]
 
-    def without(self, lost: Mapping[Manoeuvre, Refused]) -> 'Choice':
+    def without(self, lost: Mapping[Manoeuvre, Refused]) -> 'ManoeuvreChoice':
         """Copy of the choice without manoeuvres found infeasible."""
         left = tuple(one for one in self.candidates if one.manoeuvre not in lost)
-        return Choice(left, (*self.refused, *lost.values()))
+        return ManoeuvreChoice(left, (*self.refused, *lost.values()))
 
 
 def deepest_point(model: GearModel, found: Equilibrium) -> float:
@@ -155,13 +155,13 @@ class Explorer:
             for speed in reversed(limits.speeds)
         )
 
-    def __iter__(self) -> Iterator[Candidate | Refused]:
+    def __iter__(self) -> Iterator[TowableManoeuvre | Refused]:
         """Yield the solution of every manoeuvre once.
 
         At a length, nothing is sought at and below a speed at which a gear that could be towed
         faster cannot be towed any more: there the boards have lost their lift.
         """
-        known: list[Candidate] = []
+        known: list[TowableManoeuvre] = []
         lost: dict[float, tuple[float, str]] = {}
         for manoeuvre in self.manoeuvres:
             slowest, reason = lost.get(manoeuvre.length, (0.0, ''))
@@ -169,16 +169,18 @@ class Explorer:
                 yield Refused(manoeuvre, reason)
                 continue
             found = self.look_up(manoeuvre, known)
-            if isinstance(found, Candidate):
+            if isinstance(found, TowableManoeuvre):
                 known.append(found)
             elif any(_faster(one.manoeuvre, manoeuvre) for one in known):
                 lost[manoeuvre.length] = manoeuvre.speed, found.reason
             yield found
 
-    def look_up(self, manoeuvre: Manoeuvre, known: Sequence[Candidate]) -> Candidate | Refused:
+    def look_up(
+        self, manoeuvre: Manoeuvre, known: Sequence[TowableManoeuvre]
+    ) -> TowableManoeuvre | Refused:
         """Solve one manoeuvre, warm from those known, and check it."""
 
-        def distance(other: Candidate) -> float:
+        def distance(other: TowableManoeuvre) -> float:
             there = other.manoeuvre
             return (
                 abs(there.port_length / manoeuvre.port_length - 1.0)
@@ -198,7 +200,7 @@ class Explorer:
             return Refused(manoeuvre, reason.reason)
         if trouble := self._trouble(model, part):
             return Refused(manoeuvre, trouble)
-        return Candidate(manoeuvre, part, steady.stability.settling_time)
+        return TowableManoeuvre(manoeuvre, part, steady.stability.settling_time)
 
     def _trouble(self, model: GearModel, part: Linearised) -> str:
         limits, seen = self.limits, part.state.observables
@@ -212,7 +214,9 @@ class Explorer:
         return ''
 
 
-def explore(explorer: Explorer, progress: Callable[[int], None] = lambda done: None) -> Choice:
+def explore(
+    explorer: Explorer, progress: Callable[[int], None] = lambda done: None
+) -> ManoeuvreChoice:
     """Solve all manoeuvres.
 
     Parameters
@@ -229,7 +233,7 @@ def explore(explorer: Explorer, progress: Callable[[int], None] = lambda done: N
     """
     candidates, refused = [], []
     for done, found in enumerate(explorer, 1):
-        if isinstance(found, Candidate):
+        if isinstance(found, TowableManoeuvre):
             candidates.append(found)
         else:
             refused.append(found)
@@ -242,7 +246,7 @@ def explore(explorer: Explorer, progress: Callable[[int], None] = lambda done: N
             f'{limits.lengths[0]:g} to {limits.lengths[-1]:g} m of warp at {limits.speeds[0]:g} to '
             f'{limits.speeds[-1]:g} m/s (found: {reasons}); expected one at least'
         )
-    return Choice(tuple(candidates), tuple(refused))
+    return ManoeuvreChoice(tuple(candidates), tuple(refused))
 
 
 def _faster(one: Manoeuvre, other: Manoeuvre) -> bool:

@@ -13,7 +13,7 @@ from trawl_ros.records.channels import INPUTS
 
 
 @dataclass(frozen=True)
-class Trial:
+class SweepTrial:
     """Trial: its legs and the quantities known after them.
 
     ``known`` is that with the board as it is believed to be, ``by_data`` the same without what

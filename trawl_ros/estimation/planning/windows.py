@@ -7,7 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.planning.states import DEPTHS, PLANNED, Candidate
+from trawl_ros.estimation.planning.states import DEPTHS, PLANNED, TowableManoeuvre
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.channels import CHANNELS, INPUTS
 
@@ -25,7 +25,7 @@ at the lowest rate that the instrument may have."""
 
 
 def imagined_windows(
-    candidate: Candidate,
+    candidate: TowableManoeuvre,
     coefficients: np.ndarray,
     *,
     state: int,

@@ -14,7 +14,7 @@ from trawl_ros.estimation.planning.figure import plan_figure
 from trawl_ros.estimation.planning.plan import TrialPlan
 from trawl_ros.estimation.planning.scenario import scenario_of
 from trawl_ros.estimation.planning.states import Manoeuvre
-from trawl_ros.estimation.planning.sweep import Trial
+from trawl_ros.estimation.planning.sweep import SweepTrial
 from trawl_ros.report.style import DPI
 from trawl_ros.scenario.scenario import load_scenario
 
@@ -94,11 +94,11 @@ def plan_record(plan: TrialPlan) -> dict[str, Any]:
     }
 
 
-def _key(trial: Trial) -> str:
+def _key(trial: SweepTrial) -> str:
     return f'sd_of_span_after_{trial.name}'.replace(', ', '_').replace("'s", '').replace(' ', '_')
 
 
-def _trial(trial: Trial) -> dict[str, Any]:
+def _trial(trial: SweepTrial) -> dict[str, Any]:
     def number(known: LawQuantities) -> int:
         return int(known.well_known.sum())
 

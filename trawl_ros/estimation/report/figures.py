@@ -23,7 +23,7 @@ COURSE = 'How it got there'
 
 
 @dataclass(frozen=True)
-class Drawing:
+class ReportFigure:
     """Drawing: a figure, its file, the heading it stands under and its caption."""
 
     file: str
@@ -32,59 +32,59 @@ class Drawing:
     figure: Figure
 
 
-def drawings(report: Report) -> list[Drawing]:
+def drawings(report: Report) -> list[ReportFigure]:
     """Return all figures for which the report has the numbers."""
     return [
-        Drawing(
+        ReportFigure(
             'held_out.png', FIT,
             'Error of each channel: fitted, and predicted for what was left out of the fit. '
             'Dots are single tows; the line is what the paper has on the points it fitted.',
             held_out_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'channels.png', FIT,
             'Measured (dots) and modelled (lines) over warp length, one colour per speed. '
             'Dashed: before the fit.',
             channels_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'residuals.png', FIT,
             'Measured less modelled over warp length and speed, in stated standard deviations. '
             'Shaded: where nineteen of twenty belong. What grows along an axis is missing from '
             'the model.',
             residuals_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'tow_biases.png', FIT,
             'What the fit takes each instrument to read too high by, one standard deviation '
             'either way, in each tow. Shaded: what was known of it before.',
             tow_biases_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'coefficients.png', KNOWN,
             'Each coefficient by its departure from the start, in standard deviations of the '
             'prior. Open dots: not determined by the data.',
             coefficients_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'spectrum.png', KNOWN,
             'Left: how well the data know each direction among the coefficients; below 1 the '
             'prior knew more. Right: which coefficients each direction is made of.',
             spectrum_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'lift_drag.png', KNOWN,
             "Lift and drag of the board over the attack angle, as in the paper's Fig. 5, with "
             '95 % bands. Shaded: where the boards worked, where that is known.',
             lift_drag_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'objective.png', COURSE,
             "Objective of eq. 35 over the iterations, as in the paper's Fig. 4. Windows are "
             'taken in as they come, so the start values are drawn for the same windows.',
             objective_figure(report),
         ),
-        Drawing(
+        ReportFigure(
             'convergence.png', COURSE,
             'Each coefficient with its 95 % interval after each window, and at rest. Grey: the '
             'prior. Dotted: the truth, where it is known. Upright lines: another tow begins.',
@@ -93,7 +93,7 @@ def drawings(report: Report) -> list[Drawing]:
     ]  # fmt: skip
 
 
-def draw_figures(report: Report, folder: Path) -> list[Drawing]:
+def draw_figures(report: Report, folder: Path) -> list[ReportFigure]:
     """Draw all figures into an existing folder."""
     found = drawings(report)
     for drawing in found:

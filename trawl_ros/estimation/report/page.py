@@ -10,7 +10,7 @@ from typing import Any
 from trawl_ros.core.version import __version__
 from trawl_ros.estimation.fit.laws import LAWS
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.report.figures import Drawing
+from trawl_ros.estimation.report.figures import ReportFigure
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.report.verdict import BEYOND, verdict
@@ -30,7 +30,7 @@ class Embedded:
 
 
 def page(
-    report: Report, folder: Path, drawings: Sequence[Drawing], advice: Sequence[str] = ()
+    report: Report, folder: Path, drawings: Sequence[ReportFigure], advice: Sequence[str] = ()
 ) -> str:
     """Render the page as HTML.
 

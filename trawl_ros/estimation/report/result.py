@@ -53,7 +53,7 @@ def result(report: Report) -> dict[str, Any]:
             }
             for combination in estimate.undetermined
         ],
-        'misfit': estimate.misfit,
+        'misfit': estimate.birge_ratio,
         'noise_scales': dict(estimate.noise_scales),
         'net': {
             factor.what: {'value': factor.value, 'std': factor.std, 'known': factor.known}

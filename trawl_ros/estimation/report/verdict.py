@@ -116,10 +116,10 @@ def _concerns(report: Report) -> tuple[str, ...]:
     if estimate.active_bounds:
         bounds = '; '.join(estimate.active_bounds)
         found.append(f'On a bound, so that its interval is worth little: {bounds}.')
-    if estimate.misfit > WIDENED:
+    if estimate.birge_ratio > WIDENED:
         found.append(
             'The readings differ from the model by more than all known errors explain; intervals '
-            f'are widened {estimate.misfit:.1f} times for it.'
+            f'are widened {estimate.birge_ratio:.1f} times for it.'
         )
     if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > BEYOND]:
         found.append(f'Residuals are beyond what the stated errors allow in {", ".join(beyond)}.')

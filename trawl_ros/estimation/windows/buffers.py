@@ -6,7 +6,7 @@ from bisect import bisect_left
 import numpy as np
 
 from trawl_ros.estimation.windows.records import Rejections
-from trawl_ros.estimation.windows.timestamp_check import Order
+from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import NANO
 from trawl_ros.records.channels import Channel, Reading
 
@@ -34,7 +34,7 @@ class ChannelBuffer:
         By how much (ns) a window's readings of this channel lie before the window.
     """
 
-    def __init__(self, channel: Channel, order: Order, rejections: Rejections) -> None:
+    def __init__(self, channel: Channel, order: TimestampCheck, rejections: Rejections) -> None:
         self.channel = channel
         self.order = order
         self.first: int | None = None

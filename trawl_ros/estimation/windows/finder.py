@@ -23,8 +23,8 @@ from trawl_ros.estimation.windows.records import (
     WindowOptions,
 )
 from trawl_ros.estimation.windows.statistics import circular_median
-from trawl_ros.estimation.windows.timestamp_check import Order
-from trawl_ros.estimation.windows.watermark import NANO, Timeline
+from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
+from trawl_ros.estimation.windows.watermark import NANO, Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, WITNESSES, readings
 from trawl_ros.records.samples import Sample
 
@@ -71,11 +71,11 @@ class SteadyWindowFinder:
         self._clear()
 
     def _clear(self) -> None:
-        self._timeline = Timeline()
+        self._timeline = Watermark()
         self._buffers = {
             name: ChannelBuffer(
                 channel,
-                Order(channel, self._options, self._timeline, self.rejections),
+                TimestampCheck(channel, self._options, self._timeline, self.rejections),
                 self.rejections,
             )
             for name, channel in CHANNELS.items()

@@ -5,7 +5,7 @@ however channels interleave.
 """
 
 from trawl_ros.estimation.windows.records import Rejections, WindowOptions
-from trawl_ros.estimation.windows.watermark import NANO, Timeline
+from trawl_ros.estimation.windows.watermark import NANO, Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel, Reading
 
 BACK_S = 10.0
@@ -20,7 +20,7 @@ STEP_S = 60.0
 """Longest time (s) between two of these, but for channels that are slower still."""
 
 
-class Order:
+class TimestampCheck:
     """Timestamp check of one channel.
 
     A reading that leaps ahead of the last by more than the channel's longest gap waits until
@@ -51,7 +51,7 @@ class Order:
         self,
         channel: Channel,
         options: WindowOptions,
-        timeline: Timeline,
+        timeline: Watermark,
         rejections: Rejections,
     ) -> None:
         self.newest: int | None = None

@@ -9,7 +9,7 @@ PAUSE_NS = 10 * NANO
 
 
 @dataclass
-class Timeline:
+class Watermark:
     """Watermark: the stretches of time in which the winches report, of which the last two count.
 
     Attributes

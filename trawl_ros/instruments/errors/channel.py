@@ -52,7 +52,7 @@ class ErrorModel:
     freezes: BurstModel = NO_BURSTS
 
 
-class Channel:
+class ErrorChannel:
     """Measurement channel of one quantity.
 
     Parameters

@@ -17,7 +17,7 @@ NONE = 'none'
 
 
 @dataclass(frozen=True)
-class Kind:
+class FaultKind:
     """Kind of fault: its description, and the range of its size; no range, no size."""
 
     sentence: str
@@ -30,31 +30,35 @@ class Kind:
         return self.low is not None
 
 
-OF_QUANTITIES: Mapping[str, Kind] = MappingProxyType(
+OF_QUANTITIES: Mapping[str, FaultKind] = MappingProxyType(
     {
-        'frozen': Kind('the reading stays what it was'),
-        'lost': Kind('the reading is NaN'),
-        'offset': Kind('this much is added', -math.inf),
-        'scale': Kind('the reading is multiplied by this', -math.inf),
-        'drift': Kind('this much more is added each hour', -math.inf),
-        'noise': Kind('normal noise of this standard deviation is added', 0.0),
-        'outliers': Kind('this share of the readings lies far off', 0.0, 1.0),
-        'saturated': Kind('no reading is larger than this', -math.inf),
+        'frozen': FaultKind('the reading stays what it was'),
+        'lost': FaultKind('the reading is NaN'),
+        'offset': FaultKind('this much is added', -math.inf),
+        'scale': FaultKind('the reading is multiplied by this', -math.inf),
+        'drift': FaultKind('this much more is added each hour', -math.inf),
+        'noise': FaultKind('normal noise of this standard deviation is added', 0.0),
+        'outliers': FaultKind('this share of the readings lies far off', 0.0, 1.0),
+        'saturated': FaultKind('no reading is larger than this', -math.inf),
     }
 )
 """Faults of a quantity; on a whole instrument they sit on all of its quantities."""
 
-OF_INSTRUMENTS: Mapping[str, Kind] = MappingProxyType(
+OF_INSTRUMENTS: Mapping[str, FaultKind] = MappingProxyType(
     {
-        'silent': Kind('nothing is sent'),
-        'dropouts': Kind('this share of the time nothing is sent, in bursts of 10 s', 0.0, 0.99),
-        'late': Kind('samples are sent this many seconds later', 0.0, 3600.0),
-        'jitter': Kind('samples are taken off the beat by this standard deviation, s', 0.0, 60.0),
+        'silent': FaultKind('nothing is sent'),
+        'dropouts': FaultKind(
+            'this share of the time nothing is sent, in bursts of 10 s', 0.0, 0.99
+        ),
+        'late': FaultKind('samples are sent this many seconds later', 0.0, 3600.0),
+        'jitter': FaultKind(
+            'samples are taken off the beat by this standard deviation, s', 0.0, 60.0
+        ),
     }
 )
 """Faults of a whole instrument."""
 
-KINDS: Mapping[str, Kind] = MappingProxyType({**OF_QUANTITIES, **OF_INSTRUMENTS})
+KINDS: Mapping[str, FaultKind] = MappingProxyType({**OF_QUANTITIES, **OF_INSTRUMENTS})
 
 
 @dataclass(frozen=True)

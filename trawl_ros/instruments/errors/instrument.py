@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.bursts import HOUR, NO_BURSTS, BurstModel, Bursts
-from trawl_ros.instruments.errors.channel import Channel, ErrorModel
+from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
 from trawl_ros.instruments.errors.faults import OF_INSTRUMENTS, Fault
 from trawl_ros.instruments.errors.random_streams import generator
 from trawl_ros.instruments.errors.sampling import TOLERANCE, Sampler
@@ -23,7 +23,7 @@ DROPOUT_S = 10.0
 
 
 @dataclass(frozen=True)
-class Draws:
+class SeedPlan:
     """Seed plan of an instrument's random numbers.
 
     ``seed`` is not negative. ``state_changes`` are the times at which biases are drawn anew,
@@ -35,7 +35,7 @@ class Draws:
     state_changes: tuple[float, ...] = ()
 
 
-class Beat:
+class SamplingClock:
     """Sampling clock of an instrument: times of sampling and sending, with timing faults.
 
     Parameters
@@ -147,12 +147,12 @@ class Instrument(ABC, Generic[PartT, SampleT]):
     """
 
     def __init__(
-        self, name: str, timing: Timing, errors: dict[str, ErrorModel], draws: Draws
+        self, name: str, timing: Timing, errors: dict[str, ErrorModel], draws: SeedPlan
     ) -> None:
         self.name = name
-        self._beat = Beat(name, timing, draws.seed)
+        self._beat = SamplingClock(name, timing, draws.seed)
         self._channels = {
-            channel: Channel(f'{name}/{channel}', model, draws.seed)
+            channel: ErrorChannel(f'{name}/{channel}', model, draws.seed)
             for channel, model in errors.items()
         }
         self._changes: Sequence[int] = [round(t * SECOND) for t in draws.state_changes]
@@ -241,5 +241,5 @@ class Instrument(ABC, Generic[PartT, SampleT]):
     def _stated_std(self, channel: str) -> float:
         return self._channels[channel].stated_std
 
-    def _chosen(self, quantity: str | None) -> list[Channel]:
+    def _chosen(self, quantity: str | None) -> list[ErrorChannel]:
         return list(self._channels.values()) if quantity is None else [self._channels[quantity]]

@@ -16,7 +16,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
 
 
-class Errors(Record):
+class ChannelErrors(Record):
     """Errors of a channel in a unit of its own.
 
     Keys end in the unit. Standard deviations are ``noise_m``, drawn per sample, ``correlated_m``
@@ -39,7 +39,7 @@ class Errors(Record):
     freeze_s: Seconds = 0.0
 
     @model_validator(mode='after')
-    def _time_for_correlation(self) -> 'Errors':
+    def _time_for_correlation(self) -> 'ChannelErrors':
         if self._given('correlated') > 0 and self.correlation_time_s == 0:
             raise ValueError(
                 f'correlation_time_s: found 0, expected more, as correlated_{self.unit} is given'
@@ -86,7 +86,7 @@ class Errors(Record):
         return self._given(kind) * self.si
 
 
-class LengthErrors(Errors):
+class LengthErrors(ChannelErrors):
     """Errors in metres."""
 
     unit: ClassVar[str] = 'm'
@@ -103,7 +103,7 @@ class LengthErrors(Errors):
     stated_std_m: NotNegative | None = None
 
 
-class SpeedErrors(Errors):
+class SpeedErrors(ChannelErrors):
     """Errors in metres per second."""
 
     unit: ClassVar[str] = 'm_s'
@@ -120,7 +120,7 @@ class SpeedErrors(Errors):
     stated_std_m_s: NotNegative | None = None
 
 
-class ForceErrors(Errors):
+class ForceErrors(ChannelErrors):
     """Errors in kilonewtons."""
 
     unit: ClassVar[str] = 'kn'
@@ -138,7 +138,7 @@ class ForceErrors(Errors):
     stated_std_kn: NotNegative | None = None
 
 
-class PressureErrors(Errors):
+class PressureErrors(ChannelErrors):
     """Errors in kilopascals; 10 kPa is about a metre of water."""
 
     unit: ClassVar[str] = 'kpa'
@@ -156,7 +156,7 @@ class PressureErrors(Errors):
     stated_std_kpa: NotNegative | None = None
 
 
-class AngleErrors(Errors):
+class AngleErrors(ChannelErrors):
     """Errors in degrees."""
 
     unit: ClassVar[str] = 'deg'
@@ -174,7 +174,7 @@ class AngleErrors(Errors):
     stated_std_deg: NotNegative | None = None
 
 
-class TurnErrors(Errors):
+class TurnErrors(ChannelErrors):
     """Errors in degrees per second."""
 
     unit: ClassVar[str] = 'deg_s'
@@ -192,7 +192,7 @@ class TurnErrors(Errors):
     stated_std_deg_s: NotNegative | None = None
 
 
-class LevelErrors(Errors):
+class LevelErrors(ChannelErrors):
     """Errors in decibels."""
 
     unit: ClassVar[str] = 'db'

@@ -45,7 +45,7 @@ class Sweep:
 
 
 @dataclass(frozen=True)
-class Luck:
+class SweepGenerators:
     """Random generators of an image, each for one kind of chance."""
 
     fish: np.random.Generator
@@ -60,7 +60,7 @@ def image_of(
     interval_s: float,
     gain: float,
     surroundings: Surroundings,
-    luck: Luck,
+    luck: SweepGenerators,
 ) -> np.ndarray:
     """Compute the image of a sweep.
 

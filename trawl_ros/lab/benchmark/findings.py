@@ -3,20 +3,20 @@
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 
-from trawl_ros.lab.benchmark.row import Row
-from trawl_ros.lab.report.check import Drawing
+from trawl_ros.lab.benchmark.row import BenchmarkRow
+from trawl_ros.lab.report.check import CaseFigure
 
 
 @dataclass(frozen=True)
 class Findings:
     """Findings: rows of the report, figures, and a description of the measurement."""
 
-    rows: tuple[Row, ...]
-    drawings: tuple[Drawing, ...] = ()
+    rows: tuple[BenchmarkRow, ...]
+    drawings: tuple[CaseFigure, ...] = ()
     text: str = ''
 
 
-def without_ros(asked: Row) -> Findings | None:
+def without_ros(asked: BenchmarkRow) -> Findings | None:
     """Return findings that say ROS 2 is missing for this row; None where it is installed."""
     if find_spec('rclpy') is not None:
         return None

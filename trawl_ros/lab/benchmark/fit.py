@@ -10,10 +10,15 @@ from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.benchmark.findings import Findings
-from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, Differences, Searched
+from trawl_ros.lab.benchmark.fit_rivals import (
+    CoordinateSearch,
+    Counting,
+    FiniteDifferencePredictor,
+    Searched,
+)
 from trawl_ros.lab.benchmark.fit_trial import LENGTHS, MORE_DRAG, SPEEDS, plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import timed
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.observables import OBSERVABLES
@@ -50,7 +55,7 @@ def measure(small: bool) -> Findings:
     windows = trial(plant_of(gear), lengths, speeds)
     options = QUICK if small else OPTIONS
     ours = _fitted(Counting(model), windows, prior, options)
-    theirs = _fitted(Differences(model, prior.std), windows, prior, options)
+    theirs = _fitted(FiniteDifferencePredictor(model, prior.std), windows, prior, options)
     search = CoordinateSearch(model, windows, prior)
     budget = round((0.02 if small else 1.0) * PATIENCE * OVER_SEARCH * ours.solves)
     searched, seconds = timed(lambda: search.search(ours.objective, budget))
@@ -61,23 +66,23 @@ def measure(small: bool) -> Findings:
         f'{searched.solves} steady states, its budget: the ratio is no more than a lower bound'
     )
     rows = (
-        Row(
+        BenchmarkRow(
             f'steady states solved for one fit to {len(windows)} states', ours.solves, '',
             note=f'{ours.reason}; eq. 35 at {ours.objective:.4f}',
         ),
-        Row(
+        BenchmarkRow(
             "coordinate search's steady states over ours", searched.solves / ours.solves, '×',
             OVER_SEARCH, 'at_least', f'the search {found}',
         ),
-        Row(
+        BenchmarkRow(
             "coordinate search's time over ours", seconds / ours.seconds, '×', 1.0, 'at_least',
             f'{seconds:.0f} s and {ours.seconds:.1f} s',
         ),
-        Row(
+        BenchmarkRow(
             "finite-difference Gauss–Newton's steady states over ours",
             theirs.solves / ours.solves, '×', OVER_DIFFERENCES, 'at_least', theirs.reason,
         ),
-        Row(
+        BenchmarkRow(
             "finite-difference Gauss–Newton's time over ours", theirs.seconds / ours.seconds, '×',
             1.0, 'at_least', f'{theirs.seconds:.0f} s and {ours.seconds:.1f} s',
         ),
@@ -119,10 +124,10 @@ def _fitted(
     return Fitted(value, solves, seconds, estimate.reason)
 
 
-def _no_worse(name: str, ours: Fitted, theirs: Fitted | Searched) -> Row:
+def _no_worse(name: str, ours: Fitted, theirs: Fitted | Searched) -> BenchmarkRow:
     """Row on the objective (eq. 35) to four digits, since differences are never exact."""
     note = f'{ours.objective:.4f} and {theirs.objective:.4f}'
     if ours.objective > theirs.objective:
         note += '; a search that is stopped when it is no worse ends a little lower'
     ratio = round(ours.objective / theirs.objective, 4)
-    return Row(f'our objective over that of {name}', ratio, '×', note=note)
+    return BenchmarkRow(f'our objective over that of {name}', ratio, '×', note=note)

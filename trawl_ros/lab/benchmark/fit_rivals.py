@@ -45,7 +45,7 @@ class Counting(Predictor):
         return super().predict(coefficients, port_length, starboard_length, speed, start)
 
 
-class Differences(Counting):
+class FiniteDifferencePredictor(Counting):
     """Predictor with derivatives by forward differences, each a warm steady state."""
 
     def __init__(self, model: GearModel, std: np.ndarray) -> None:

@@ -9,12 +9,12 @@ from matplotlib.figure import Figure
 
 from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.gears import default_gear
-from trawl_ros.lab.benchmark.haul import CONVERGED_S, FROM, TO, Error, Haul, error, haul_of
-from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.haul import CONVERGED_S, FROM, TO, Error, HaulManoeuvre, error, haul_of
+from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import factor_cost, median_s, timed
 from trawl_ros.lab.benchmark.web import moordyn_web_factor
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
-from trawl_ros.lab.report.check import Drawing
+from trawl_ros.lab.report.check import CaseFigure
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.stepper import StepFailed
@@ -58,18 +58,22 @@ def measure(small: bool) -> Findings:
         factor = haul.duration_s / median_s(lambda: haul.run(step), 1 if small else 3)
         note = _words(runs[best], haul)
     what = 'full gear with boards in 6-DOF, hauling, at the fastest step with an error below 1 %'
-    rows.append(Row(what, factor, '× real time', REAL_TIME, 'at_least', note))
+    rows.append(BenchmarkRow(what, factor, '× real time', REAL_TIME, 'at_least', note))
     rows.append(_beside_moordyn(factor, model, small=small))
     if best is not None:
-        rows.append(Row('that step', runs[best].step_s, 's'))
+        rows.append(BenchmarkRow('that step', runs[best].step_s, 's'))
         worst = runs[best].error
         assert worst is not None
         note = f'of the range of {worst.worst}; {worst.of_value:.2%} of its value at most'
-        rows.append(Row('its error', 100 * worst.of_range, '%', note=note))
+        rows.append(BenchmarkRow('its error', 100 * worst.of_range, '%', note=note))
     rows.append(_simulation(model, 4.0 if small else 60.0))
     return Findings(
         tuple(rows),
-        (Drawing('steps', 'Error and speed of the manoeuvre against the time step.', _draw(runs)),),
+        (
+            CaseFigure(
+                'steps', 'Error and speed of the manoeuvre against the time step.', _draw(runs)
+            ),
+        ),
         f'{haul.duration_s:.0f} s: the winches haul from {FROM.port_length:.0f} to '
         f'{TO.port_length:.0f} m and the ship slows from {FROM.speed:g} to {TO.speed:g} m/s, '
         f'both within what they can do. Spread, depths, tensions, opening, α and δ are held '
@@ -79,7 +83,7 @@ def measure(small: bool) -> Findings:
     )
 
 
-def _run(haul: Haul, step_s: float, converged: np.ndarray) -> Run:
+def _run(haul: HaulManoeuvre, step_s: float, converged: np.ndarray) -> Run:
     try:
         ride, seconds = timed(lambda: haul.run(step_s))
     except StepFailed:
@@ -92,7 +96,7 @@ def _run(haul: Haul, step_s: float, converged: np.ndarray) -> Run:
     )
 
 
-def _words(run: Run, haul: Haul) -> str:
+def _words(run: Run, haul: HaulManoeuvre) -> str:
     model = haul.model
     each_s, _ = factor_cost(model, haul.start.state, haul.tows[0], 3)
     return (
@@ -102,17 +106,17 @@ def _words(run: Run, haul: Haul) -> str:
     )
 
 
-def _beside_moordyn(factor: float, model: GearModel, *, small: bool) -> Row:
+def _beside_moordyn(factor: float, model: GearModel, *, small: bool) -> BenchmarkRow:
     what = "the same beside MoorDyn's factor on a web of as many lines and points"
     try:
         theirs = moordyn_web_factor(small)
     except (PeerAbsent, PeerFailed) as error:
-        return Row(what, math.nan, '×', OVER_MOORDYN, 'at_least', str(error))
+        return BenchmarkRow(what, math.nan, '×', OVER_MOORDYN, 'at_least', str(error))
     note = f'MoorDyn: {theirs:.1f} × real time, its doors prescribed'
-    return Row(what, factor / theirs, '×', OVER_MOORDYN, 'at_least', note)
+    return BenchmarkRow(what, factor / theirs, '×', OVER_MOORDYN, 'at_least', note)
 
 
-def _simulation(model: GearModel, duration_s: float) -> Row:
+def _simulation(model: GearModel, duration_s: float) -> BenchmarkRow:
     """Row on the tow as `sim_node` and `trawl tow` advance it."""
     period_s = 0.1
     simulation = Simulation(model, FROM, period=period_s)
@@ -123,7 +127,7 @@ def _simulation(model: GearModel, duration_s: float) -> Row:
             simulation.advance()
 
     seconds = timed(tow)[1]
-    return Row(
+    return BenchmarkRow(
         'the same hauling in the steps that sim_node takes by default',
         duration_s / seconds,
         '× real time',

@@ -11,9 +11,9 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.benchmark.haul import START, haul_of
-from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import factor_cost, median_s
-from trawl_ros.lab.report.check import Drawing
+from trawl_ros.lab.report.check import CaseFigure
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -30,7 +30,7 @@ STEP_S = 0.2
 
 
 @dataclass(frozen=True)
-class Size:
+class GrowthSize:
     """One refinement: its ``nodes`` in the net, and CPU times (s) of a time step, a steady
     state from a known one 20 m of warp away, and one factorisation with its solution.
     ``factor_mb`` is the size of the factors, ``peak_mb`` the most that the process ever held.
@@ -64,30 +64,44 @@ def measure(small: bool) -> Findings:
     step_there = exponent([s.nodes for s in upper], [s.step_s for s in upper])
     warm_there = exponent([s.nodes for s in upper], [s.warm_s for s in upper])
     rows = (
-        Row('net nodes of the largest net', last.nodes, '', MOST_NODES, 'at_least', refused),
-        Row(
-            'exponent of the time per step in the number of net nodes', step, '', EXPONENT,
-            'at_most', f'{span}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
+        BenchmarkRow(
+            'net nodes of the largest net', last.nodes, '', MOST_NODES, 'at_least', refused
+        ),
+        BenchmarkRow(
+            'exponent of the time per step in the number of net nodes',
+            step,
+            '',
+            EXPONENT,
+            'at_most',
+            f'{span}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
             f'{1e3 * last.step_s:.0f} ms; {step_there:.2f} in the finer half of the sizes',
         ),
-        Row(
-            'exponent of the time per steady state, warm', warm, '', EXPONENT, 'at_most',
+        BenchmarkRow(
+            'exponent of the time per steady state, warm',
+            warm,
+            '',
+            EXPONENT,
+            'at_most',
             f'{span}; {1e3 * sizes[0].warm_s:.0f} to {1e3 * last.warm_s:.0f} ms; '
             f'{warm_there:.2f} in the finer half of the sizes',
         ),
-        Row(
-            'exponent of one factorisation and solution', linear, '',
+        BenchmarkRow(
+            'exponent of one factorisation and solution',
+            linear,
+            '',
             note=f'{1e3 * sizes[0].factor_s:.2f} to {1e3 * last.factor_s:.0f} ms',
         ),
-        Row(f'memory of the factors at {last.nodes} net nodes', last.factor_mb, 'MB'),
-        Row(
-            f'most memory of the process up to {last.nodes} net nodes', last.peak_mb, 'MB',
+        BenchmarkRow(f'memory of the factors at {last.nodes} net nodes', last.factor_mb, 'MB'),
+        BenchmarkRow(
+            f'most memory of the process up to {last.nodes} net nodes',
+            last.peak_mb,
+            'MB',
             note='interpreter, libraries and what was measured before included',
         ),
-    )  # fmt: skip
+    )
     return Findings(
         rows,
-        (Drawing('nodes', 'Time and memory against the number of net nodes.', _draw(sizes)),),
+        (CaseFigure('nodes', 'Time and memory against the number of net nodes.', _draw(sizes)),),
         'Meshes around the net are refined and rows along it with them; warps and bridles stay '
         'as they are. Exponents are slopes of straight lines through the logarithms.',
     )
@@ -98,14 +112,14 @@ def exponent(nodes: Sequence[int], values: Sequence[float]) -> float:
     return float(np.polyfit(np.log(nodes), np.log(values), 1)[0])
 
 
-def _size(model: GearModel, *, small: bool) -> Size:
+def _size(model: GearModel, *, small: bool) -> GrowthSize:
     steps, repeats = (4, 1) if small else (40, 3)
     known = find_equilibrium(model, START)
     haul = haul_of(model, steps * STEP_S, known)
     longer = START.port_length + 20.0
     point = OperatingPoint(longer, longer, START.speed)
     factor_s, factor_mb = factor_cost(model, known.state, known.tow, repeats)
-    return Size(
+    return GrowthSize(
         around=model.gear.netting.around,
         nodes=len(model.layout.net),
         step_s=median_s(lambda: haul.run(STEP_S), repeats) / steps,
@@ -126,7 +140,7 @@ def peak_mb() -> float:
     return peak / 1e6 if sys.platform == 'darwin' else peak * 1024 / 1e6
 
 
-def _draw(sizes: Sequence[Size]) -> Figure:
+def _draw(sizes: Sequence[GrowthSize]) -> Figure:
     figure = Figure(figsize=(9.0, 4.0), layout='constrained')
     left, right = figure.subplots(1, 2)
     nodes = np.array([size.nodes for size in sizes])

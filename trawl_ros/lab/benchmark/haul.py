@@ -45,7 +45,7 @@ class Ride:
 
 
 @dataclass(frozen=True)
-class Haul:
+class HaulManoeuvre:
     """Haul: manoeuvre of one gear, by its start and the towing boundary every
     `FINEST_S` seconds from the start on.
     """
@@ -91,12 +91,12 @@ class Haul:
             return self._advanced(stepper, between, at, half)
 
 
-def haul_of(model: GearModel, duration_s: float, start: Equilibrium | None = None) -> Haul:
+def haul_of(model: GearModel, duration_s: float, start: Equilibrium | None = None) -> HaulManoeuvre:
     """Return the manoeuvre from the steady state at `FROM` on, which may be given."""
     if start is None:
         start = find_equilibrium(model, START)
     tows = _tows(model, model.gear, round(duration_s / FINEST_S))
-    return Haul(model, at_rest(start.state), tows)
+    return HaulManoeuvre(model, at_rest(start.state), tows)
 
 
 def _tows(model: GearModel, gear: GearRecord, steps: int) -> tuple[Tow, ...]:

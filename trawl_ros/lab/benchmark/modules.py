@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.lab.benchmark.findings import Findings
-from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.row import BenchmarkRow
 
 TITLES: Mapping[str, str] = MappingProxyType(
     {
@@ -47,6 +47,8 @@ def measure(name: str, *, small: bool) -> Findings:
     try:
         found = module.measure(small)
     except TrawlError as error:
-        return Findings((Row(f'{name}: runs to its end', 0.0, '', 1.0, 'at_least', str(error)),))
+        return Findings(
+            (BenchmarkRow(f'{name}: runs to its end', 0.0, '', 1.0, 'at_least', str(error)),)
+        )
     assert isinstance(found, Findings)
     return found

@@ -9,7 +9,7 @@ Rule = Literal['at_least', 'at_most']
 
 
 @dataclass(frozen=True)
-class Row:
+class BenchmarkRow:
     """Row: a measured figure with its target.
 
     Parameters

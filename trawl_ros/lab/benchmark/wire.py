@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from statistics import median
 
 from trawl_ros.lab.benchmark.findings import Findings
-from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
 from trawl_ros.lab.reference_codes.history import History, apart
-from trawl_ros.lab.reference_codes.manoeuvre import Manoeuvre, haul_and_turn, short_manoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
 from trawl_ros.lab.reference_codes.moordyn_wire import MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, TowedWire
@@ -34,7 +34,7 @@ SETTLING = 200.0
 
 
 @dataclass(frozen=True)
-class Choice:
+class SchemeChoice:
     """MoorDyn's scheme with the inner damping of the wire (s) that lets it take its longest
     steps, and steps to try (s), from long to short.
     """
@@ -45,9 +45,9 @@ class Choice:
 
 
 CHOICES = (
-    Choice('Euler', 0.006, (0.008, 0.007, 0.006, 0.005, 0.004)),
-    Choice('RK2', 0.004, (0.008, 0.007, 0.006, 0.005, 0.004)),
-    Choice('RK4', 0.002, (0.010, 0.009, 0.008, 0.007, 0.006)),
+    SchemeChoice('Euler', 0.006, (0.008, 0.007, 0.006, 0.005, 0.004)),
+    SchemeChoice('RK2', 0.004, (0.008, 0.007, 0.006, 0.005, 0.004)),
+    SchemeChoice('RK4', 0.002, (0.010, 0.009, 0.008, 0.007, 0.006)),
 )
 """Of its other schemes, Heun's is unstable from 3 ms on, the implicit ones converge only at
 steps that leave them slower, and the multistep ones break down."""
@@ -77,7 +77,7 @@ def measure(small: bool) -> Findings:
         theirs = [(choice, _peer(choice, manoeuvre, small=small)) for choice in _choices(small)]
     except PeerAbsent as absent:
         return Findings(
-            (*rows, Row('the same in MoorDyn', math.nan, '× real time', note=str(absent)))
+            (*rows, BenchmarkRow('the same in MoorDyn', math.nan, '× real time', note=str(absent)))
         )
     found = [(choice, one) for choice, one in theirs if one is not None]
     for choice, one in found:
@@ -86,7 +86,9 @@ def measure(small: bool) -> Findings:
             f'{choice.damping_time:g} s'
         )
         rows.append(
-            Row(f'the same in MoorDyn by {choice.scheme}', one.factor, '× real time', note=note)
+            BenchmarkRow(
+                f'the same in MoorDyn by {choice.scheme}', one.factor, '× real time', note=note
+            )
         )
     rows.append(_ratio(ours, [one for _, one in found]))
     return Findings(
@@ -114,7 +116,7 @@ def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool
     return None
 
 
-def _own(manoeuvre: Manoeuvre) -> tuple[Run, Sequence[float], History]:
+def _own(manoeuvre: WireManoeuvre) -> tuple[Run, Sequence[float], History]:
     model = own_model(WIRE, SEGMENTS)
     start, _ = own_steady(WIRE, model)
 
@@ -124,11 +126,11 @@ def _own(manoeuvre: Manoeuvre) -> tuple[Run, Sequence[float], History]:
     return run, OWN_STEPS, run(OWN_CONVERGED)
 
 
-def _choices(small: bool) -> tuple[Choice, ...]:
+def _choices(small: bool) -> tuple[SchemeChoice, ...]:
     return CHOICES[:1] if small else CHOICES
 
 
-def _peer(choice: Choice, manoeuvre: Manoeuvre, *, small: bool) -> Fastest | None:
+def _peer(choice: SchemeChoice, manoeuvre: WireManoeuvre, *, small: bool) -> Fastest | None:
     wire = replace(WIRE, damping_time=choice.damping_time)
 
     def run(step: float) -> History:
@@ -138,7 +140,7 @@ def _peer(choice: Choice, manoeuvre: Manoeuvre, *, small: bool) -> Fastest | Non
     return fastest(run, choice.steps, converged, small=small)
 
 
-def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: Manoeuvre) -> History:
+def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireManoeuvre) -> History:
     """The manoeuvre in MoorDyn after a straight tow.
 
     Raises
@@ -154,20 +156,22 @@ def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: Manoeu
         return system.follow(manoeuvre)
 
 
-def _own_row(ours: Fastest | None) -> Row:
+def _own_row(ours: Fastest | None) -> BenchmarkRow:
     what = 'one wire of 600 m in 20 segments, hauling and turning'
     if ours is None:
         note = f'no step of those tried keeps the error below {LIMIT:.0%}'
-        return Row(what, math.nan, '× real time', note=note)
+        return BenchmarkRow(what, math.nan, '× real time', note=note)
     each = 1e3 * ours.step / ours.factor
     note = f'steps of {ours.step:g} s, error {ours.error:.2%}; {each:.2f} ms per step'
-    return Row(what, ours.factor, '× real time', note=note)
+    return BenchmarkRow(what, ours.factor, '× real time', note=note)
 
 
-def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> Row:
+def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> BenchmarkRow:
     what = "the same beside MoorDyn's best stable scheme"
     if ours is None or not theirs:
-        return Row(what, math.nan, '×', 1.0, 'at_least', 'one of the two has no step that is good')
+        return BenchmarkRow(
+            what, math.nan, '×', 1.0, 'at_least', 'one of the two has no step that is good'
+        )
     ratio = ours.factor / max(one.factor for one in theirs)
     note = ''
     if ratio < 1.0:
@@ -175,4 +179,4 @@ def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> Row:
             f'a step takes {1e3 * ours.step / ours.factor:.2f} ms here, for a wire as for a gear '
             'that has boards and a kite besides; MoorDyn has the wire alone'
         )
-    return Row(what, ratio, '×', 1.0, 'at_least', note)
+    return BenchmarkRow(what, ratio, '×', 1.0, 'at_least', note)

@@ -8,7 +8,7 @@ from pathlib import Path
 from trawl_ros.core.files import write_figure, write_json, write_text
 from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.modules import NAMES, TITLES
-from trawl_ros.lab.benchmark.row import Row
+from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.report.machine import blas_threads, cpu_model, software
 from trawl_ros.report.rendering import DPI, number, page
 
@@ -19,7 +19,7 @@ FIGURES = 'benchmark'
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredModule:
     """Module that was run, with its ``seconds`` of wall clock."""
 
     name: str
@@ -27,7 +27,7 @@ class Measured:
     seconds: float
 
 
-def write_report(folder: Path, measured: Sequence[Measured], *, small: bool) -> None:
+def write_report(folder: Path, measured: Sequence[MeasuredModule], *, small: bool) -> None:
     """Write ``benchmark.json``, ``benchmark.md`` and the figures into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     ordered = sorted(measured, key=lambda module: NAMES.index(module.name))
@@ -50,7 +50,7 @@ def write_report(folder: Path, measured: Sequence[Measured], *, small: bool) -> 
     write_text(folder / REPORT, text)
 
 
-def _draw(folder: Path, module: Measured) -> list[tuple[str, str]]:
+def _draw(folder: Path, module: MeasuredModule) -> list[tuple[str, str]]:
     """File, relative to the report, and caption of each figure."""
     pictures = []
     for drawing in module.findings.drawings:
@@ -61,7 +61,7 @@ def _draw(folder: Path, module: Measured) -> list[tuple[str, str]]:
     return pictures
 
 
-def row_record(row: Row) -> dict[str, object]:
+def row_record(row: BenchmarkRow) -> dict[str, object]:
     """Row as plain values; what could not be measured is null."""
     return {
         'what': row.what,
@@ -73,7 +73,7 @@ def row_record(row: Row) -> dict[str, object]:
     }
 
 
-def target(row: Row) -> str:
+def target(row: BenchmarkRow) -> str:
     """Target of a row in symbols."""
     if row.target is None:
         return ''

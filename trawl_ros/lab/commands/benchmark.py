@@ -12,8 +12,8 @@ from trawl_ros.cli.interruption import INTERRUPTED
 from trawl_ros.cli.progress import error_console
 from trawl_ros.core.files import empty_folder
 from trawl_ros.lab.benchmark.modules import NAMES, TITLES, check_names, measure
-from trawl_ros.lab.benchmark.row import Row
-from trawl_ros.lab.benchmark.writing import REPORT, Measured, target, write_report
+from trawl_ros.lab.benchmark.row import BenchmarkRow
+from trawl_ros.lab.benchmark.writing import REPORT, MeasuredModule, target, write_report
 from trawl_ros.report.rendering import number
 
 
@@ -33,7 +33,7 @@ def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None
     check_names(chosen)
     empty_folder(out, force=force)
     console = error_console()
-    measured: list[Measured] = []
+    measured: list[MeasuredModule] = []
     columns = (
         TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
     )  # fmt: skip
@@ -44,7 +44,7 @@ def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None
                 progress.update(task, description=TITLES[name])
                 began = time.perf_counter()
                 findings = measure(name, small=small)
-                measured.append(Measured(name, findings, time.perf_counter() - began))
+                measured.append(MeasuredModule(name, findings, time.perf_counter() - began))
                 progress.advance(task)
                 _say(console, name, findings.rows)
     except KeyboardInterrupt:
@@ -56,7 +56,7 @@ def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None
     click.echo(f'{reached} of {len(asked)} targets are reached: {out / REPORT}')
 
 
-def _say(console: Console, name: str, rows: tuple[Row, ...]) -> None:
+def _say(console: Console, name: str, rows: tuple[BenchmarkRow, ...]) -> None:
     for row in rows:
         wanted = f', to reach {target(row)}' if row.target is not None else ''
         missed = '' if row.ok else f' MISSED: {row.note}'

@@ -14,7 +14,7 @@ from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.files import empty_folder
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.chaos.plan import Plan as ChaosPlan
 from trawl_ros.lab.studies.chaos.report import REPORT as CHAOS_REPORT
 from trawl_ros.lab.studies.chaos.report import write_chaos
@@ -25,13 +25,13 @@ from trawl_ros.lab.studies.counters.study import read_table, run_counters
 from trawl_ros.lab.studies.discrepancy.scoring.report import REPORT as DISCREPANCY_REPORT
 from trawl_ros.lab.studies.discrepancy.scoring.report import write_discrepancy
 from trawl_ros.lab.studies.discrepancy.stages import read_classes, run_blind
-from trawl_ros.lab.studies.discrepancy.trials.plan import Plan as DiscrepancyPlan
+from trawl_ros.lab.studies.discrepancy.trials.plan import BlindStudyPlan as DiscrepancyPlan
 from trawl_ros.lab.studies.identification.report import REPORT as IDENTIFICATION_REPORT
 from trawl_ros.lab.studies.identification.report import write_identification
-from trawl_ros.lab.studies.identification.study import Plan as IdentificationPlan
-from trawl_ros.lab.studies.identification.study import Shown, run_study
+from trawl_ros.lab.studies.identification.study import EstimationStudyPlan as IdentificationPlan
+from trawl_ros.lab.studies.identification.study import StudyProgress, run_study
 from trawl_ros.lab.studies.soak.report import REPORT, write_soak
-from trawl_ros.lab.studies.soak.study import Plan, run_soak
+from trawl_ros.lab.studies.soak.study import SoakPlan, run_soak
 from trawl_ros.lab.studies.sonar.report import REPORT as SONAR_REPORT
 from trawl_ros.lab.studies.sonar.report import write_sonar
 from trawl_ros.lab.studies.sonar.study import CASES, SonarStudy
@@ -68,7 +68,7 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
     console = error_console()
     with Interruption() as interruption:
         seen = run_soak(
-            Plan(hours, gear, real_time_s, coarse=coarse),
+            SoakPlan(hours, gear, real_time_s, coarse=coarse),
             out,
             lambda title, total_s: TimeProgress(title, total_s, console),
             lambda: interruption.requested,
@@ -197,7 +197,7 @@ def identification(
         found = run_study(
             plan,
             out,
-            Shown(lambda title, number: _counted(title, number, console),
+            StudyProgress(lambda title, number: _counted(title, number, console),
                   lambda title, total_s: TimeProgress(title, total_s, console)),
             scheduler=scheduler,
             force=force,
@@ -335,7 +335,7 @@ def _counted(title: str, number: int, console: Console) -> Iterator[Callable[[],
         yield lambda: progress.advance(task)
 
 
-def _say(rows: Sequence[Row], report: Path, console: Console) -> None:
+def _say(rows: Sequence[StudyRow], report: Path, console: Console) -> None:
     """Say which targets are missed, and how many are reached."""
     asked = [row for row in rows if row.asked]
     for row in asked:

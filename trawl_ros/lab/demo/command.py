@@ -39,7 +39,7 @@ LOOK_S = 0.2
 
 
 @dataclass(frozen=True)
-class Traffic:
+class TopicCounts:
     """Traffic: messages by full topic name, as counted by publishers, and as in the bag."""
 
     published: Mapping[str, int]
@@ -150,12 +150,12 @@ def _tow(
     return took
 
 
-def _traffic(monitor: 'Monitor', folder: DemoFolder) -> Traffic:
+def _traffic(monitor: 'Monitor', folder: DemoFolder) -> TopicCounts:
     summary = summarise(folder.bag)
     if summary.problems:
         raise TrawlError('; '.join(summary.problems))
     watched = {absolute(topic.name) for topic in (*TRUTH, *INSTRUMENTS)}
-    return Traffic(
+    return TopicCounts(
         {topic: count for topic, count in monitor.published().items() if topic in watched},
         {entry.topic: entry.count for entry in summary.topics if entry.topic in watched},
     )
@@ -219,7 +219,7 @@ def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
 
 
 def _close(
-    scenario: Scenario, folder: DemoFolder, traffic: Traffic, tow_s: float, all_s: float
+    scenario: Scenario, folder: DemoFolder, traffic: TopicCounts, tow_s: float, all_s: float
 ) -> None:
     recorded = sum(traffic.recorded.values())
     click.echo(

@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.lab.reference_codes.history import History
-from trawl_ros.lab.reference_codes.manoeuvre import Manoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
 from trawl_ros.lab.reference_codes.moordyn import MoorDyn
 from trawl_ros.lab.reference_codes.moordyn_input import Line, LineType, Options, Point, input_file
-from trawl_ros.lab.reference_codes.towed_wire import Towed, TowedWire
+from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 BLOCK, LUMP, WIRE_LINE = 0, 1, 0
 
@@ -74,16 +74,16 @@ class MoorDynWire:
         self._coupling = step * max(1, int(coupling / step + 1e-9))
         self._system = MoorDyn(text, self._block, wire.speed * np.array([1.0, 0.0, 0.0]))
 
-    def settle(self, duration: float = SETTLING) -> Towed:
+    def settle(self, duration: float = SETTLING) -> WireSteadyState:
         """Tow straight on; return the final state."""
         velocity = self._wire.speed * np.array([1.0, 0.0, 0.0])
         force = np.zeros((1, 3))
         for _ in range(round(duration / self._coupling)):
             force = self._advance(velocity, self._coupling)
         off = self._block - self._system.place(LUMP)
-        return Towed(float(off[2]), float(off[0]), float(np.linalg.norm(force)))
+        return WireSteadyState(float(off[2]), float(off[0]), float(np.linalg.norm(force)))
 
-    def follow(self, manoeuvre: Manoeuvre) -> History:
+    def follow(self, manoeuvre: WireManoeuvre) -> History:
         """Follow a manoeuvre; positions are those of the ends of steps."""
         count = round(manoeuvre.duration / self._coupling)
         times = self._coupling * np.arange(count + 1)

@@ -10,7 +10,7 @@ import numpy as np
 
 from trawl_ros.lab.reference_codes.absent import PeerFailed, peer
 from trawl_ros.lab.reference_codes.moordyn_input import DEEP
-from trawl_ros.lab.reference_codes.towed_wire import Towed, TowedWire
+from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 PARTS = 40
 """Pieces of the line's shape over which MoorPy sums its drag."""
@@ -54,7 +54,7 @@ class MoorPyWire:
         self._line = self._system.addLine(wire.length, make, nSegs=PARTS, pointA=2, pointB=1)
         self._system.initialize()
 
-    def solve(self, length: float | None = None) -> Towed:
+    def solve(self, length: float | None = None) -> WireSteadyState:
         """Solve the steady state, starting from the last; with another ``length`` (m) if given.
 
         Raises
@@ -74,5 +74,5 @@ class MoorPyWire:
                 ) from None
             if np.abs(self._lump.r - before).max() < MOVED:
                 x, _, z = self._lump.r
-                return Towed(float(-z), float(-x), float(np.linalg.norm(self._line.fB)))
+                return WireSteadyState(float(-z), float(-x), float(np.linalg.norm(self._line.fB)))
         raise PeerFailed(f'MoorPy still moves the towed wire after {ROUNDS} solutions')

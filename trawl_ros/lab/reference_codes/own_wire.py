@@ -7,8 +7,8 @@ import numpy as np
 
 from trawl_ros.lab.reference_codes.history import History
 from trawl_ros.lab.reference_codes.lone_line import holding, loaded, lone_line, settled
-from trawl_ros.lab.reference_codes.manoeuvre import Manoeuvre
-from trawl_ros.lab.reference_codes.towed_wire import Towed, TowedWire
+from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
+from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
@@ -39,7 +39,7 @@ def own_model(wire: TowedWire, segments: int) -> GearModel:
     return replace(model, lump_added=wire.lump_added * model.lump_volume)
 
 
-def own_steady(wire: TowedWire, model: GearModel) -> tuple[State, Towed]:
+def own_steady(wire: TowedWire, model: GearModel) -> tuple[State, WireSteadyState]:
     """Solve the steady tow along x with the block at the origin.
 
     Raises
@@ -53,10 +53,10 @@ def own_steady(wire: TowedWire, model: GearModel) -> tuple[State, Towed]:
     state = settled(model, share * astern, tow)
     end = state.nodes[-1]
     pull = float(np.linalg.norm(block_forces(model, state, tow)[0]))
-    return state, Towed(depth=float(-end[2]), lag=float(-end[0]), tension=pull)
+    return state, WireSteadyState(depth=float(-end[2]), lag=float(-end[0]), tension=pull)
 
 
-def own_history(model: GearModel, start: State, manoeuvre: Manoeuvre, step: float) -> History:
+def own_history(model: GearModel, start: State, manoeuvre: WireManoeuvre, step: float) -> History:
     """Follow a manoeuvre from a steady tow in steps of ``step`` seconds.
 
     Raises
@@ -81,7 +81,7 @@ def own_history(model: GearModel, start: State, manoeuvre: Manoeuvre, step: floa
     )
 
 
-def tows_of(manoeuvre: Manoeuvre, step: float) -> tuple[list[Tow], np.ndarray]:
+def tows_of(manoeuvre: WireManoeuvre, step: float) -> tuple[list[Tow], np.ndarray]:
     """Towing boundaries of a manoeuvre at the end of each step, from time 0 on, and those times."""
     count = round(manoeuvre.duration / step)
     finer = int(np.ceil(step / TRACK_STEP))

@@ -63,7 +63,7 @@ WIRE = TowedWire()
 
 
 @dataclass(frozen=True)
-class Towed:
+class WireSteadyState:
     """Steady state: lump's place, m below and astern of the block, and tension there, N."""
 
     depth: float
@@ -71,5 +71,5 @@ class Towed:
     tension: float
 
 
-INTEGRATED = Towed(depth=335.307, lag=498.191, tension=41_042.0)
+INTEGRATED = WireSteadyState(depth=335.307, lag=498.191, tension=41_042.0)
 """The steady state of `WIRE` from integrating the equation of an elastic wire."""

@@ -58,7 +58,7 @@ class Check:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class CaseFigure:
     """Drawing: a figure with its file name (no suffix) and a caption of a sentence or two."""
 
     name: str
@@ -67,7 +67,7 @@ class Drawing:
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """Table of text; all rows as long as ``head``."""
 
     caption: str
@@ -76,17 +76,17 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CaseOutcome:
     """Outcome of a case. ``text`` is a paragraph of plain words for the report."""
 
     checks: tuple[Check, ...]
-    drawings: tuple[Drawing, ...] = ()
-    tables: tuple[Table, ...] = ()
+    drawings: tuple[CaseFigure, ...] = ()
+    tables: tuple[TextTable, ...] = ()
     text: str = ''
 
 
 @dataclass(frozen=True)
-class Case:
+class ValidationCase:
     """Case: a name for the command line, a title, and the function that runs it.
 
     ``run(small)`` does it; with ``small`` in seconds and on less, for the test suite.
@@ -94,4 +94,4 @@ class Case:
 
     name: str
     title: str
-    run: Callable[[bool], Outcome]
+    run: Callable[[bool], CaseOutcome]

@@ -9,12 +9,12 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from trawl_ros.core.files import write_figure, write_json, write_text
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.report.rendering import number
 from trawl_ros.report.rendering import page as filled
 from trawl_ros.report.style import DPI
 
-Section = tuple[str, Sequence[Row]]
+Section = tuple[str, Sequence[StudyRow]]
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def write_page(folder: Path, page: Page, sections: Sequence[Section], figure: Fi
         write_text(folder / f'{page.name}.{kind}', text)
 
 
-def wanted(row: Row) -> str:
+def wanted(row: StudyRow) -> str:
     """Target of a row, in words."""
     if row.least is not None and row.target is not None:
         return f'{number(row.least)} to {number(row.target)}'

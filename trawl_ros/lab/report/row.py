@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Row:
+class StudyRow:
     """Row: a measured figure.
 
     Parameters

@@ -5,7 +5,7 @@ from importlib import import_module
 from types import MappingProxyType
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.lab.report.check import Case
+from trawl_ros.lab.report.check import ValidationCase
 
 SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -58,9 +58,9 @@ def section_of(name: str) -> str:
     raise TrawlError(f'{name}: no such case; expected one of {", ".join(NAMES)}')
 
 
-def load_case(name: str) -> Case:
+def load_case(name: str) -> ValidationCase:
     """Import one case."""
     module = import_module(f'trawl_ros.lab.validation.{section_of(name)}.{name}')
     case = module.CASE
-    assert isinstance(case, Case)
+    assert isinstance(case, ValidationCase)
     return case

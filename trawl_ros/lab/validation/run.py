@@ -11,7 +11,7 @@ from pathlib import Path
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import write_figure
-from trawl_ros.lab.report.check import Check, Outcome, Table
+from trawl_ros.lab.report.check import CaseOutcome, Check, TextTable
 from trawl_ros.lab.validation.cases import load_case, section_of
 from trawl_ros.report.rendering import DPI
 
@@ -22,7 +22,7 @@ LONG = ('steady_states', 'sentences')
 
 
 @dataclass(frozen=True)
-class Picture:
+class CasePicture:
     """A figure that was drawn: its file in the report's folder, and its caption."""
 
     file: str
@@ -37,8 +37,8 @@ class Finished:
     title: str
     section: str
     checks: tuple[Check, ...]
-    pictures: tuple[Picture, ...]
-    tables: tuple[Table, ...]
+    pictures: tuple[CasePicture, ...]
+    tables: tuple[TextTable, ...]
     text: str
     seconds: float
 
@@ -94,13 +94,13 @@ def run_case(name: str, folder: Path, *, small: bool) -> Finished:
         outcome = case.run(small)
     except TrawlError as error:
         check = Check('ran', 'the case ran to its end', 0.0, 1.0, note=str(error))
-        outcome = Outcome((check,))
+        outcome = CaseOutcome((check,))
     seconds = time.perf_counter() - began
     pictures = []
     for drawing in outcome.drawings:
         file = f'figures/{name}_{drawing.name}.png'
         write_figure(folder / file, drawing.figure, DPI)
-        pictures.append(Picture(file, drawing.caption))
+        pictures.append(CasePicture(file, drawing.caption))
     keys = [check.key for check in outcome.checks]
     assert len(set(keys)) == len(keys), f'{name}: two checks share a key'
     assert all(re.fullmatch(r'\w+', key) for key in keys), f'{name}: {keys}'

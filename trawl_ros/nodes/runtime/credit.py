@@ -41,7 +41,7 @@ STALLED_S = 120.0
 """
 
 
-class Progress:
+class ConsumerProgress:
     """Progress of a consumer: reported now and then, at least every `HEARTBEAT_S` of wall time.
 
     Parameters

@@ -5,18 +5,18 @@ from trawl_ros.estimation.fit.estimate import Innovation as Innovations
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.planning.next_manoeuvre import Advice
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.messages.estimates import Innovation
+from trawl_ros.messages.estimates import ChannelInnovation
 from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.nodes.workers.outcome import Outcome
+from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 
 
-def innovations_of(found: Innovations) -> list[Innovation]:
+def innovations_of(found: Innovations) -> list[ChannelInnovation]:
     """Return the innovations of a window channel by channel."""
     rows = zip(found.channels, found.values, found.stds, found.test_ratios, strict=True)
-    return [Innovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
+    return [ChannelInnovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
 
 
-def identification_statuses(outcome: Outcome) -> list[Status]:
+def identification_statuses(outcome: EstimatorOutcome) -> list[Status]:
     """Return the statuses of coefficients, channels and instruments.
 
     The coefficients always come first; before there is an estimate, with the reason why.
@@ -27,7 +27,7 @@ def identification_statuses(outcome: Outcome) -> list[Status]:
     return statuses
 
 
-def coefficients_status(outcome: Outcome) -> Status:
+def coefficients_status(outcome: EstimatorOutcome) -> Status:
     """Return the coefficients by name, with intervals, counts by reason, and their certainty."""
     name = 'identification: coefficients'
     estimate = outcome.estimate
@@ -69,7 +69,7 @@ def coefficients_status(outcome: Outcome) -> Status:
     return Status(name, level, message, values | rejected)
 
 
-def channels_status(outcome: Outcome) -> Status:
+def channels_status(outcome: EstimatorOutcome) -> Status:
     """Give per channel its readings, and innovation and whiteness where it is compared."""
     values = {}
     for name, count in outcome.readings.items():
@@ -98,7 +98,7 @@ def instruments_status(estimate: Estimate) -> Status:
     values = {
         f'noise scale {group}': f'{scale:.4g}' for group, scale in estimate.noise_scales.items()
     }
-    values['misfit'] = f'{estimate.misfit:.4g}'
+    values['misfit'] = f'{estimate.birge_ratio:.4g}'
     for found in estimate.tow_biases:
         values[f'tow {found.tow + 1} {found.channel} bias'] = (
             f'{found.value:.4g} ± {found.std:.2g} {found.unit}'

@@ -13,7 +13,7 @@ from trawl_ros.core.errors import sentence_of
 from trawl_ros.estimation.fit.whiteness import Whiteness
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
 from trawl_ros.nodes.runtime.rewinding import Reached
-from trawl_ros.nodes.workers.outcome import Outcome, readings_of, whiteness_of
+from trawl_ros.nodes.workers.outcome import EstimatorOutcome, readings_of, whiteness_of
 from trawl_ros.records.samples import Sample
 
 QUIET_S = 0.5
@@ -25,7 +25,7 @@ POLL_S = 0.005
 
 @dataclass(frozen=True)
 class _Look:
-    """Request for a fresh `Outcome`."""
+    """Request for a fresh `EstimatorOutcome`."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class Finish:
 
     def __init__(self) -> None:
         self._granted = Event()
-        self.outcome = Outcome()
+        self.outcome = EstimatorOutcome()
 
-    def grant(self, outcome: Outcome) -> None:
+    def grant(self, outcome: EstimatorOutcome) -> None:
         """Hand over the outcome."""
         self.outcome = outcome
         self._granted.set()
@@ -83,7 +83,7 @@ class IdentificationWorker(Thread):
     def __init__(
         self,
         identification: Identification,
-        told: Callable[[Outcome], None],
+        told: Callable[[EstimatorOutcome], None],
         dealt_with: Callable[[int], None],
         save: Callable[[Identification], None],
         report: Callable[[Identification], str],
@@ -230,9 +230,9 @@ class IdentificationWorker(Thread):
         self._attempt('finishing', end)
         return (sentences[0], False) if sentences else (self._troubles.pop('finishing'), True)
 
-    def _outcome(self, finished: str | None = None, failed: bool = False) -> Outcome:
+    def _outcome(self, finished: str | None = None, failed: bool = False) -> EstimatorOutcome:
         identification = self._identification
-        return Outcome(
+        return EstimatorOutcome(
             stamp=self._reached.stamp,
             estimate=identification.estimate,
             rejected=identification.rejected,

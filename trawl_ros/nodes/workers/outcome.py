@@ -20,7 +20,7 @@ class Readings:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class EstimatorOutcome:
     """Outcome of a step of the estimator.
 
     Attributes

@@ -14,7 +14,7 @@ from hypothesis.strategies import DrawFn
 
 from hostile.mutations import mutated
 from hostile.target import Target, one_file
-from trawl_ros.estimation.checkpoint.file import JSON, NUMBERS, load_state, save_state
+from trawl_ros.estimation.checkpoint.file import JSON, NUMBERS, load_checkpoint, save_checkpoint
 from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.gear.load import load_gear
@@ -58,7 +58,7 @@ def sound() -> bytes:
     for sample in SAMPLES:
         identification.feed(sample)
     with TemporaryDirectory() as folder:
-        save_state(Path(folder, FILE), identification, gear())
+        save_checkpoint(Path(folder, FILE), identification, gear())
         return Path(folder, FILE).read_bytes()
 
 
@@ -107,7 +107,7 @@ def damaged() -> st.SearchStrategy[bytes]:
 
 def read_state(given: Path, results: Path) -> None:
     """Resume from a checkpoint."""
-    load_state(given / FILE, fresh(), gear())
+    load_checkpoint(given / FILE, fresh(), gear())
 
 
 TARGETS = (

@@ -13,10 +13,10 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import classes
 from trawl_ros.lab.studies.discrepancy.trials.course import quasi_steady, settling
 from trawl_ros.lab.studies.discrepancy.trials.following import proposed, tow_on
 from trawl_ros.lab.studies.discrepancy.trials.making import likelihood_of, make
-from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, Plan
+from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.recording import record_tows
-from trawl_ros.lab.studies.discrepancy.trials.towing import acting, towed_in_time
+from trawl_ros.lab.studies.discrepancy.trials.towing import hidden_effect_set, towed_in_time
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, POOR, PlannedTow
 from trawl_ros.lab.studies.discrepancy.trials.trial import Spec
 from trawl_ros.lab.studies.identification.readings import AS_STATED
@@ -102,7 +102,7 @@ def test_towed_in_time_the_plant_comes_to_rest_where_its_steady_states_are(plant
 
 def test_what_is_hidden_acts_in_time_as_in_steady_states(plant):
     hidden = INSIDE['current_shear'](np.random.default_rng(0))
-    there = acting([(hidden, 0.05)])
+    there = hidden_effect_set([(hidden, 0.05)])
     at = Situation((300.0, 300.0, 2.4), sense=-1.0)
     depth = np.array([-100.0])
     np.testing.assert_allclose(
@@ -155,13 +155,15 @@ def test_classes_come_from_the_plan_alone():
 
 
 def test_of_fewer_trials_than_asked_for_each_is_towed_in_time():
-    few = Plan(clean=2, inside=0, outside=0, pairs=0, poor=0).specs()
+    few = BlindStudyPlan(clean=2, inside=0, outside=0, pairs=0, poor=0).specs()
     assert [spec.like for spec in few if spec.form == 'dynamic'] == [0, 1]
-    assert sum(spec.form == 'dynamic' for spec in Plan().specs()) == Plan().dynamic
+    assert (
+        sum(spec.form == 'dynamic' for spec in BlindStudyPlan().specs()) == BlindStudyPlan().dynamic
+    )
 
 
 def test_one_in_twenty_is_made_as_bags_and_some_are_towed_in_time():
-    specs = Plan(dynamic=3).specs()
+    specs = BlindStudyPlan(dynamic=3).specs()
     windows = {spec.number: spec for spec in specs if spec.form == 'windows'}
     bags = [spec for spec in specs if spec.form == 'bags']
     in_time = [spec for spec in specs if spec.form == 'dynamic']

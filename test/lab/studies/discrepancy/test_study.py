@@ -26,7 +26,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.rows import (
 from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.stages import run_blind
 from trawl_ros.lab.studies.discrepancy.trials.making import make
-from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, Plan
+from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
@@ -237,9 +237,9 @@ def test_shuffled_keys_score_as_chance_would():
 
 def test_another_plan_in_the_same_folder_is_refused(tmp_path):
     steps = pytest.fail
-    (tmp_path / 'plan.json').write_text(json.dumps(asdict(Plan(seed=1))))
+    (tmp_path / 'plan.json').write_text(json.dumps(asdict(BlindStudyPlan(seed=1))))
     with pytest.raises(TrawlError, match=r'another seed.*--force'):
-        run_blind(Plan(seed=2), tmp_path, steps)
+        run_blind(BlindStudyPlan(seed=2), tmp_path, steps)
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ from trawl_ros.lab.studies.identification.readings import (
 )
 from trawl_ros.lab.studies.identification.report import REPORT
 from trawl_ros.lab.studies.identification.rows import coverage_rows, held_out_rows, spread_rows
-from trawl_ros.lab.studies.identification.trial import Task, Trial, run_trial
+from trawl_ros.lab.studies.identification.trial import EstimationTrial, Task, run_trial
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 
@@ -35,7 +35,7 @@ def trial(number, *, error=0.0, half=1.0, std=1.0, held_out=0.02, floor=0.02):
     """A trial whose estimate is off by ``error``, with intervals of ``half`` to both sides."""
     values = PRIOR.start + error
     measured = np.full((4, 4), 100.0)
-    return Trial(
+    return EstimationTrial(
         series='finer',
         number=number,
         truth=PRIOR.start.tolist(),

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.running.chain import CHAIN, CONSUMERS, Glance
 from trawl_ros.lab.studies.soak.report import FIGURE, JSON, REPORT, soak_figure, write_soak
 from trawl_ros.lab.studies.soak.rows import WARM_SHARE, soak_rows
-from trawl_ros.lab.studies.soak.study import Plan, Soak
+from trawl_ros.lab.studies.soak.study import Soak, SoakPlan
 
 HOURS = 10.0
 NUMBER = 200
@@ -37,7 +37,7 @@ def glances(memory=lambda share: 100.0, delay=lambda share: 0.5, cpu=0.1, pace=3
 
 
 def rows_of(**kinds):
-    plan = Plan(HOURS, 'kaifuha', 60.0)
+    plan = SoakPlan(HOURS, 'kaifuha', 60.0)
     seen = tuple(glances(**kinds))
     return {row.what: row for row in soak_rows(Soak(plan, seen, tuple(glances(pace=1.0)), 50.0))}
 
@@ -78,7 +78,7 @@ def test_shares_of_a_core_add_up():
 
 
 def test_a_tow_that_ended_early_says_so():
-    plan = Plan(HOURS, 'kaifuha', 60.0)
+    plan = SoakPlan(HOURS, 'kaifuha', 60.0)
     rows = soak_rows(Soak(plan, tuple(glances())[: NUMBER // 2], (), 50.0))
     (missing,) = (row for row in rows if row.what == 'tow that is missing to the whole')
     assert missing.value == pytest.approx(HOURS / 2, rel=0.02)
@@ -87,13 +87,13 @@ def test_a_tow_that_ended_early_says_so():
 
 
 def test_what_could_not_be_measured_meets_no_target():
-    row = Row('delay', math.nan, target=1.0)
+    row = StudyRow('delay', math.nan, target=1.0)
     assert not row.ok
     assert row.record()['value'] is None
 
 
 def test_the_report_has_every_row(tmp_path):
-    soak = Soak(Plan(HOURS, 'kaifuha', 60.0), tuple(glances()), tuple(glances(pace=1.0)), 50.0)
+    soak = Soak(SoakPlan(HOURS, 'kaifuha', 60.0), tuple(glances()), tuple(glances(pace=1.0)), 50.0)
     rows = write_soak(tmp_path, soak)
     records = json.loads((tmp_path / JSON).read_text())['rows']
     assert [record['what'] for record in records] == [row.what for row in rows]

@@ -12,7 +12,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `
 from trawl_ros.cli.main import trawl
 from trawl_ros.cli.progress import TimeProgress, error_console
 from trawl_ros.lab.studies.soak.rows import soak_rows
-from trawl_ros.lab.studies.soak.study import Plan, run_soak
+from trawl_ros.lab.studies.soak.study import SoakPlan, run_soak
 
 pytestmark = pytest.mark.ros
 
@@ -26,7 +26,7 @@ def shown(title, total_s):
 @pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_a_quarter_of_an_hour_at_sea(coarse_gear, tmp_path):
-    plan = Plan(hours=0.25, gear=str(coarse_gear), real_time_s=5.0, truth_rate_hz=0.5)
+    plan = SoakPlan(hours=0.25, gear=str(coarse_gear), real_time_s=5.0, truth_rate_hz=0.5)
     soak = run_soak(plan, tmp_path, shown, lambda: False)
     rows = soak_rows(soak)
     missed = [f'{row.what}: {row.value:.3g} {row.unit}' for row in rows if not row.ok]
@@ -36,7 +36,7 @@ def test_a_quarter_of_an_hour_at_sea(coarse_gear, tmp_path):
 
 
 def test_it_may_be_ended_early(coarse_gear, tmp_path):
-    plan = Plan(hours=5.0, gear=str(coarse_gear), real_time_s=5.0)
+    plan = SoakPlan(hours=5.0, gear=str(coarse_gear), real_time_s=5.0)
     asked = iter(range(10**6))
     soak = run_soak(plan, tmp_path, shown, lambda: next(asked) > 20)
     assert not soak.real

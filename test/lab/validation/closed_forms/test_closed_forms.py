@@ -11,7 +11,7 @@ from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_lin
 from trawl_ros.lab.validation.cases import SECTIONS, load_case
 from trawl_ros.lab.validation.closed_forms.board_law import compare
 from trawl_ros.lab.validation.closed_forms.catenary import END, START, elastic_catenary
-from trawl_ros.lab.validation.closed_forms.energy_budget import Haul
+from trawl_ros.lab.validation.closed_forms.energy_budget import WireHaul
 from trawl_ros.lab.validation.closed_forms.power import WORKS, Ledger, strain_energy
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import SLACK_WIDTH, taut
@@ -54,7 +54,7 @@ def test_the_catenary_ends_where_it_is_held_and_carries_its_weight() -> None:
 
 
 def test_a_haul_takes_in_its_wire_smoothly_and_within_the_winches_power() -> None:
-    haul, gear = Haul(50.0, 300.0), load_gear('kaifuha')
+    haul, gear = WireHaul(50.0, 300.0), load_gear('kaifuha')
     times = np.linspace(0.0, 300.0, 30_001)
     wire, rate = np.array([haul.hauled(t) for t in times]).T
     assert (wire[0], wire[-1]) == (0.0, pytest.approx(50.0))

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from trawl_ros.lab.validation.convergence.manoeuvres import History, smooth_tow
+from trawl_ros.lab.validation.convergence.manoeuvres import SteppedManoeuvre, smooth_tow
 from trawl_ros.lab.validation.convergence.time_step import CASE, convergence
 from trawl_ros.lab.validation.writing import check_record
 from trawl_ros.model.gear_model import GearModel
@@ -43,7 +43,9 @@ def test_the_order_is_that_of_the_errors(order: float) -> None:
     rng = np.random.default_rng(1)
     exact, shape = rng.normal(size=(5, 22)), rng.normal(size=(5, 22))
     runs = [
-        History(step, exact + shape * step**order, (exact + shape * step**order)[:, None, :3])
+        SteppedManoeuvre(
+            step, exact + shape * step**order, (exact + shape * step**order)[:, None, :3]
+        )
         for step in (0.4, 0.2, 0.1, 0.0)
     ]
     found = convergence(runs)

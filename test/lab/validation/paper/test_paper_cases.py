@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from trawl_ros.lab.report.check import Outcome
+from trawl_ros.lab.report.check import CaseOutcome
 from trawl_ros.lab.validation.cases import SECTIONS, load_case
 
 FIGURES = {
@@ -17,7 +17,7 @@ FIGURES = {
 
 
 @cache
-def small(name: str) -> Outcome:
+def small(name: str) -> CaseOutcome:
     """The small version of a case, run once."""
     return load_case(name).run(True)
 

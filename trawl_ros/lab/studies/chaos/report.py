@@ -5,7 +5,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.report.page import Page, write_page
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.running.chain import CHAIN
 from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION
 from trawl_ros.lab.studies.chaos.rows import MOST_LOST_S, chaos_rows
@@ -15,7 +15,7 @@ from trawl_ros.lab.studies.soak.rows import series
 REPORT = 'chaos.md'
 
 
-def write_chaos(folder: Path, chaos: Chaos) -> list[Row]:
+def write_chaos(folder: Path, chaos: Chaos) -> list[StudyRow]:
     """Write ``chaos.json``, ``.md``, ``.html`` and ``.png`` into a folder; return the rows."""
     sections = chaos_rows(chaos)
     plan = chaos.plan

@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.running.chain import CHAIN
 from trawl_ros.lab.studies.chaos.crew import Recording
 from trawl_ros.lab.studies.chaos.kills import Kills
@@ -17,7 +17,7 @@ MOST_LOST_S = 1.0
 MOST_GROWTH = 10.0
 """Memory at the end, per cent above that of the undisturbed tow at its end."""
 
-Sections = list[tuple[str, list[Row]]]
+Sections = list[tuple[str, list[StudyRow]]]
 
 
 def chaos_rows(chaos: Chaos) -> Sections:
@@ -28,16 +28,33 @@ def chaos_rows(chaos: Chaos) -> Sections:
     listed = ', '.join(f'{kind} {count}' for kind, count in sorted(done.items()))
     cut = [recording for recording in wild.recordings if recording.ended]
     tow = [
-        Row('tow that is missing to the whole', missing, unit='h', target=0.01 * chaos.plan.hours,
-            note=f'{wild.towed_s / 3600.0:.3g} of {chaos.plan.hours:g} h at sea were towed'),
-        Row('faults', float(len(wild.done)), note=listed),
-        Row('nodes ended by themselves', float(len(wild.died)), target=0.0,
-            note='; '.join(_short(words) for _, words in wild.died)),
-        Row('full disks that were not told in a sentence', float(len(wild.mute)), target=0.0,
-            note='; '.join(_short(words) for words in wild.mute)),
-        Row('longest time without truth', wild.silence_s, unit='s',
-            note='wall time; the undisturbed tow: ' f'{chaos.calm.silence_s:.1f} s'),
-    ]  # fmt: skip
+        StudyRow(
+            'tow that is missing to the whole',
+            missing,
+            unit='h',
+            target=0.01 * chaos.plan.hours,
+            note=f'{wild.towed_s / 3600.0:.3g} of {chaos.plan.hours:g} h at sea were towed',
+        ),
+        StudyRow('faults', float(len(wild.done)), note=listed),
+        StudyRow(
+            'nodes ended by themselves',
+            float(len(wild.died)),
+            target=0.0,
+            note='; '.join(_short(words) for _, words in wild.died),
+        ),
+        StudyRow(
+            'full disks that were not told in a sentence',
+            float(len(wild.mute)),
+            target=0.0,
+            note='; '.join(_short(words) for words in wild.mute),
+        ),
+        StudyRow(
+            'longest time without truth',
+            wild.silence_s,
+            unit='s',
+            note=f'wall time; the undisturbed tow: {chaos.calm.silence_s:.1f} s',
+        ),
+    ]
     return [
         ('The tow', tow),
         ('Bags', [*_bags(wild.recordings), *_lost(cut, 'before kills and full disks')]),
@@ -47,14 +64,16 @@ def chaos_rows(chaos: Chaos) -> Sections:
     ]
 
 
-def _bags(recordings: Sequence[Recording]) -> list[Row]:
+def _bags(recordings: Sequence[Recording]) -> list[StudyRow]:
     problems = [recording.problem for recording in recordings if recording.problem]
     messages = sum(recording.messages for recording in recordings)
     note = '; '.join(problems) or f'{messages} messages in {len(recordings)} bags'
-    return [Row('bags that cannot be read, repaired', float(len(problems)), target=0.0, note=note)]
+    return [
+        StudyRow('bags that cannot be read, repaired', float(len(problems)), target=0.0, note=note)
+    ]
 
 
-def _lost(cut: Sequence[Recording], what: str) -> list[Row]:
+def _lost(cut: Sequence[Recording], what: str) -> list[StudyRow]:
     if not cut:
         return []
     lost = [recording.lost_s for recording in cut if not recording.problem]
@@ -63,19 +82,23 @@ def _lost(cut: Sequence[Recording], what: str) -> list[Row]:
         f'{len(lost)}'
     )
     worst, least = (max(lost), min(lost)) if lost else (math.nan, math.nan)
-    return [Row(f'lost {what}', worst, least, worst, 's', MOST_LOST_S, note)]
+    return [StudyRow(f'lost {what}', worst, least, worst, 's', MOST_LOST_S, note)]
 
 
-def _estimate(calm: Tow, wild: Tow) -> list[Row]:
+def _estimate(calm: Tow, wild: Tow) -> list[StudyRow]:
     windows = [
-        Row(f'windows of the {title} tow', float(tow.estimate.get('windows', 'nan')),
+        StudyRow(f'windows of the {title} tow', float(tow.estimate.get('windows', 'nan')),
             note=tow.finish)
         for title, tow in (('undisturbed', calm), ('disturbed', wild))
     ]  # fmt: skip
     if any(tow.estimate.get('windows', '0') == '0' for tow in (calm, wild)):
         reason = wild.estimate.get('reason', '')
-        there = Row('estimates without a reason why there is none', float(not reason), target=0.0,
-                    note=reason)  # fmt: skip
+        there = StudyRow(
+            'estimates without a reason why there is none',
+            float(not reason),
+            target=0.0,
+            note=reason,
+        )
         return [*windows, there]
     off = {}
     for name in COEFFICIENTS:
@@ -86,12 +109,12 @@ def _estimate(calm: Tow, wild: Tow) -> list[Row]:
     worst = max(off, key=lambda name: off[name])
     return [
         *windows,
-        Row('estimate off the undisturbed one', off[worst], min(off.values()), off[worst],
+        StudyRow('estimate off the undisturbed one', off[worst], min(off.values()), off[worst],
             'half widths of its 95 % interval', 1.0, f'the worst of twelve coefficients, {worst}'),
     ]  # fmt: skip
 
 
-def _memory(calm: Tow, wild: Tow) -> list[Row]:
+def _memory(calm: Tow, wild: Tow) -> list[StudyRow]:
     if not calm.glances or not wild.glances:
         return []
     rows = []
@@ -99,21 +122,24 @@ def _memory(calm: Tow, wild: Tow) -> list[Row]:
         before, after = (tow.glances[-1].memory_mb.get(node, math.nan) for tow in (calm, wild))
         note = f'at the end; {before:.0f} MB undisturbed, {after:.0f} MB after chaos'
         growth = 100.0 * (after / before - 1.0)
-        rows.append(Row(f'{node}: memory above undisturbed', growth, unit='%', target=MOST_GROWTH,
-                        note=note))  # fmt: skip
+        rows.append(
+            StudyRow(
+                f'{node}: memory above undisturbed', growth, unit='%', target=MOST_GROWTH, note=note
+            )
+        )
     return rows
 
 
-def _kills(kills: Kills) -> list[Row]:
+def _kills(kills: Kills) -> list[StudyRow]:
     if not kills.recordings:
         return []
     messages = sum(recording.messages for recording in kills.recordings)
     images = sum(recording.images for recording in kills.recordings)
     return [
-        Row('kills', float(len(kills.recordings))),
+        StudyRow('kills', float(len(kills.recordings))),
         *_bags(kills.recordings),
         *_lost(kills.recordings, 'before the kill'),
-        Row('load', messages / kills.recorded_s, unit='messages/s',
+        StudyRow('load', messages / kills.recorded_s, unit='messages/s',
             note=f'of all topics of the chain, {images} images of the sonar among them'),
     ]  # fmt: skip
 

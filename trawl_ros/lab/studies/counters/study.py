@@ -11,20 +11,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.diagnosis.diagnosis import Diagnosis, Shown, diagnose, values_of
-from trawl_ros.diagnosis.holdout import Errors
+from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, diagnose, values_of
+from trawl_ros.diagnosis.holdout import HoldoutErrors
 from trawl_ros.diagnosis.report.figures import gap_figure
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.report.page import Page, write_page
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.scoring.worth import part_removed
 from trawl_ros.lab.studies.discrepancy.trials.making import WRONG_BY, floor_of, windows_of
 from trawl_ros.lab.studies.discrepancy.trials.plan import FINER
 from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
-from trawl_ros.lab.studies.discrepancy.trials.tows import PlannedTow, TrialPlan
+from trawl_ros.lab.studies.discrepancy.trials.tows import BlindTrialPlan, PlannedTow
 from trawl_ros.lab.studies.identification.readings import wrong_by
 
 REPORT = 'counters.md'
@@ -53,7 +53,7 @@ Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 
 @dataclass(frozen=True)
-class Table:
+class CounterTable:
     """Table of true wire (n,) and the readings of both winches' counters (n,), m."""
 
     wire: np.ndarray
@@ -77,7 +77,7 @@ class Table:
         return Hidden('counters', '', 1.0, (0.0, 1.0), towed=towed)
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path) -> CounterTable:
     """Read true wire and counters in fathoms.
 
     Raises
@@ -98,10 +98,12 @@ def read_table(path: Path) -> Table:
     if len(rows) < 3 or not np.all(np.diff(columns) > 0.0):
         raise TrawlError(f'{path}: expected at least 3 rows of finite numbers that rise')
     wire, starboard, port = columns
-    return Table(wire, port, starboard)
+    return CounterTable(wire, port, starboard)
 
 
-def run_counters(table: Table, folder: Path, steps: Steps, seed: int = SEED) -> list[Row]:
+def run_counters(
+    table: CounterTable, folder: Path, steps: Steps, seed: int = SEED
+) -> list[StudyRow]:
     """Make the trial, diagnose it with and without a baseline, and write the page.
 
     Parameters
@@ -121,7 +123,7 @@ def run_counters(table: Table, folder: Path, steps: Steps, seed: int = SEED) -> 
             PlannedTow(TOWS[number % len(TOWS)], eastward=number % 2 == 0)
             for number in range(BASELINE + EXAMINED)
         )
-        plan = TrialPlan(planned, BASELINE)
+        plan = BlindTrialPlan(planned, BASELINE)
         looks = plant.towed([(table.hidden(), 1.0)], plan)
         chance = np.random.default_rng(seed)
         sensors = wrong_by(WRONG_BY, chance)
@@ -162,8 +164,8 @@ def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> D
 
 
 def _rows(
-    table: Table, found: Diagnosis, without: Diagnosis, floor: Mapping[str, float]
-) -> list[Row]:
+    table: CounterTable, found: Diagnosis, without: Diagnosis, floor: Mapping[str, float]
+) -> list[StudyRow]:
     scale, offset = table.lines()
     values = {} if found.repair is None else values_of(found.repair.refit)
     nothing = (np.nan, np.nan, np.nan, '')
@@ -174,26 +176,26 @@ def _rows(
     named = [] if without.best is None else list(without.best.refit.names)
     others = [] if without.named is None else [*without.named.rivals, *without.named.alike]
     return [
-        Row('counter_scale with a baseline', 100.0 * part[0], 100.0 * part[1], 100.0 * part[2],
+        StudyRow('counter_scale with a baseline', 100.0 * part[0], 100.0 * part[1], 100.0 * part[2],
             '%', ABOUT_SCALE[1], f'a line through the table has {100.0 * scale:.2f} %',
             ABOUT_SCALE[0]),
-        Row('counter_offset with a baseline', metres[0], metres[1], metres[2], 'm',
+        StudyRow('counter_offset with a baseline', metres[0], metres[1], metres[2], 'm',
             ABOUT_OFFSET[1], f'a line through the table has {offset:.1f} m', ABOUT_OFFSET[0]),
-        Row('held-out excess error removed', removed, unit='%', least=50.0,
+        StudyRow('held-out excess error removed', removed, unit='%', least=50.0,
             note='beyond the errors that the plant itself would have' + other),
-        Row('effects not told apart without a baseline', float(len({*named, *others})),
+        StudyRow('effects not told apart without a baseline', float(len({*named, *others})),
             note=f'{without.verdict}: {", ".join(dict.fromkeys((*named, *others))) or "none"}'),
     ]  # fmt: skip
 
 
-def _removed(shown: Shown | None, floor: Mapping[str, float]) -> tuple[float, str]:
+def _removed(shown: HoldoutComparison | None, floor: Mapping[str, float]) -> tuple[float, str]:
     """Share of the excess error that the repair removes, in per cent, with that of the best other
     effect.
     """
     if shown is None:
         return np.nan, ''
 
-    def part(after: Errors | None) -> float:
+    def part(after: HoldoutErrors | None) -> float:
         if after is None:
             return np.nan
         before = shown.before

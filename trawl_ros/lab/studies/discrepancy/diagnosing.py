@@ -16,7 +16,7 @@ from trawl_ros.records.topics import NAMESPACE
 
 
 @dataclass(frozen=True)
-class Case:
+class DiagnosisTask:
     """Case of a blind diagnosis: visible data, folder of the result, the assumed gear, and how
     many of the first tows are a baseline.
     """
@@ -28,7 +28,7 @@ class Case:
     baseline: int
 
 
-def diagnose_case(case: Case) -> str:
+def diagnose_case(case: DiagnosisTask) -> str:
     """Diagnose, write the diagnosis, and give its verdict."""
     gear = case.cut.model(case.gear)
     windows, tows = _of_bags(case.seen, gear) if case.seen.is_dir() else _of_file(case.seen)

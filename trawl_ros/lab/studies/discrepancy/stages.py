@@ -12,13 +12,13 @@ import numpy as np
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder, write_json
-from trawl_ros.lab.studies.discrepancy.diagnosing import Case, diagnose_case
+from trawl_ros.lab.studies.discrepancy.diagnosing import DiagnosisTask, diagnose_case
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes, classes, named_right
 from trawl_ros.lab.studies.discrepancy.trials.following import proposed, tow_on
 from trawl_ros.lab.studies.discrepancy.trials.in_bags import make_bags
 from trawl_ros.lab.studies.discrepancy.trials.making import likelihood_of, make
-from trawl_ros.lab.studies.discrepancy.trials.plan import Plan
+from trawl_ros.lab.studies.discrepancy.trials.plan import BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.tows import PLANS
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
 from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows, write_windows
@@ -40,7 +40,7 @@ class Blind:
 
     spec: Spec
     name: str
-    plan: Plan
+    plan: BlindStudyPlan
     folder: Path
 
     def at(self, part: str) -> Path:
@@ -64,9 +64,11 @@ class Blind:
         return Scored(*(_json(self.at(part)) for part in ('keys', 'diagnoses', 'fits')))
 
     @property
-    def case(self) -> Case:
+    def case(self) -> DiagnosisTask:
         """Case for the diagnosis, under a random name alone."""
-        return Case(self.seen, self.at('diagnoses'), self.plan.gear, self.plan.cut, self.baseline)
+        return DiagnosisTask(
+            self.seen, self.at('diagnoses'), self.plan.gear, self.plan.cut, self.baseline
+        )
 
 
 def make_case(trial: Blind) -> None:
@@ -108,7 +110,7 @@ def quiet_case(trial: Blind) -> None:
 
 
 def run_blind(
-    plan: Plan,
+    plan: BlindStudyPlan,
     folder: Path,
     steps: Steps,
     *,
@@ -183,7 +185,7 @@ def read_classes(folder: Path) -> Classes:
     return {name: tuple(names) for name, names in _json(folder / CLASSES).items()}
 
 
-def _cases(trials: list[Blind]) -> dict[str, Case]:
+def _cases(trials: list[Blind]) -> dict[str, DiagnosisTask]:
     return {
         one.name: one.case
         for one in sorted(trials, key=lambda one: (one.spec.form, one.name))
@@ -220,12 +222,12 @@ def _json(path: Path) -> Any:
     return json.loads(path.read_text(encoding='utf-8')) if path.is_file() else None
 
 
-def _names(plan: Plan, number: int) -> list[str]:
+def _names(plan: BlindStudyPlan, number: int) -> list[str]:
     chance = np.random.default_rng([plan.seed, *b'names'])
     return [chance.bytes(6).hex() for _ in range(number)]
 
 
-def _prepare(plan: Plan, folder: Path, *, force: bool) -> None:
+def _prepare(plan: BlindStudyPlan, folder: Path, *, force: bool) -> None:
     asked = json.loads(json.dumps(asdict(plan)))
     about = folder / 'plan.json'
     if about.is_file() and not force:

@@ -4,13 +4,13 @@ import json
 import math
 from pathlib import Path
 
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.hostile.study import MOST_MOVED, Found
 
 REPORT = 'hostile_messages.json'
 
 
-def rows_of(found: Found) -> list[Row]:
+def rows_of(found: Found) -> list[StudyRow]:
     """Give the figures, and what was asked of them."""
     tallies, moved = found.tallies, found.moved
     sent = sum(sum(tally.sent.values()) for tally in tallies) + moved.sent
@@ -19,27 +19,46 @@ def rows_of(found: Found) -> list[Row]:
     fields = sorted(name for tally in tallies for name in tally.not_finite)
     topics = sum(len(tally.sent) for tally in tallies)
     return [
-        Row('hostile messages', sent, least=100_000),
-        Row('subscriptions', topics),
-        Row('messages that nodes refused and counted', sum(tally.refused for tally in tallies)),
-        Row('nodes ended', len(ended), target=0, note=', '.join(ended)),
-        Row('nodes that do not answer to sound messages any more', len(mute), target=0,
-            note=', '.join(mute)),
-        Row('fields published with NaN or infinity', len(fields), target=0,
-            note=', '.join(fields)),
-        Row('longest sentence on /diagnostics', max(t.longest_report for t in tallies),
-            unit='characters', target=1000),
-        Row('hostile messages within the tow of the estimate', moved.sent),
-        Row('of these and their readings told to be refused', moved.told),
-        Row('estimates moved silently', int(moved.shift > MOST_MOVED and not moved.told), target=0,
+        StudyRow('hostile messages', sent, least=100_000),
+        StudyRow('subscriptions', topics),
+        StudyRow(
+            'messages that nodes refused and counted', sum(tally.refused for tally in tallies)
+        ),
+        StudyRow('nodes ended', len(ended), target=0, note=', '.join(ended)),
+        StudyRow(
+            'nodes that do not answer to sound messages any more',
+            len(mute),
+            target=0,
+            note=', '.join(mute),
+        ),
+        StudyRow(
+            'fields published with NaN or infinity', len(fields), target=0, note=', '.join(fields)
+        ),
+        StudyRow(
+            'longest sentence on /diagnostics',
+            max(t.longest_report for t in tallies),
+            unit='characters',
+            target=1000,
+        ),
+        StudyRow('hostile messages within the tow of the estimate', moved.sent),
+        StudyRow('of these and their readings told to be refused', moved.told),
+        StudyRow(
+            'estimates moved silently',
+            int(moved.shift > MOST_MOVED and not moved.told),
+            target=0,
             note=f'{moved.windows[0]} windows undisturbed, {moved.windows[1]} of the same tow with '
-            'hostile messages'),
-        Row('largest change of a coefficient', moved.shift, unit='std',
-            note='' if math.isfinite(moved.shift) else 'no estimate, with a reason'),
-    ]  # fmt: skip
+            'hostile messages',
+        ),
+        StudyRow(
+            'largest change of a coefficient',
+            moved.shift,
+            unit='std',
+            note='' if math.isfinite(moved.shift) else 'no estimate, with a reason',
+        ),
+    ]
 
 
-def write_hostile(folder: Path, found: Found, seed: int) -> list[Row]:
+def write_hostile(folder: Path, found: Found, seed: int) -> list[StudyRow]:
     """Write ``hostile_messages.json`` into a folder; give its rows."""
     rows = rows_of(found)
     nodes = {

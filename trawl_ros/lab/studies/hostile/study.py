@@ -21,7 +21,7 @@ from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.commands import fault_command, vessel_command, winch_command
 from trawl_ros.messages.diagnostics import OK, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
-    Innovation,
+    ChannelInnovation,
     covariance_message,
     estimate_message,
     innovation_message,
@@ -151,7 +151,7 @@ def _estimates(stamp: int) -> list[TopicMessage]:
     return [
         estimate_message(np.ones(12)),
         covariance_message(np.eye(12)),
-        innovation_message(stamp, [Innovation('door_spread', 0.1, 0.3, 0.3)]),
+        innovation_message(stamp, [ChannelInnovation('door_spread', 0.1, 0.3, 0.3)]),
         *((name, statuses) for name in (STATUS, FINDINGS, DIAGNOSTICS)),
     ]
 

@@ -21,7 +21,7 @@ from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
 from trawl_ros.nodes.playback.excerpt import Excerpt
@@ -80,10 +80,10 @@ def replay(seconds: float = REPLAY_S) -> Replay:
     return found
 
 
-def replay_rows(found: Replay) -> list[Row]:
+def replay_rows(found: Replay) -> list[StudyRow]:
     """Speed of a replay over real time on one core."""
     return [
-        Row(
+        StudyRow(
             'replay through trawl identify',
             found.recorded_s / found.cpu_s,
             unit='times real time',
@@ -162,12 +162,12 @@ def live(
     return Live(tuple(delays), share, wall_s)
 
 
-def live_rows(found: Live) -> list[Row]:
+def live_rows(found: Live) -> list[StudyRow]:
     """Delay of estimates, and the node's share of a core."""
     delays = np.array(found.delays_s)
     there = len(delays) > 0
     return [
-        Row(
+        StudyRow(
             "node in real time: estimate after its window's end",
             float(delays.max()) if there else math.nan,
             float(delays.min()) if there else math.nan,
@@ -176,7 +176,7 @@ def live_rows(found: Live) -> list[Row]:
             target=LATEST_S,
             note=f'the latest of {len(delays)} windows; least and most',
         ),
-        Row(
+        StudyRow(
             'node in real time: share of a core',
             found.share,
             unit='%',

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.identification.rows import (
     COVERAGE,
     MOST_ERROR,
@@ -17,14 +17,16 @@ from trawl_ros.lab.studies.identification.rows import (
     held_out_rows,
     spread_rows,
 )
-from trawl_ros.lab.studies.identification.trial import Trial
+from trawl_ros.lab.studies.identification.trial import EstimationTrial
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.report import style
 
 WITHIN = '#dfeee3'
 
 
-def trials_figure(coverage: Sequence[Trial], bound: Sequence[Trial], prior: BoardPrior) -> Figure:
+def trials_figure(
+    coverage: Sequence[EstimationTrial], bound: Sequence[EstimationTrial], prior: BoardPrior
+) -> Figure:
     """Draw the results with their targets, all with 95 % intervals."""
     figure = Figure(figsize=(9.0, 9.5), layout='constrained')
     covered, spread, errors = figure.subplots(3, 1)
@@ -42,7 +44,7 @@ def trials_figure(coverage: Sequence[Trial], bound: Sequence[Trial], prior: Boar
     return figure
 
 
-def _draw_rows(axes: Axes, rows: Sequence[Row], asked: tuple[float, float]) -> None:
+def _draw_rows(axes: Axes, rows: Sequence[StudyRow], asked: tuple[float, float]) -> None:
     at = np.arange(len(rows))
     values, low, high = (np.array([getattr(row, key) for row in rows])
                          for key in ('value', 'low', 'high'))  # fmt: skip
@@ -52,7 +54,7 @@ def _draw_rows(axes: Axes, rows: Sequence[Row], asked: tuple[float, float]) -> N
     axes.set_xticks(at, COEFFICIENTS)
 
 
-def _draw_errors(axes: Axes, trials: Sequence[Trial]) -> None:
+def _draw_errors(axes: Axes, trials: Sequence[EstimationTrial]) -> None:
     found = held_out_rows(trials)
     rows = found[::2]
     at = np.arange(len(rows))

@@ -8,7 +8,7 @@ from typing import Any
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import appending, empty_folder, write_json, write_text
-from trawl_ros.lab.studies.identification.trial import Trial
+from trawl_ros.lab.studies.identification.trial import EstimationTrial
 
 FILE = 'trials.jsonl'
 
@@ -35,7 +35,7 @@ class KeptTrials:
     def __init__(self, folder: Path, asked: Mapping[str, Any], *, force: bool = False) -> None:
         self._path = folder / FILE
         self._asked = json.loads(json.dumps(asked))
-        self._trials: dict[tuple[str, int], Trial] = {}
+        self._trials: dict[tuple[str, int], EstimationTrial] = {}
         if force or not self._path.is_file():
             empty_folder(folder, force=force)
             folder.mkdir(parents=True, exist_ok=True)
@@ -59,7 +59,7 @@ class KeptTrials:
         whole = [line for line in lines[:-1] if line]
         for number, line in enumerate(whole, 2):
             try:
-                trial = Trial(**json.loads(line))
+                trial = EstimationTrial(**json.loads(line))
             except (ValueError, TypeError) as reason:
                 raise TrawlError(
                     f'{self._path}: line {number} is not a trial, expected one, or --force'
@@ -70,7 +70,7 @@ class KeptTrials:
             kept = '\n'.join((first, *whole)) + '\n'
             write_text(self._path, kept)
 
-    def add(self, trial: Trial) -> None:
+    def add(self, trial: EstimationTrial) -> None:
         """Append a trial."""
         with appending(self._path) as file:
             file.write(json.dumps(asdict(trial), allow_nan=False) + '\n')
@@ -80,7 +80,7 @@ class KeptTrials:
         """True if a trial is there already."""
         return (series, number) in self._trials
 
-    def series(self, series: str) -> tuple[Trial, ...]:
+    def series(self, series: str) -> tuple[EstimationTrial, ...]:
         """Trials of a series in the order of their numbers."""
         found = sorted(key for key in self._trials if key[0] == series)
         return tuple(self._trials[key] for key in found)

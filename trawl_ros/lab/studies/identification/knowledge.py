@@ -7,7 +7,7 @@ from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.planning.plan import plan_trial
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.identification.plant import Cut, State
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.observables import OBSERVABLES
@@ -25,12 +25,12 @@ LOOKED_AT: tuple[State, ...] = (
 """States in which model and plant are compared."""
 
 
-def planning_rows(gear: str) -> list[Row]:
+def planning_rows(gear: str) -> list[StudyRow]:
     """Number of law quantities that a six-hour trial makes well known."""
     plan = plan_trial(load_gear(gear), hours=HOURS)
     limits = '; '.join(f'{name}: {what}' for name, what in plan.limits.items())
     rows = [
-        Row(
+        StudyRow(
             'planned six hours: values and slopes of laws that are well known',
             int(plan.trial.known.well_known.sum()),
             least=LEAST_KNOWN,
@@ -39,7 +39,7 @@ def planning_rows(gear: str) -> list[Row]:
         )
     ]
     rows += [
-        Row(
+        StudyRow(
             f'the same six hours as a {sweep.name}',
             int(sweep.known.well_known.sum()),
             note=f'{len(sweep.legs)} legs, {sweep.minutes:.0f} min; 0 to {MOST_SWEEP} expected',
@@ -49,7 +49,7 @@ def planning_rows(gear: str) -> list[Row]:
     return rows
 
 
-def model_error_rows(gear: str, cut: Cut) -> list[Row]:
+def model_error_rows(gear: str, cut: Cut) -> list[StudyRow]:
     """Differences of a model and a plant, both with the board of the gear file."""
     model, plant = (_looks(record) for record in (cut.model(gear), cut.plant(gear)))
     rows = []
@@ -59,7 +59,7 @@ def model_error_rows(gear: str, cut: Cut) -> list[Row]:
         difference = plant[:, columns] - model[:, columns]
         parts = np.degrees(difference) if angle else 100.0 * difference / model[:, columns]
         rows.append(
-            Row(
+            StudyRow(
                 f'plant less model ({cut.around} meshes): {group.replace("_", " ")}',
                 float(np.sqrt(np.mean(parts**2))),
                 float(parts.min()),

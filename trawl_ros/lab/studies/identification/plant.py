@@ -89,7 +89,7 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Board:
+class TowedBoard:
     """Board that tows in all states of a trial, its observables tow by tow, and how many
     were drawn that do not, by reason.
     """
@@ -104,7 +104,7 @@ def draw_board(
     prior: BoardPrior,
     tows: tuple[tuple[State, ...], ...],
     chance: np.random.Generator,
-) -> Board:
+) -> TowedBoard:
     """Draw coefficients from the prior until the gear can be towed with them.
 
     Parameters
@@ -156,7 +156,9 @@ def draw_board(
             looks[state] = Look(
                 state, equilibrium.observables.array(), jacobian[:, 12:], jacobian[:, :12]
             )
-        return Board(drawn, tuple(tuple(looks[state] for state in tow) for tow in tows), rejected)
+        return TowedBoard(
+            drawn, tuple(tuple(looks[state] for state in tow) for tow in tows), rejected
+        )
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
     raise TrawlError(f'none of {MOST_DRAWS} boards drawn from the prior can be towed ({reasons})')
 

@@ -19,7 +19,7 @@ CORRELATION_S = 15.0
 
 
 @dataclass(frozen=True)
-class Kind:
+class SensorKind:
     """Kind of sensor: readings per second, and the standard deviations of their white and
     their correlated noise.
     """
@@ -60,16 +60,16 @@ class Kind:
 
 _DEGREE = np.pi / 180.0
 
-KINDS: Mapping[str, Kind] = {
-    'length': Kind(1.0, 0.05, 0.0),
-    'speed': Kind(1.0, 0.03, 0.02),
-    'tension': Kind(1.0, 1600.0, 1500.0),
-    'door_depth': Kind(0.5, 0.2, 0.3),
-    'door_spread': Kind(0.25, 0.7, 0.8),
-    'net_depth': Kind(0.5, 0.2, 0.3),
-    'pitch': Kind(0.25, 0.5 * _DEGREE, 0.5 * _DEGREE),
-    'roll': Kind(0.25, 0.5 * _DEGREE, 0.5 * _DEGREE),
-    'vertical_opening': Kind(0.1, 1.0, 1.0),
+KINDS: Mapping[str, SensorKind] = {
+    'length': SensorKind(1.0, 0.05, 0.0),
+    'speed': SensorKind(1.0, 0.03, 0.02),
+    'tension': SensorKind(1.0, 1600.0, 1500.0),
+    'door_depth': SensorKind(0.5, 0.2, 0.3),
+    'door_spread': SensorKind(0.25, 0.7, 0.8),
+    'net_depth': SensorKind(0.5, 0.2, 0.3),
+    'pitch': SensorKind(0.25, 0.5 * _DEGREE, 0.5 * _DEGREE),
+    'roll': SensorKind(0.25, 0.5 * _DEGREE, 0.5 * _DEGREE),
+    'vertical_opening': SensorKind(0.1, 1.0, 1.0),
 }
 """As ``bags/sea_trial.yaml`` has them, SI; the opening as read off the sonar's image."""
 

@@ -10,7 +10,7 @@ from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS
 from trawl_ros.lab.studies.identification.readings import CORRELATION_S
-from trawl_ros.lab.studies.identification.study import COVERAGE, Plan
+from trawl_ros.lab.studies.identification.study import COVERAGE, EstimationStudyPlan
 from trawl_ros.lab.studies.identification.trial import WRONG_BY
 
 REPORT = 'identification.md'
@@ -24,7 +24,7 @@ CAPTION = (
 
 
 def write_identification(
-    folder: Path, plan: Plan, sections: Sequence[Section], figure: Figure
+    folder: Path, plan: EstimationStudyPlan, sections: Sequence[Section], figure: Figure
 ) -> None:
     """Write ``identification.json``, ``.md``, ``.html`` and ``.png`` into a folder."""
     page = Page(
@@ -38,8 +38,8 @@ def write_identification(
     write_page(folder, page, sections, figure)
 
 
-def _options(plan: Plan) -> str:
-    usual = Plan()
+def _options(plan: EstimationStudyPlan) -> str:
+    usual = EstimationStudyPlan()
     words = [
         f'--{key.replace("_", "-")} {getattr(plan, key)}'
         for key in ('gear', 'seed', 'coverage', 'bound', 'mouth', 'around', 'tows', 'live_s')
@@ -48,7 +48,7 @@ def _options(plan: Plan) -> str:
     return ''.join(f' {word}' for word in words)
 
 
-def _method(plan: Plan) -> str:
+def _method(plan: EstimationStudyPlan) -> str:
     """Method in sentences."""
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
     return (

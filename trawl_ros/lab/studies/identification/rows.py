@@ -8,8 +8,8 @@ from scipy.stats import binomtest
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.lab.report.row import Row
-from trawl_ros.lab.studies.identification.trial import Trial
+from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.studies.identification.trial import EstimationTrial
 from trawl_ros.model.board import COEFFICIENTS
 
 COVERAGE = (90.0, 98.0)
@@ -29,16 +29,18 @@ AGAIN = 'interval by drawing trials again'
 SEED = 7
 
 
-def coverage_rows(trials: Sequence[Trial], series: str, *, asked: bool) -> list[Row]:
+def coverage_rows(trials: Sequence[EstimationTrial], series: str, *, asked: bool) -> list[StudyRow]:
     """Share of truths inside the intervals, of all coefficients together and of each."""
     if not trials:
-        return [Row(f'{series}: 95 % intervals that cover the truth', np.nan, note='no trials')]
+        return [
+            StudyRow(f'{series}: 95 % intervals that cover the truth', np.nan, note='no trials')
+        ]
     least, most = COVERAGE if asked else (None, None)
     truth, low, high = (_array(trials, name) for name in ('truth', 'low', 'high'))
     inside = (low <= truth) & (truth <= high)
     low_all, high_all = _interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
     rows = [
-        Row(
+        StudyRow(
             f'{series}: 95 % intervals that cover the truth',
             float(100.0 * inside.mean()),
             low=float(low_all),
@@ -55,7 +57,7 @@ def coverage_rows(trials: Sequence[Trial], series: str, *, asked: bool) -> list[
         count = int(inside[:, column].sum())
         ends = binomtest(count, len(trials)).proportion_ci(method='exact')
         rows.append(
-            Row(
+            StudyRow(
                 f'{series}: intervals of {name} that cover the truth',
                 100.0 * count / len(trials),
                 low=100.0 * ends.low,
@@ -73,10 +75,10 @@ OTHER_BOUND = (1, 2, 3)
 """Places of rows that explain, and of which nothing is asked."""
 
 
-def spread_rows(trials: Sequence[Trial], prior: BoardPrior) -> list[Row]:
+def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[StudyRow]:
     """Root mean square error over the Bayesian Cramér–Rao bound (Van Trees)."""
     if not trials:
-        return [Row('spread of estimates over its bound', np.nan, note='no trials')]
+        return [StudyRow('spread of estimates over its bound', np.nan, note='no trials')]
     error = _array(trials, 'values') - _array(trials, 'truth')
     known = np.array([trial.information for trial in trials])
     before = np.diag(prior.std**-2)
@@ -122,7 +124,7 @@ def spread_rows(trials: Sequence[Trial], prior: BoardPrior) -> list[Row]:
         *((f'spread of {name} over its bound', AGAIN) for name in COEFFICIENTS),
     ]
     return [
-        Row(
+        StudyRow(
             what,
             float(value),
             float(low),
@@ -138,10 +140,10 @@ def spread_rows(trials: Sequence[Trial], prior: BoardPrior) -> list[Row]:
     ]
 
 
-def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
+def held_out_rows(trials: Sequence[EstimationTrial]) -> list[StudyRow]:
     """Errors on tows left out, and how they compare with a perfect model's."""
     if not trials:
-        return [Row('tows left out: error', np.nan, note='no trials')]
+        return [StudyRow('tows left out: error', np.nan, note='no trials')]
     channels = len(PAPER_CHANNELS)
     measured, predicted, perfect = (
         _array(trials, name).reshape(len(trials), -1, channels)
@@ -166,7 +168,7 @@ def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
     for column, channel in enumerate(PAPER_CHANNELS):
         name = channel.name.replace('_', ' ')
         rows += [
-            Row(
+            StudyRow(
                 f'tows left out: error in {name}',
                 float(errors[column]),
                 float(low[0, column]),
@@ -176,7 +178,7 @@ def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
                 note='mean error over mean measured value'
                 + (f'; {missing} states have none in the fitted model' if missing else ''),
             ),
-            Row(
+            StudyRow(
                 f'tows left out: error in {name} over that of a perfect model',
                 float(beyond[column]),
                 float(low[1, column]),
@@ -189,20 +191,20 @@ def held_out_rows(trials: Sequence[Trial]) -> list[Row]:
     return rows
 
 
-def board_rows(trials: Sequence[Trial]) -> list[Row]:
+def board_rows(trials: Sequence[EstimationTrial]) -> list[StudyRow]:
     """Convergence of fits, and rate of boards that could not be towed."""
     rejected = sum((Counter(trial.rejected) for trial in trials), Counter[str]())
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
     drawn = len(trials) + rejected.total()
     rest = [trial.converged for trial in trials]
     return [
-        Row(
+        StudyRow(
             'fits that came to rest',
             100.0 * float(np.mean(rest)) if trials else np.nan,
             unit='%',
             note=f'{sum(rest)} of {len(rest)}; those that did not count in all figures',
         ),
-        Row(
+        StudyRow(
             'boards drawn from the prior that cannot be towed',
             100.0 * rejected.total() / drawn if drawn else np.nan,
             unit='%',
@@ -211,7 +213,7 @@ def board_rows(trials: Sequence[Trial]) -> list[Row]:
     ]
 
 
-def _array(trials: Sequence[Trial], name: str) -> np.ndarray:
+def _array(trials: Sequence[EstimationTrial], name: str) -> np.ndarray:
     return np.array([getattr(trial, name) for trial in trials], dtype=float)
 
 

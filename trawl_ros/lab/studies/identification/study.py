@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.identification.costs import LIVE_S, live, live_rows, replay, replay_rows
 from trawl_ros.lab.studies.identification.figure import trials_figure
 from trawl_ros.lab.studies.identification.kept import KeptTrials
@@ -23,7 +23,7 @@ from trawl_ros.lab.studies.identification.rows import (
     held_out_rows,
     spread_rows,
 )
-from trawl_ros.lab.studies.identification.trial import Task, Trial, run_trial
+from trawl_ros.lab.studies.identification.trial import EstimationTrial, Task, run_trial
 
 SEED = 22
 """Of the study as it is reported; what was chosen by looking at trials was chosen with 1."""
@@ -38,7 +38,7 @@ DEFAULT_FINER = Cut(around=48, lines=2, unjoined=True)
 
 
 @dataclass(frozen=True)
-class Series:
+class TrialSeries:
     """Series of trials of one kind; ``stated`` as in `Task`."""
 
     name: str
@@ -47,14 +47,14 @@ class Series:
     stated: bool
 
 
-COVERAGE = Series('finer', 'a finer plant', FINER, stated=False)
-BOUND = Series('alike', 'the model as its own plant', AS_MODEL, stated=True)
-MOUTH = Series('mouth', 'a plant with a finer mouth', FAR_FINER, stated=False)
+COVERAGE = TrialSeries('finer', 'a finer plant', FINER, stated=False)
+BOUND = TrialSeries('alike', 'the model as its own plant', AS_MODEL, stated=True)
+MOUTH = TrialSeries('mouth', 'a plant with a finer mouth', FAR_FINER, stated=False)
 SERIES = (COVERAGE, BOUND, MOUTH)
 
 
 @dataclass(frozen=True)
-class Plan:
+class EstimationStudyPlan:
     """Plan of the study's size.
 
     Attributes
@@ -91,13 +91,13 @@ class Plan:
         gear = load_gear(self.gear).model_dump(mode='json')
         return {'seed': self.seed, 'around': self.around, 'tows': self.tows, 'gear': gear}
 
-    def cut(self, series: Series) -> Cut:
+    def cut(self, series: TrialSeries) -> Cut:
         """Mesh of model and plant of a series."""
         return Cut(**{**asdict(series.cut), 'around': self.around})
 
 
 @dataclass(frozen=True)
-class Shown:
+class StudyProgress:
     """Progress displays.
 
     ``steps`` takes a title and their number, and gives what is called after each of them;
@@ -112,14 +112,14 @@ class Shown:
 class Found:
     """Result: all rows by section, and a figure of the trials."""
 
-    sections: tuple[tuple[str, tuple[Row, ...]], ...]
+    sections: tuple[tuple[str, tuple[StudyRow, ...]], ...]
     figure: Figure
 
 
 def run_study(
-    plan: Plan,
+    plan: EstimationStudyPlan,
     folder: Path,
-    shown: Shown,
+    shown: StudyProgress,
     *,
     scheduler: str | None = None,
     force: bool = False,
@@ -145,7 +145,7 @@ def run_study(
     kept = run_trials(plan, folder, shown, scheduler=scheduler, force=force)
     coverage, bound, mouth = (trials_of(plan, kept, series) for series in SERIES)
     prior = board_prior(load_gear(plan.gear))
-    sections: list[tuple[str, tuple[Row, ...]]] = [
+    sections: list[tuple[str, tuple[StudyRow, ...]]] = [
         ('Intervals', (*coverage_rows(coverage, COVERAGE.words, asked=True),
                        *(coverage_rows(mouth, MOUTH.words, asked=False) if plan.mouth else ()))),
         ('Spread of the estimates', tuple(spread_rows(bound, prior))),
@@ -172,9 +172,9 @@ def run_study(
 
 
 def run_trials(
-    plan: Plan,
+    plan: EstimationStudyPlan,
     folder: Path,
-    shown: Shown,
+    shown: StudyProgress,
     *,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -212,12 +212,14 @@ def run_trials(
     return kept
 
 
-def trials_of(plan: Plan, kept: KeptTrials, series: Series) -> tuple[Trial, ...]:
+def trials_of(
+    plan: EstimationStudyPlan, kept: KeptTrials, series: TrialSeries
+) -> tuple[EstimationTrial, ...]:
     """Trials of a series in a plan; more may be on file."""
     return kept.series(series.name)[: plan.numbers()[series.name]]
 
 
-def _tasks(plan: Plan) -> Iterator[Task]:
+def _tasks(plan: EstimationStudyPlan) -> Iterator[Task]:
     for series in SERIES:
         for number in range(plan.numbers()[series.name]):
             yield Task(

@@ -12,7 +12,7 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.lab.studies.identification.bound import information
-from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, Board, Cut, draw_board
+from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, Cut, TowedBoard, draw_board
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows, wrong_by
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.observables import OBSERVABLES
@@ -65,7 +65,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Trial:
+class EstimationTrial:
     """Result of a trial.
 
     Attributes
@@ -108,7 +108,7 @@ class Trial:
         return asdict(self)
 
 
-def run_trial(task: Task) -> Trial:
+def run_trial(task: Task) -> EstimationTrial:
     """Run a trial.
 
     Raises
@@ -132,7 +132,7 @@ def run_trial(task: Task) -> Trial:
         raise TrawlError('the model has no steady state at any of the windows')
     unseen = steady_windows([held_out], sensors, chance, first_tow=len(tows))
     predicted = estimator.predictions(estimate.values, unseen)
-    return Trial(
+    return EstimationTrial(
         series=task.series,
         number=task.number,
         truth=board.coefficients.tolist(),
@@ -151,7 +151,7 @@ def run_trial(task: Task) -> Trial:
     )
 
 
-def _perfect(board: Board, means: list[Mapping[str, float]]) -> np.ndarray:
+def _perfect(board: TowedBoard, means: list[Mapping[str, float]]) -> np.ndarray:
     """Predictions (n, 4) of the plant itself at the inputs as measured."""
     rows = []
     for look, seen in zip(board.tows[-1], means, strict=True):

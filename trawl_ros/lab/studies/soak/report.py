@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.core.files import write_figure, write_json, write_text
 from trawl_ros.lab.report.machine import cpu_model, software
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.running.chain import CHAIN, CONSUMERS, Glance
 from trawl_ros.lab.studies.soak.rows import MOST_GROWTH, WARM_SHARE, series, soak_rows
 from trawl_ros.lab.studies.soak.study import SETTLE_S, Soak
@@ -18,7 +18,7 @@ from trawl_ros.report.rendering import DPI, page
 JSON, REPORT, FIGURE = 'soak.json', 'soak.md', 'soak.png'
 
 
-def write_soak(folder: Path, soak: Soak) -> list[Row]:
+def write_soak(folder: Path, soak: Soak) -> list[StudyRow]:
     """Write ``soak.json``, ``soak.md`` and ``soak.png`` into a folder; return the rows."""
     rows = soak_rows(soak)
     records = [row.record() for row in rows]

@@ -28,7 +28,7 @@ Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]
 
 
 @dataclass(frozen=True)
-class Plan:
+class SoakPlan:
     """Plan of the soak: hours at sea at full speed, and seconds in real time.
 
     ``truth_rate_hz`` is how often there is truth at sea; in real time it is the usual rate.
@@ -46,13 +46,13 @@ class Plan:
 class Soak:
     """Result of a soak: glances on the long tow and in real time, and size of its bag."""
 
-    plan: Plan
+    plan: SoakPlan
     fast: tuple[Glance, ...]
     real: tuple[Glance, ...]
     bag_mb: float
 
 
-def run_soak(plan: Plan, folder: Path, shown: Shown, stop: Callable[[], bool]) -> Soak:
+def run_soak(plan: SoakPlan, folder: Path, shown: Shown, stop: Callable[[], bool]) -> Soak:
     """Run the chain, each node as a process of its own.
 
     Parameters

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.files import write_figure, write_json, write_text
-from trawl_ros.lab.studies.sonar.study import SHOWN, STATES, Measured, figures
+from trawl_ros.lab.studies.sonar.study import SHOWN, STATES, SonarMeasurement, figures
 from trawl_ros.plots.records import SonarPicture
 from trawl_ros.plots.sonar import BACKGROUND, ECHOES, draw, prepare
 from trawl_ros.report import style
@@ -18,7 +18,7 @@ from trawl_ros.report.rendering import page
 JSON, REPORT, PICTURE = 'sonar.json', 'sonar.md', 'sonar.png'
 
 
-def write_sonar(folder: Path, measured: Sequence[Measured], sweeps: int) -> None:
+def write_sonar(folder: Path, measured: Sequence[SonarMeasurement], sweeps: int) -> None:
     """Write ``sonar.json``, ``sonar.md`` and ``sonar.png`` into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = [_row(case) for case in measured]
@@ -28,7 +28,7 @@ def write_sonar(folder: Path, measured: Sequence[Measured], sweeps: int) -> None
     write_figure(folder / PICTURE, sonar_figure(measured), style.DPI)
 
 
-def scatter(measured: Sequence[Measured]) -> dict[str, float]:
+def scatter(measured: Sequence[SonarMeasurement]) -> dict[str, float]:
     """Give the scatter (m, root mean square over the states of the gear) of both readings."""
     states = [case for case in measured if case.case in STATES]
     return {
@@ -41,7 +41,7 @@ def _together(scatters: Sequence[float]) -> float:
     return float(np.sqrt(np.mean(np.square(scatters)))) if scatters else float('nan')
 
 
-def _row(measured: Measured) -> dict[str, object]:
+def _row(measured: SonarMeasurement) -> dict[str, object]:
     def side(readings: np.ndarray, truth: np.ndarray) -> dict[str, float | None]:
         found = {'truth': float(truth.mean()), **asdict(figures(readings, truth))}
         # What could not be measured is null.
@@ -54,7 +54,7 @@ def _row(measured: Measured) -> dict[str, object]:
     }
 
 
-def sonar_figure(measured: Sequence[Measured]) -> Figure:
+def sonar_figure(measured: Sequence[SonarMeasurement]) -> Figure:
     """Draw the image of the clear 500 m case as it is in the message, and those with company."""
     by_case = {m.case: m for m in measured}
     clear, dense, seabed = (by_case[case] for case in SHOWN)
@@ -89,7 +89,7 @@ def sonar_figure(measured: Sequence[Measured]) -> Figure:
     return figure
 
 
-def _picture(measured: Measured, *, with_truth: bool) -> SonarPicture:
+def _picture(measured: SonarMeasurement, *, with_truth: bool) -> SonarPicture:
     return SonarPicture(
         time=0.0,
         image=measured.image,

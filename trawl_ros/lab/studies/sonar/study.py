@@ -9,7 +9,7 @@ import numpy as np
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
-from trawl_ros.instruments.errors.instrument import Draws
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import SonarParameters, load_instruments
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -42,7 +42,7 @@ class Fish:
 
 
 @dataclass(frozen=True)
-class Case:
+class SonarCase:
     """Case: one state of the tow.
 
     ``warp`` (m) and ``speed`` (m/s), and those it is hauled to, if it is; fish; how far below the
@@ -59,26 +59,26 @@ class Case:
 
 
 STATES = (
-    Case('200 m, 1.9 m/s', 200.0, 1.9),
-    Case('200 m, 2.6 m/s', 200.0, 2.6),
-    Case('300 m, 2.1 m/s', 300.0, 2.1),
-    Case('500 m, 2.1 m/s', 500.0, 2.1),
-    Case('900 m, 1.8 m/s', 900.0, 1.8),
-    Case('900 m, 2.3 m/s', 900.0, 2.3),
-    Case('hauled from 400 to 300 m', 400.0, 2.3, hauled_to=(300.0, 2.1)),
+    SonarCase('200 m, 1.9 m/s', 200.0, 1.9),
+    SonarCase('200 m, 2.6 m/s', 200.0, 2.6),
+    SonarCase('300 m, 2.1 m/s', 300.0, 2.1),
+    SonarCase('500 m, 2.1 m/s', 500.0, 2.1),
+    SonarCase('900 m, 1.8 m/s', 900.0, 1.8),
+    SonarCase('900 m, 2.3 m/s', 900.0, 2.3),
+    SonarCase('hauled from 400 to 300 m', 400.0, 2.3, hauled_to=(300.0, 2.1)),
 )
 """Cases of nothing but the gear."""
 
 COMPANY = (
-    Case('500 m, a few fish between the ropes', 500.0, 2.1, fish=Fish(30, 0, 30, 25, 0.3)),
-    Case('500 m, dense fish between the ropes', 500.0, 2.1, fish=Fish(35, 3, 25, 20, 3.0)),
-    Case('500 m, fish from there to below the net', 500.0, 2.1, fish=Fish(60, 0, 60, 40, 0.1)),
-    Case('500 m, fish all around the net', 500.0, 2.1, fish=Fish(40, 0, 200, 100, 0.05)),
-    Case('500 m, seabed 15 m below the footrope', 500.0, 2.1, seabed=80.0),
+    SonarCase('500 m, a few fish between the ropes', 500.0, 2.1, fish=Fish(30, 0, 30, 25, 0.3)),
+    SonarCase('500 m, dense fish between the ropes', 500.0, 2.1, fish=Fish(35, 3, 25, 20, 3.0)),
+    SonarCase('500 m, fish from there to below the net', 500.0, 2.1, fish=Fish(60, 0, 60, 40, 0.1)),
+    SonarCase('500 m, fish all around the net', 500.0, 2.1, fish=Fish(40, 0, 200, 100, 0.05)),
+    SonarCase('500 m, seabed 15 m below the footrope', 500.0, 2.1, seabed=80.0),
 )
 """Cases with fish or the seabed in view."""
 
-TOLD = Case('500 m, speed of sound set right', 500.0, 2.1, told_sound_speed=True)
+TOLD = SonarCase('500 m, speed of sound set right', 500.0, 2.1, told_sound_speed=True)
 
 CASES = (*STATES, TOLD, *COMPANY)
 
@@ -87,7 +87,7 @@ SHOWN = STATES[3], COMPANY[1], COMPANY[4]
 
 
 @dataclass(frozen=True)
-class Measured:
+class SonarMeasurement:
     """Result of a case.
 
     ``height`` and ``width`` (n,) are readings in m, NaN where none was possible, and
@@ -95,7 +95,7 @@ class Measured:
     with its scan and truth is kept for a picture.
     """
 
-    case: Case
+    case: SonarCase
     height: np.ndarray
     width: np.ndarray
     true_height: np.ndarray
@@ -155,7 +155,7 @@ class SonarStudy:
         self._seed = seed
         self._steady: dict[tuple[float, float], Truth] = {}
 
-    def measure(self, case: Case) -> Measured:
+    def measure(self, case: SonarCase) -> SonarMeasurement:
         """Tow a case, and compare readings with truth."""
         heights: dict[int, float] = {}
         widths: dict[int, float] = {}
@@ -183,7 +183,7 @@ class SonarStudy:
         image, scan = images
         assert isinstance(image, SonarImageSample)
         assert isinstance(scan, SonarScanSample)
-        return Measured(
+        return SonarMeasurement(
             case,
             np.array([heights[stamp] for stamp in stamps]),
             np.array([widths[stamp] for stamp in stamps]),
@@ -194,23 +194,23 @@ class SonarStudy:
             seen[-1],
         )
 
-    def _sonar(self, case: Case, seed: int) -> SonarInstruments:
+    def _sonar(self, case: SonarCase, seed: int) -> SonarInstruments:
         parameters = self._parameters
         if case.told_sound_speed:
             depth = self._at_rest(case).net.headrope_depth
             told = {'assumed_sound_speed_m_s': self._surroundings.sound_speed(depth)}
             sweep = parameters.sweep.model_copy(update=told)
             parameters = parameters.model_copy(update={'sweep': sweep})
-        return SonarInstruments(parameters, Draws(seed), surroundings=self._surroundings)
+        return SonarInstruments(parameters, SeedPlan(seed), surroundings=self._surroundings)
 
-    def _at_rest(self, case: Case) -> Truth:
+    def _at_rest(self, case: SonarCase) -> Truth:
         key = case.warp, case.speed
         if key not in self._steady:
             command = Command(case.warp, case.warp, case.speed)
             self._steady[key] = Simulation(self._model, command).truth()
         return self._steady[key]
 
-    def _tow(self, case: Case) -> Iterator[Truth]:
+    def _tow(self, case: SonarCase) -> Iterator[Truth]:
         """Steady tow: the net keeps its shape and goes ahead."""
         start = self._at_rest(case)
         count = 1 + math.ceil(self._sweeps / self._parameters.sweep.rate_hz * TRUTH_HZ)
@@ -220,7 +220,7 @@ class SonarStudy:
             stamp = round(k / TRUTH_HZ * SECOND)
             yield self._with_sea(case, replace(start, stamp=stamp, net=net))
 
-    def _hauls(self, case: Case) -> Iterator[Iterator[Truth]]:
+    def _hauls(self, case: SonarCase) -> Iterator[Iterator[Truth]]:
         """Repeat the same haul, for other noise each time."""
         assert case.hauled_to is not None
         warp, speed = case.hauled_to
@@ -237,7 +237,7 @@ class SonarStudy:
         for _ in range(math.ceil(self._sweeps / per_haul)):
             yield iter(truths)
 
-    def _with_sea(self, case: Case, truth: Truth) -> Truth:
+    def _with_sea(self, case: SonarCase, truth: Truth) -> Truth:
         depth = truth.net.headrope_depth
         seabed = SeabedTruth(math.inf, depth + case.seabed)
         if case.fish is None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.branches.collapsed_starts import Tally, collapsed_shapes, tally
 from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
@@ -36,7 +36,7 @@ OVERTURNED = np.radians(-20.0)
 
 
 @dataclass(frozen=True)
-class Size:
+class SearchSize:
     """Size of the case."""
 
     lengths: Sequence[float]
@@ -47,7 +47,7 @@ class Size:
     hopeless_starts: int
 
 
-FULL = Size(
+FULL = SearchSize(
     lengths=(200.0, 300.0, 400.0, 500.0, 700.0, 900.0),
     speeds=(1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.1, 2.2, 2.3, 2.4, 2.6, 2.8, 3.0),
     angle_lengths=(200.0, 500.0, 900.0),
@@ -55,7 +55,7 @@ FULL = Size(
     collapses=((200.0, 1.9), (900.0, 2.7), (500.0, 2.1)),
     hopeless_starts=3,
 )
-SMALL = Size(
+SMALL = SearchSize(
     lengths=(300.0, 500.0),
     speeds=(2.1, 2.6),
     angle_lengths=(500.0,),
@@ -67,7 +67,7 @@ HOPELESS = 500.0, 1.5
 """A warp length (m) and speed (m/s) at which the gear cannot be towed."""
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Continue over the maps and search from collapsed shapes."""
     size = SMALL if small else FULL
     gear = load_gear('kaifuha')
@@ -78,7 +78,7 @@ def run(small: bool) -> Outcome:
     speeds = speed_lattice(model, size.lengths, size.speeds)
     angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
     collapsed_checks, collapsed_table = _collapsed(model, size)
-    return Outcome(
+    return CaseOutcome(
         checks=(
             _working('working_speeds', 'warp lengths and speeds of 1.9 to 2.3 m/s', [speeds]),
             _working('installed', 'warp lengths and installation angles up to ±5°', angles),
@@ -88,13 +88,13 @@ def run(small: bool) -> Outcome:
             *collapsed_checks,
         ),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'speed',
                 'Steady states over warp length and speed; numbers are attack angles in degrees, '
                 'also of states that are refused.',
                 speed_figure(speeds),
             ),
-            Drawing(
+            CaseFigure(
                 'angles',
                 f'Steady states over warp length and installation angles at {SPEED:g} m/s; '
                 'numbers are attack angles in degrees.',
@@ -133,7 +133,7 @@ def _working(key: str, what: str, lattices: Sequence[Lattice]) -> Check:
     )
 
 
-def _collapsed(model: GearModel, size: Size) -> tuple[list[Check], Table]:
+def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[Check], TextTable]:
     """Search from collapsed shapes, with and without a steady state at hand."""
     rows = []
     tallies: list[Tally] = []
@@ -159,7 +159,7 @@ def _collapsed(model: GearModel, size: Size) -> tuple[list[Check], Table]:
         _overturned(model, goods[-1]),
     ]
     head = ('warp (m)', 'speed (m/s)', 'searches', 'good branch', 'refused', 'another state')
-    return checks, Table('Searches from collapsed shapes', head, tuple(rows))
+    return checks, TextTable('Searches from collapsed shapes', head, tuple(rows))
 
 
 def _row(length: float, speed: float, counted: Tally) -> tuple[str, ...]:
@@ -197,14 +197,14 @@ def _overturned(model: GearModel, good: Equilibrium) -> Check:
     )
 
 
-def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> Table:
+def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> TextTable:
     kinds: list[Verdict] = list(LOOKS)
     rows = []
     for name, lattice in zip(('speed', *ANGLES), (speeds, *angles), strict=True):
         counted = Counter(answer.verdict for answer in lattice.answers.values())
         searches = sum(answer.searches for answer in lattice.answers.values())
         rows.append((name, *(str(counted[kind]) for kind in kinds), str(searches)))
-    return Table('Places by verdict', ('map over', *kinds, 'searches'), tuple(rows))
+    return TextTable('Places by verdict', ('map over', *kinds, 'searches'), tuple(rows))
 
 
 def _text(speeds: Lattice) -> str:
@@ -225,6 +225,6 @@ def _text(speeds: Lattice) -> str:
     )
 
 
-CASE = Case(
+CASE = ValidationCase(
     'steady_states', 'Where steady states exist, over warp length, speed and installation', run
 )

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import BoardRecord, GearRecord
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.paper_board import PaperBoard, coefficients
 from trawl_ros.model.assembly import board_loads, points_of
 from trawl_ros.model.board import COEFFICIENTS, coefficients_at
@@ -37,7 +37,7 @@ ANYWHERE = (-pi, pi), (radians(-85.0), radians(85.0))
 
 
 @dataclass(frozen=True)
-class Differences:
+class LoadDifferences:
     """Largest differences as shares of the force and of the moment; ``attack`` the least and
     the largest attack angle (rad) that was met.
     """
@@ -108,7 +108,7 @@ def compare(
     *,
     within: bool,
     paper: GearRecord | None = None,
-) -> Differences:
+) -> LoadDifferences:
     """Both boards at all attitudes; the equations are those of ``gear`` or of ``paper``."""
     model = replace(build_model(gear), water=WATER)
     # The gyroscopic moment is no part of eq. 1-14.
@@ -125,12 +125,12 @@ def compare(
             of_force.append(np.linalg.norm(load[:3] - force) / np.linalg.norm(force))
             of_moment.append(np.linalg.norm(load[3:] - moment) / np.linalg.norm(moment))
         seen.extend(attack)
-    return Differences(
+    return LoadDifferences(
         float(max(of_force)), float(max(of_moment)), (float(min(seen)), float(max(seen)))
     )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Compare within the law's range and outside, with forces in either axes."""
     random = np.random.default_rng(20)
     default = load_gear('kaifuha')
@@ -169,10 +169,10 @@ def run(small: bool) -> Outcome:
                 )
             )
     checks.extend(_continuation_checks(default.board))
-    return Outcome(
+    return CaseOutcome(
         checks=tuple(checks),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'coefficients',
                 'Force and moment coefficients over the attack angle without slip, as the model '
                 'has them and evaluated anew; between the dotted lines eq. 14 holds as it stands.',
@@ -180,7 +180,7 @@ def run(small: bool) -> Outcome:
             ),
         ),
         tables=(
-            Table(
+            TextTable(
                 'Largest differences as shares of the force and of the moment.',
                 ('attitudes', 'force axes', 'α [°]', 'force', 'moment'),
                 tuple(rows),
@@ -251,4 +251,4 @@ def _drawn(record: BoardRecord) -> Figure:
     return figure
 
 
-CASE = Case('board_law', 'A board alone, eq. 1 to 14', run)
+CASE = ValidationCase('board_law', 'A board alone, eq. 1 to 14', run)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from scipy.optimize import root
 
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.line import SLACK_WIDTH
@@ -99,7 +99,7 @@ def sagging(segments: int) -> Sagging:
     )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Compare both, the sagging wire at several numbers of segments."""
     counts = SEGMENTS[1:4] if small else SEGMENTS
     models = {count: sagging(count) for count in counts}
@@ -130,19 +130,19 @@ def run(small: bool) -> Outcome:
     rows = tuple(
         (str(n), *(f'{values[k]:.2e}' for values in errors.values())) for k, n in enumerate(counts)
     )
-    return Outcome(
+    return CaseOutcome(
         checks=tuple(checks),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'convergence',
                 'Relative errors of the sagging wire against the elastic catenary; the shape is '
                 'the largest distance of a node from its place, over the length.',
                 drawn(counts, errors, 'Sagging wire, 480 m between points 402 m apart'),
             ),
-            Drawing('shape', 'The sagging wire.', _shape(models[CLAIMED])),
+            CaseFigure('shape', 'The sagging wire.', _shape(models[CLAIMED])),
         ),
         tables=(
-            Table(
+            TextTable(
                 'Relative errors of the sagging wire.',
                 ('segments', *errors),
                 rows,
@@ -257,4 +257,4 @@ def _shape(model: Sagging) -> Figure:
     return figure
 
 
-CASE = Case('catenary', 'Hanging and sagging wire', run)
+CASE = ValidationCase('catenary', 'Hanging and sagging wire', run)

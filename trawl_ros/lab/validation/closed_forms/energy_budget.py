@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.power import STORES, WORKS, Ledger
 from trawl_ros.lab.validation.closed_forms.refinement import order
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -35,7 +35,7 @@ CLAIMED = 0.005
 
 
 @dataclass(frozen=True)
-class Haul:
+class WireHaul:
     """Haul: length of wire (m), and duration (s) of the whole manoeuvre."""
 
     wire: float
@@ -68,7 +68,7 @@ class Haul:
 
 
 @dataclass(frozen=True)
-class Instant:
+class BudgetInstant:
     """Gear in motion at a ``time`` (s), and the towing boundary then."""
 
     time: float
@@ -105,10 +105,10 @@ class Budget:
         return self.work('ship') + self.work('winches')
 
 
-def budget(model: GearModel, start: Equilibrium, haul: Haul, h: float) -> Budget:
+def budget(model: GearModel, start: Equilibrium, haul: WireHaul, h: float) -> Budget:
     """Tow and haul with steps of ``h`` seconds; powers by the trapezoid rule at every step."""
     ledger, stepper = Ledger.of(model), Stepper(model)
-    path = [Instant(0.0, at_rest(start.state), start.tow)]
+    path = [BudgetInstant(0.0, at_rest(start.state), start.tow)]
     steps = round(haul.seconds / h)
     for _ in range(steps):
         path.extend(advanced(stepper, path[-1], lambda t: haul.boundary(start.tow, t), h, HALVINGS))
@@ -128,12 +128,12 @@ def budget(model: GearModel, start: Equilibrium, haul: Haul, h: float) -> Budget
 
 
 def advanced(
-    stepper: Stepper, now: Instant, boundary: Callable[[float], Tow], h: float, halvings: int
-) -> list[Instant]:
+    stepper: Stepper, now: BudgetInstant, boundary: Callable[[float], Tow], h: float, halvings: int
+) -> list[BudgetInstant]:
     """Advance by one step; a step that fails is taken in halves, as a simulation does."""
     tow = boundary(now.time + h)
     try:
-        return [Instant(now.time + h, stepper.step(now.motion, tow, h), tow)]
+        return [BudgetInstant(now.time + h, stepper.step(now.motion, tow, h), tow)]
     except StepFailed:
         if halvings == 0:
             raise
@@ -141,21 +141,21 @@ def advanced(
     return first + advanced(stepper, first[-1], boundary, 0.5 * h, halvings - 1)
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Haul with shorter and shorter steps."""
     gear = load_gear('kaifuha')
     if small:
         gear = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
-    haul = Haul(8.0, 50.0) if small else Haul(50.0, 300.0)
+    haul = WireHaul(8.0, 50.0) if small else WireHaul(50.0, 300.0)
     steps = STEPS[:2] if small else STEPS
     model = build_model(gear)
     start = find_equilibrium(model, OperatingPoint(WARP, WARP, SPEED))
     budgets = {h: budget(model, start, haul, h) for h in steps}
     left = [float(np.abs(budgets[h].residual).max()) for h in steps]
-    return Outcome(
+    return CaseOutcome(
         checks=_checks(budgets[USUAL], order([round(haul.seconds / h) for h in steps], left)),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'history',
                 'Work done on the gear since the start, what of it the gear holds, and what is '
                 'missing in the budget; the winches haul in the shaded time.',
@@ -207,14 +207,14 @@ def _checks(found: Budget, falls: float) -> tuple[Check, ...]:
     return tuple(checks)
 
 
-def _table(found: Budget) -> Table:
+def _table(found: Budget) -> TextTable:
     lines = [(words, work) for words, work in zip(WORKS.values(), found.works[-1], strict=True)]
     lines.append(('sum of work', float(found.works[-1].sum())))
     lines.extend(zip(STORES.values(), found.stores[-1], strict=True))
     lines.append(('sum of energy gained', float(found.stores[-1].sum())))
     lines.append(('missing', float(found.residual[-1])))
     winches = found.work('winches')
-    return Table(
+    return TextTable(
         f'The budget over the whole manoeuvre, steps of {USUAL} s.',
         ('', 'work or gain [kJ]', 'of ship and winches [%]', 'of the winches [%]'),
         tuple(
@@ -229,8 +229,8 @@ def _table(found: Budget) -> Table:
     )
 
 
-def _residuals(budgets: dict[float, Budget], left: list[float]) -> Table:
-    return Table(
+def _residuals(budgets: dict[float, Budget], left: list[float]) -> TextTable:
+    return TextTable(
         'What is missing, by step.',
         (
             'step [s]',
@@ -254,7 +254,7 @@ def _residuals(budgets: dict[float, Budget], left: list[float]) -> Table:
     )
 
 
-def _drawn(budgets: dict[float, Budget], haul: Haul) -> Figure:
+def _drawn(budgets: dict[float, Budget], haul: WireHaul) -> Figure:
     figure = Figure(figsize=(9.6, 8.0), layout='constrained')
     above, middle, below = figure.subplots(3, 1, sharex=True)
     found = budgets[USUAL]
@@ -280,4 +280,4 @@ def _drawn(budgets: dict[float, Budget], haul: Haul) -> Figure:
     return figure
 
 
-CASE = Case('energy_budget', 'Energy budget over a haul', run)
+CASE = ValidationCase('energy_budget', 'Energy budget over a haul', run)

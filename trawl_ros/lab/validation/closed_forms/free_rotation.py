@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.reference_codes.lone_line import WIRE, holding, lone_line, lying
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import order
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
@@ -112,7 +112,7 @@ def spun(h: float, seconds: float) -> Spin:
     return Spin(table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Spin with shorter and shorter steps."""
     seconds = 0.5 * SECONDS if small else SECONDS
     spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT))}
@@ -167,10 +167,10 @@ def run(small: bool) -> Outcome:
     if not small:
         checks.append(_floor(momentum[SHORT]))
     rows = tuple((f'{h:g}', f'{momentum[h]:.2e}', f'{energy[h]:.2e}') for h in spins)
-    return Outcome(
+    return CaseOutcome(
         checks=tuple(checks),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'drift',
                 'Drift of angular momentum and energy of two free boards, and how the port one '
                 'tumbles.',
@@ -178,7 +178,7 @@ def run(small: bool) -> Outcome:
             ),
         ),
         tables=(
-            Table(
+            TextTable(
                 'Largest drift as a share.',
                 ('step [s]', 'angular momentum', 'energy'),
                 rows,
@@ -217,4 +217,4 @@ def _drawn(spins: dict[float, Spin]) -> Figure:
     return figure
 
 
-CASE = Case('free_rotation', 'Free rotation of a board', run)
+CASE = ValidationCase('free_rotation', 'Free rotation of a board', run)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_line, lying
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.solver.stepper import Motion, Stepper
 
@@ -88,7 +88,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
     )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Let the line go level, and sloping."""
     found = {slope: sinking(np.radians(slope), SECONDS) for slope in SLOPES}
     level, sloping = (found[slope] for slope in SLOPES)
@@ -165,11 +165,11 @@ def run(small: bool) -> Outcome:
         )
         for slope, line in found.items()
     )
-    return Outcome(
+    return CaseOutcome(
         checks=checks,
-        drawings=(Drawing('speed', 'Speed of a free line let go from rest.', _drawn(found)),),
+        drawings=(CaseFigure('speed', 'Speed of a free line let go from rest.', _drawn(found)),),
         tables=(
-            Table(
+            TextTable(
                 'Last speeds.',
                 (
                     'slope [°]',
@@ -205,4 +205,4 @@ def _drawn(found: dict[float, Sinking]) -> Figure:
     return figure
 
 
-CASE = Case('sinking_line', 'Terminal sinking of a free line', run)
+CASE = ValidationCase('sinking_line', 'Terminal sinking of a free line', run)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
 from trawl_ros.model.assembly import block_forces
 
@@ -97,7 +97,7 @@ def modelled(segments: int) -> Wire:
     )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Compare at several numbers of segments."""
     counts = SEGMENTS[1:4] if small else SEGMENTS
     exact = {count: integrated(count) for count in counts}
@@ -154,19 +154,19 @@ def run(small: bool) -> Outcome:
         for n in counts
     )
     last = ('integrated', f'{reference.depth:.4f}', f'{reference.lag:.4f}')
-    return Outcome(
+    return CaseOutcome(
         checks=tuple(checks),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'convergence',
                 'Relative errors of the towed wire against the integrated equation; the shape is '
                 'the largest distance of a node from its place, over the length.',
                 drawn(counts, orders, 'Towed wire, 600 m at 2 m/s'),
             ),
-            Drawing('shape', 'The wire as modelled and as integrated.', _shape(claimed)),
+            CaseFigure('shape', 'The wire as modelled and as integrated.', _shape(claimed)),
         ),
         tables=(
-            Table(
+            TextTable(
                 'The towed wire at several numbers of segments.',
                 ('segments', 'depth [m]', 'lag [m]', 'top tension [N]'),
                 (*rows, (*last, f'{reference.tension:.2f}')),
@@ -188,4 +188,4 @@ def _shape(claimed: Wire) -> Figure:
     return figure
 
 
-CASE = Case('towed_wire', 'Towed elastic wire', run)
+CASE = ValidationCase('towed_wire', 'Towed elastic wire', run)

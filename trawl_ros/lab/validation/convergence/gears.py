@@ -26,7 +26,7 @@ in Fig. 5."""
 
 
 @dataclass(frozen=True)
-class Row:
+class RefinementRow:
     """Observables (lengths, observables) of one gear; NaN where it has no steady state."""
 
     name: str
@@ -34,7 +34,7 @@ class Row:
     seen: np.ndarray
 
 
-def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> Row:
+def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> RefinementRow:
     """Solve one gear at all warp lengths, from the middle one outward."""
     model = build_model(gear)
     seen = np.full((len(lengths), len(OBSERVABLES)), np.nan)
@@ -49,7 +49,7 @@ def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> Row:
         found = found or _solved(model, lengths[k], None)
         if found is not None:
             seen[k] = found.observables.array()
-    return Row(name, model.nodes, seen)
+    return RefinementRow(name, model.nodes, seen)
 
 
 def _solved(model: GearModel, length: float, start: Equilibrium | None) -> Equilibrium | None:

@@ -24,7 +24,7 @@ GAIN = 0.2
 
 
 @dataclass(frozen=True)
-class History:
+class SteppedManoeuvre:
     """A manoeuvre at one time step: ``seen`` (samples, observables) and ``places`` (samples,
     nodes and boards, 3) of all nodes and boards, m.
     """
@@ -52,7 +52,9 @@ def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
     )
 
 
-def smooth_haul(model: GearModel, start: Equilibrium, step: float, duration: float) -> History:
+def smooth_haul(
+    model: GearModel, start: Equilibrium, step: float, duration: float
+) -> SteppedManoeuvre:
     """The stepper through the smooth manoeuvre, from a steady state."""
     stepper, motion = Stepper(model), at_rest(start.state)
     each = round(SAMPLE / step)
@@ -63,10 +65,10 @@ def smooth_haul(model: GearModel, start: Equilibrium, step: float, duration: flo
         if k % each == 0:
             seen.append(observe(model, motion.state, tow).array())
             places.append(_places(motion.state))
-    return History(step, np.array(seen), np.array(places))
+    return SteppedManoeuvre(step, np.array(seen), np.array(places))
 
 
-def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) -> History:
+def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) -> SteppedManoeuvre:
     """The simulation hauls ``hauled`` metres to port and less to starboard while the ship gains
     speed: both with the accelerations of the gear file, which set in and end abruptly.
     """
@@ -84,7 +86,7 @@ def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) ->
             tow = tow_of(model, now.ship, now.winches)
             seen.append(observe(model, now.motion.state, tow).array())
             places.append(_places(now.motion.state))
-    return History(step, np.array(seen), np.array(places))
+    return SteppedManoeuvre(step, np.array(seen), np.array(places))
 
 
 def _places(state: State) -> np.ndarray:

@@ -8,12 +8,12 @@ from matplotlib.figure import Figure
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.convergence.gears import (
     AROUND_ZERO,
     REFERENCE,
     SPEED,
-    Row,
+    RefinementRow,
     differences,
     row,
 )
@@ -57,7 +57,7 @@ DRAWN = (
 TICKS = -50, -20, -10, -5, -2, -1, 0, 1, 2, 5, 10, 20, 50
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Solve all gears and compare."""
     lengths = (500.0,) if small else (200.0, 500.0, 900.0)
     gear = load_gear('kaifuha')
@@ -71,10 +71,10 @@ def run(small: bool) -> Outcome:
     series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
-    return Outcome(
+    return CaseOutcome(
         checks=tuple(_checks(default, finer, lengths, series)),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'net',
                 'Observables over the numerical meshes around the net, as their difference from '
                 'the finest: linear within the band of 2 %, logarithmic beyond. The dotted line '
@@ -101,7 +101,10 @@ def around_of(gear: GearRecord, around: int) -> GearRecord:
 
 
 def _checks(
-    default: Row, finer: Sequence[Row], lengths: Sequence[float], series: Mapping[int, Row]
+    default: RefinementRow,
+    finer: Sequence[RefinementRow],
+    lengths: Sequence[float],
+    series: Mapping[int, RefinementRow],
 ) -> Iterator[Check]:
     """One check for each way of refining and warp length: the worst of all observables."""
     for fine in finer:
@@ -130,7 +133,7 @@ def _checks(
             )
 
 
-def _reason(fine: Row, worst: int, k: int, series: Mapping[int, Row]) -> str:
+def _reason(fine: RefinementRow, worst: int, k: int, series: Mapping[int, RefinementRow]) -> str:
     """Reason why an observable has not converged, by the series of nets."""
     if fine.name in ('warp', 'bridle'):
         return f'the {fine.name} is cut too coarsely for it.'
@@ -143,7 +146,9 @@ def _reason(fine: Row, worst: int, k: int, series: Mapping[int, Row]) -> str:
     )
 
 
-def _tables(default: Row, fine: Row, lengths: Sequence[float]) -> Iterator[Table]:
+def _tables(
+    default: RefinementRow, fine: RefinementRow, lengths: Sequence[float]
+) -> Iterator[TextTable]:
     """Every observable beside that of the gear with everything finer."""
     for k, length in enumerate(lengths):
         shares = 100.0 * differences(default.seen[k], fine.seen[k])
@@ -162,7 +167,7 @@ def _tables(default: Row, fine: Row, lengths: Sequence[float]) -> Iterator[Table
                 )
             )
         head = ('observable', 'default', 'all finer', '% of value', 'set against', 'difference (%)')
-        yield Table(f'{length:g} m of warp, {SPEED:g} m/s', head, tuple(rows))
+        yield TextTable(f'{length:g} m of warp, {SPEED:g} m/s', head, tuple(rows))
 
 
 def _value(name: str, value: float) -> str:
@@ -174,7 +179,7 @@ def _value(name: str, value: float) -> str:
     return f'{np.degrees(value):.2f}°'
 
 
-def _figure(series: Mapping[int, Row], lengths: Sequence[float], own: int) -> Figure:
+def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: int) -> Figure:
     counts = sorted(series)
     figure = Figure(figsize=(4.2 * len(lengths) + 1.5, 4.6), layout='constrained')
     panels = figure.subplots(1, len(lengths), sharey=True, squeeze=False)[0]
@@ -199,4 +204,4 @@ def _figure(series: Mapping[int, Row], lengths: Sequence[float], own: int) -> Fi
     return figure
 
 
-CASE = Case('refinement', 'The default gear beside finer ones', run)
+CASE = ValidationCase('refinement', 'The default gear beside finer ones', run)

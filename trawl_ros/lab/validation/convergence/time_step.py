@@ -8,8 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
-from trawl_ros.lab.validation.convergence.manoeuvres import START, History, smooth_haul, winch_ramp
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.validation.convergence.manoeuvres import (
+    START,
+    SteppedManoeuvre,
+    smooth_haul,
+    winch_ramp,
+)
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.observables import OBSERVABLES
@@ -29,7 +34,7 @@ SLACK = 10.0
 
 
 @dataclass(frozen=True)
-class Size:
+class ManoeuvreSize:
     """Durations (s) of both manoeuvres, steps (s), the finest for reference, and metres hauled."""
 
     smooth_duration: float
@@ -39,8 +44,8 @@ class Size:
     hauled: float
 
 
-FULL = Size(32.0, (0.8, 0.4, 0.2, 0.1, 0.0125), 64.0, (0.4, 0.2, 0.1, 0.0125), 16.0)
-SMALL = Size(16.0, (0.4, 0.2, 0.1, 0.025), 12.0, (0.4, 0.2, 0.1, 0.025), 2.0)
+FULL = ManoeuvreSize(32.0, (0.8, 0.4, 0.2, 0.1, 0.0125), 64.0, (0.4, 0.2, 0.1, 0.0125), 16.0)
+SMALL = ManoeuvreSize(16.0, (0.4, 0.2, 0.1, 0.025), 12.0, (0.4, 0.2, 0.1, 0.025), 2.0)
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ class Convergence:
         return np.array([self.order(column) for column in self.errors.T])
 
 
-def convergence(runs: Sequence[History]) -> Convergence:
+def convergence(runs: Sequence[SteppedManoeuvre]) -> Convergence:
     """Compare runs of one manoeuvre; the last has the finest step."""
     *coarse, fine = runs
     change = np.ptp(fine.seen, axis=0)
@@ -80,7 +85,7 @@ def convergence(runs: Sequence[History]) -> Convergence:
     )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Run both manoeuvres at several steps."""
     size = SMALL if small else FULL
     gear = load_gear('kaifuha')
@@ -96,7 +101,7 @@ def run(small: bool) -> Outcome:
     flapping = _flapping(model, smooth)
     at_default = ramp.errors[list(ramp.steps).index(DEFAULT_STEP)]
     least, worst = int(orders.argmin()), int(at_default.argmax())
-    return Outcome(
+    return CaseOutcome(
         checks=(
             Check(
                 'smooth_every_observable',
@@ -151,7 +156,7 @@ def run(small: bool) -> Outcome:
             ),
         ),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'order',
                 'Largest error of each observable during the manoeuvre over the time step, as a '
                 'share of how much it changes.',
@@ -170,7 +175,7 @@ def run(small: bool) -> Outcome:
     )
 
 
-def _smooth(model: GearModel, size: Size) -> Convergence:
+def _smooth(model: GearModel, size: ManoeuvreSize) -> Convergence:
     point = OperatingPoint(START.port_length, START.starboard_length, START.speed)
     start = find_equilibrium(model, point)
     return convergence(
@@ -198,10 +203,10 @@ def _flapping(model: GearModel, found: Convergence) -> str:
     )
 
 
-def _table(smooth: Convergence, ramp: Convergence) -> Table:
+def _table(smooth: Convergence, ramp: Convergence) -> TextTable:
     at_default = ramp.errors[list(ramp.steps).index(DEFAULT_STEP)]
     rows = zip(OBSERVABLES, smooth.orders(), ramp.orders(), 100.0 * at_default, strict=True)
-    return Table(
+    return TextTable(
         'Observed orders, and the error at the default step',
         ('observable', 'order, smooth', 'order, ramp', f'error at {DEFAULT_STEP:g} s, ramp (%)'),
         tuple((name, f'{one:.2f}', f'{two:.2f}', f'{error:.3f}') for name, one, two, error in rows),
@@ -232,4 +237,4 @@ def _draw(axes: Axes, found: Convergence, title: str) -> None:
     axes.grid(alpha=0.3)
 
 
-CASE = Case('time_step', 'The time stepper is of second order', run)
+CASE = ValidationCase('time_step', 'The time stepper is of second order', run)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from trawl_ros.lab.report.check import Check, Rule, Table
+from trawl_ros.lab.report.check import Check, Rule, TextTable
 from trawl_ros.lab.validation.writing import expectation
 from trawl_ros.report.rendering import number
 
@@ -60,7 +60,7 @@ def part(
     return Check(key, what, float(measured), expected, tolerance, rule, unit, reason)
 
 
-def claim_table(claims: Sequence[Claim]) -> Table:
+def claim_table(claims: Sequence[Claim]) -> TextTable:
     """Table of all claims."""
     rows = []
     for one in claims:
@@ -71,7 +71,7 @@ def claim_table(claims: Sequence[Claim]) -> Table:
         )
         reasons = dict.fromkeys(check.note for check in one.checks if not check.ok)
         rows.append((one.where, one.says, gives, one.agrees, ' '.join(reasons)))
-    return Table(
+    return TextTable(
         'What section IV claims, shortened, and what this model gives (in brackets what the '
         'sentence leads one to expect).',
         ('section', 'the paper', 'this model', 'agrees', 'why not'),

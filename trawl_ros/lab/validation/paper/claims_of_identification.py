@@ -3,7 +3,7 @@
 import numpy as np
 
 from trawl_ros.lab.validation.paper.claim import Claim, claim, part
-from trawl_ros.lab.validation.paper.refit import Refit
+from trawl_ros.lab.validation.paper.refit import PaperRefit
 from trawl_ros.model.board import COEFFICIENTS
 
 WORKING = np.radians(np.linspace(0.0, 30.0, 121))
@@ -21,12 +21,12 @@ UNLIKE = 10.0
 """Sensitivities that lie further apart than this factor are unlike."""
 
 
-def identification_claims(fit: Refit) -> list[Claim]:
+def identification_claims(fit: PaperRefit) -> list[Claim]:
     """Return all claims on the fit."""
     return [*_objective(fit), *_slopes(fit), *_deviations(fit)]
 
 
-def _objective(fit: Refit) -> list[Claim]:
+def _objective(fit: PaperRefit) -> list[Claim]:
     objective = fit.objective
     falls = -np.diff(objective)
     early = max(1, int(np.ceil(EARLY * len(falls))))
@@ -87,7 +87,7 @@ def _objective(fit: Refit) -> list[Claim]:
     ]
 
 
-def _slopes(fit: Refit) -> list[Claim]:
+def _slopes(fit: PaperRefit) -> list[Claim]:
     value = dict(zip(COEFFICIENTS, fit.estimate.values, strict=True))
     std = dict(zip(COEFFICIENTS, fit.estimate.std, strict=True))
     start = dict(zip(COEFFICIENTS, fit.prior.start, strict=True))
@@ -127,7 +127,7 @@ def _slopes(fit: Refit) -> list[Claim]:
     ]  # fmt: skip
 
 
-def _deviations(fit: Refit) -> list[Claim]:
+def _deviations(fit: PaperRefit) -> list[Claim]:
     def away(slope: str, attack: np.ndarray) -> np.ndarray:
         return np.abs(
             fit.line(fit.estimate.values, slope, attack) - fit.line(fit.truth, slope, attack)

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.paper.comparison import Comparison, column, compare_trial
 from trawl_ros.lab.validation.paper.trial import warp_length
 
@@ -16,7 +16,7 @@ PANELS = (
 )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Compare the two kinds of boards with the sample trial."""
     seen = compare_trial(small)
     solved = np.isfinite(seen.trial_six).all(1) & np.isfinite(seen.trial_three).all(1)
@@ -44,11 +44,11 @@ def run(small: bool) -> Outcome:
         f'Fig. 13 to 16 remade. Lines and full marks at {seen.speed:.2f} m/s; open marks are the '
         'states of the trial at other speeds.'
     )
-    return Outcome(
+    return CaseOutcome(
         checks,
         (
-            Drawing('fig13_to_16', caption, _lines(seen)),
-            Drawing(
+            CaseFigure('fig13_to_16', caption, _lines(seen)),
+            CaseFigure(
                 'all_states',
                 'Every state of the trial, each predicted at its own warp length and speed; '
                 'the dashed line is agreement.',
@@ -106,7 +106,7 @@ def _states(seen: Comparison) -> Figure:
     return figure
 
 
-def _table(seen: Comparison) -> Table:
+def _table(seen: Comparison) -> TextTable:
     rows = []
     for row in PAPER_CHANNELS:
         errors = [
@@ -115,7 +115,7 @@ def _table(seen: Comparison) -> Table:
         ]
         rows.append((row.name.replace('_', ' '), *(f'{error:.1f} %' for error in errors)))
     lean = np.degrees(seen.lean)
-    return Table(
+    return TextTable(
         'Mean error over mean measured value, all states of the trial. The last column: points '
         f'whose lift is tipped up by {lean:.1f}°, the mean δ of the 6-DOF boards.',
         ('', '6-DOF', '3-DOF', '3-DOF, lift tipped up'),
@@ -123,4 +123,6 @@ def _table(seen: Comparison) -> Table:
     )
 
 
-CASE = Case('degrees_of_freedom', '6-DOF and 3-DOF boards against the trial (Fig. 13 to 16)', run)
+CASE = ValidationCase(
+    'degrees_of_freedom', '6-DOF and 3-DOF boards against the trial (Fig. 13 to 16)', run
+)

@@ -3,15 +3,15 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
-from trawl_ros.lab.validation.paper.refit import Refit, refit_trial
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.validation.paper.refit import PaperRefit, refit_trial
 from trawl_ros.lab.validation.paper.trial import trial_windows
 from trawl_ros.model.board import COEFFICIENTS
 
 ATTACK = np.radians(np.linspace(0.0, 40.0, 81))
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Fit the default gear to the sample trial."""
     windows = trial_windows(small)
     fit = refit_trial(small)
@@ -31,16 +31,16 @@ def run(small: bool) -> Outcome:
             note=fit.estimate.reason,
         ),
     )
-    return Outcome(
+    return CaseOutcome(
         checks,
         (
-            Drawing(
+            CaseFigure(
                 'fig4',
                 'Fig. 4 remade: eq. 35 with λ = 1/(n · mean measured value). One iteration moves '
                 'all twelve coefficients.',
                 _objective(fit),
             ),
-            Drawing(
+            CaseFigure(
                 'fig5',
                 'Fig. 5 remade, with two standard deviations of the estimate. In place of the '
                 "tests of the paper's references 18 and 19, whose figures it does not print, "
@@ -52,7 +52,7 @@ def run(small: bool) -> Outcome:
     )
 
 
-def _objective(fit: Refit) -> Figure:
+def _objective(fit: PaperRefit) -> Figure:
     figure = Figure(figsize=(7.5, 4.5), layout='constrained')
     axes = figure.subplots()
     axes.plot(np.arange(len(fit.objective)), fit.objective, 'C0-o', ms=4, label='objective')
@@ -65,7 +65,7 @@ def _objective(fit: Refit) -> Figure:
     return figure
 
 
-def _lines(fit: Refit) -> Figure:
+def _lines(fit: PaperRefit) -> Figure:
     figure = Figure(figsize=(7.5, 5.0), layout='constrained')
     axes = figure.subplots()
     degrees = np.degrees(ATTACK)
@@ -90,7 +90,7 @@ def _lines(fit: Refit) -> Figure:
     return figure
 
 
-def _table(fit: Refit) -> Table:
+def _table(fit: PaperRefit) -> TextTable:
     estimate = fit.estimate
     rows = [
         (
@@ -104,7 +104,7 @@ def _table(fit: Refit) -> Table:
         for i, name in enumerate(COEFFICIENTS)
     ]
     head = ('', 'start', 'estimate', '95 % interval', 'made the trial', 'determined by the data')
-    return Table('The coefficients of eq. 37.', head, tuple(rows))
+    return TextTable('The coefficients of eq. 37.', head, tuple(rows))
 
 
-CASE = Case('identified', 'Coefficients refitted to the sample trial (Fig. 4 and 5)', run)
+CASE = ValidationCase('identified', 'Coefficients refitted to the sample trial (Fig. 4 and 5)', run)

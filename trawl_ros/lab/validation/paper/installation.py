@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.paper.sweeps import (
     FEW_TURNS,
     INSTALLATION,
@@ -31,7 +31,7 @@ PANELS: tuple[tuple[str, str, Callable[[Observables], float]], ...] = (
 )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Turn the boards of the default gear by up to 5° about each of their axes."""
     turns = FEW_TURNS if small else TURNS
     found = installation_sweep(paper_model(small), turns)
@@ -47,9 +47,9 @@ def run(small: bool) -> Outcome:
     )
     where = f'{WARP_LENGTH:g} m of warp and {SPEED:g} m/s'
     caption = f'Fig. 7 to 12 remade, at {where}. ε, ζ, η turn the board about its z, y, x axes.'
-    return Outcome(
+    return CaseOutcome(
         checks,
-        (Drawing('fig7_to_12', caption, _figure(found)),),
+        (CaseFigure('fig7_to_12', caption, _figure(found)),),
         (_table(found, f'Changes by turns of {TURN:g}°, at {where}.'),),
     )
 
@@ -86,7 +86,7 @@ def _figure(found: Mapping[str, Mapping[float, Sighting]]) -> Figure:
     return figure
 
 
-def _table(found: Mapping[str, Mapping[float, Sighting]], caption: str) -> Table:
+def _table(found: Mapping[str, Mapping[float, Sighting]], caption: str) -> TextTable:
     rows = []
     for angle, row in found.items():
         base = row[0.0].seen
@@ -98,7 +98,7 @@ def _table(found: Mapping[str, Mapping[float, Sighting]], caption: str) -> Table
                 cells.append(f'{change:+.1f}°' if degrees else f'{100 * change / before:+.1f} %')
             rows.append(tuple(cells))
     head = ('turn', *(label.rpartition(' [')[0] for _, label, _ in PANELS))
-    return Table(caption, head, tuple(rows))
+    return TextTable(caption, head, tuple(rows))
 
 
-CASE = Case('installation', 'Installation angles of the boards (Fig. 7 to 12)', run)
+CASE = ValidationCase('installation', 'Installation angles of the boards (Fig. 7 to 12)', run)

@@ -54,7 +54,7 @@ class _Remembering(Predictor):
 
 
 @dataclass(frozen=True)
-class Refit:
+class PaperRefit:
     """The fit, the objective of eq. 35 at the start and after each iteration, and what made the
     trial.
 
@@ -81,12 +81,12 @@ class Refit:
 
 
 @cache
-def refit_trial(small: bool) -> Refit:
+def refit_trial(small: bool) -> PaperRefit:
     """Fit the gear of the paper to the sample trial; in a process once."""
     return refit(gear(small), trial_windows(small))
 
 
-def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> Refit:
+def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> PaperRefit:
     """Fit a gear to steady windows, all together from the first iteration on.
 
     `trawl identify` takes windows one by one, as they come; an objective that gains terms on the
@@ -108,7 +108,7 @@ def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> Refit:
     estimate = fit.finish()
     assert estimate is not None
     history = [entry.objective for entry in fit.history]
-    return Refit(
+    return PaperRefit(
         estimate=estimate,
         prior=prior,
         truth=true_coefficients(share_path(*SCENARIO)),

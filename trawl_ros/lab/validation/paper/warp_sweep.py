@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, ValidationCase
 from trawl_ros.lab.validation.paper.sweeps import (
     FEW_LENGTHS,
     LENGTHS,
@@ -14,7 +14,7 @@ from trawl_ros.lab.validation.paper.sweeps import (
 )
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Solve the default gear from 200 to 900 m of warp."""
     lengths = FEW_LENGTHS if small else LENGTHS
     model = paper_model(small)
@@ -53,9 +53,13 @@ def run(small: bool) -> Outcome:
             note='section IV.D: δ gives lift an upward part, so the normal points up',
         ),
     )
-    return Outcome(
+    return CaseOutcome(
         checks,
-        (Drawing('fig6', f'Fig. 6 remade, at {SPEED:g} m/s.', _figure(np.array(lengths), angles)),),
+        (
+            CaseFigure(
+                'fig6', f'Fig. 6 remade, at {SPEED:g} m/s.', _figure(np.array(lengths), angles)
+            ),
+        ),
     )
 
 
@@ -76,4 +80,4 @@ def _figure(lengths: np.ndarray, angles: dict[str, np.ndarray]) -> Figure:
     return figure
 
 
-CASE = Case('warp_sweep', 'Angles of the boards against warp length (Fig. 6)', run)
+CASE = ValidationCase('warp_sweep', 'Angles of the boards against warp length (Fig. 6)', run)

@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.reference_codes.history import Apart, History, apart
-from trawl_ros.lab.reference_codes.manoeuvre import Manoeuvre, haul_and_turn, short_manoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
 from trawl_ros.lab.reference_codes.moordyn_wire import SETTLING, MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
-from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, Towed
-from trawl_ros.lab.report.check import Case, Check, Drawing, Outcome, Table
+from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, WireSteadyState
+from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 
 SEGMENTS = 20
 
@@ -29,7 +29,7 @@ UNITS: Mapping[str, str] = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
 OURS, PEER = 'trawl_ros', 'MoorDyn'
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Tow, haul and turn the same wire in both programs."""
     manoeuvre = short_manoeuvre() if small else haul_and_turn()
     model = own_model(WIRE, SEGMENTS)
@@ -40,10 +40,10 @@ def run(small: bool) -> Outcome:
         theirs = wire.settle(0.3 * SETTLING if small else SETTLING)
         peer = wire.follow(manoeuvre)
     difference = apart(own, peer)
-    return Outcome(
+    return CaseOutcome(
         checks=(*_steady_checks(ours, theirs), *_history_checks(difference)),
         drawings=(
-            Drawing(
+            CaseFigure(
                 'histories',
                 f'The wire while it is hauled and the ship turns, {SEGMENTS} segments in both: '
                 f"histories, and the difference as a share of {PEER}'s value.",
@@ -66,7 +66,7 @@ def run(small: bool) -> Outcome:
     )
 
 
-def _steady_checks(ours: Towed, theirs: Towed) -> list[Check]:
+def _steady_checks(ours: WireSteadyState, theirs: WireSteadyState) -> list[Check]:
     return [
         Check(
             f'steady_{name}',
@@ -96,8 +96,8 @@ def _history_checks(difference: Apart) -> list[Check]:
     ]
 
 
-def _steady_table(ours: Towed, theirs: Towed) -> Table:
-    return Table(
+def _steady_table(ours: WireSteadyState, theirs: WireSteadyState) -> TextTable:
+    return TextTable(
         'The steady tow, and what the integrated equation of the wire gives',
         ('', OURS, PEER, 'integrated'),
         tuple(
@@ -110,8 +110,8 @@ def _steady_table(ours: Towed, theirs: Towed) -> Table:
     )
 
 
-def _history_table(difference: Apart) -> Table:
-    return Table(
+def _history_table(difference: Apart) -> TextTable:
+    return TextTable(
         f"Differences over the manoeuvre, shares of {PEER}'s value",
         ('', 'largest', 'root mean square'),
         tuple(
@@ -121,7 +121,7 @@ def _history_table(difference: Apart) -> Table:
     )
 
 
-def _histories(own: History, peer: History, manoeuvre: Manoeuvre) -> Figure:
+def _histories(own: History, peer: History, manoeuvre: WireManoeuvre) -> Figure:
     figure = Figure(figsize=(9.0, 6.0), layout='constrained')
     panes = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
     for column, (name, unit, scale) in enumerate((('depth', 'm', 1.0), ('tension', 'kN', 1e-3))):
@@ -143,4 +143,4 @@ def _histories(own: History, peer: History, manoeuvre: Manoeuvre) -> Figure:
     return figure
 
 
-CASE = Case('moordyn_wire', 'A towed wire beside MoorDyn', run)
+CASE = ValidationCase('moordyn_wire', 'A towed wire beside MoorDyn', run)

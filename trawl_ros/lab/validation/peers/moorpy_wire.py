@@ -3,7 +3,7 @@
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.own_wire import own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE
-from trawl_ros.lab.report.check import Case, Check, Outcome, Table
+from trawl_ros.lab.report.check import CaseOutcome, Check, TextTable, ValidationCase
 
 SEGMENTS = 20
 
@@ -11,12 +11,12 @@ SHARE = 0.01
 """Largest difference that is asked for, as a share."""
 
 
-def run(small: bool) -> Outcome:
+def run(small: bool) -> CaseOutcome:
     """Solve the same steady tow in both programs; nothing is left out when ``small``."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
     names = (('depth', 'm'), ('lag', 'm'), ('tension', 'N'))
-    table = Table(
+    table = TextTable(
         'The steady tow, and what the integrated equation of the wire gives',
         ('', 'trawl_ros', 'MoorPy', 'integrated', 'trawl_ros error', 'MoorPy error'),
         tuple(
@@ -31,7 +31,7 @@ def run(small: bool) -> Outcome:
             for name, unit in names
         ),
     )
-    return Outcome(
+    return CaseOutcome(
         checks=tuple(
             Check(
                 f'steady_{name}',
@@ -54,4 +54,4 @@ def run(small: bool) -> Outcome:
     )
 
 
-CASE = Case('moorpy_wire', 'A steady towed wire beside MoorPy', run)
+CASE = ValidationCase('moorpy_wire', 'A steady towed wire beside MoorPy', run)

@@ -7,8 +7,8 @@ from trawl_ros.diagnosis.diagnosis import values_of
 from trawl_ros.diagnosis.holdout import split
 from trawl_ros.diagnosis.naming import refitted
 from trawl_ros.diagnosis.refit import fit_boards
-from trawl_ros.diagnosis.score_test import screen
-from trawl_ros.effects.effect_set import acting
+from trawl_ros.diagnosis.score_test import score_test
+from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -28,11 +28,11 @@ def fit_quietly(
     dict or None
         Values by the effect's ``parameters`` and by ``coefficients``; None where nothing fits.
     """
-    predictor = Predictor(build_model(gear), acting(gear), without=baseline)
+    predictor = Predictor(build_model(gear), effects_of(gear), without=baseline)
     base = fit_boards(predictor, board_prior(gear), split(windows, baseline).deciding)
     if base is None:
         return None
-    seen = screen(predictor, base.fit, {name: catalogue()[name]})
+    seen = score_test(predictor, base.fit, {name: catalogue()[name]})
     best = refitted(predictor, base, seen, (max(seen.wanted, key=seen.penalised),))
     if best is None:
         return None

@@ -15,12 +15,17 @@ from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis import rules
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.page import Page, write_page
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.scoring.rows import all_rows
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes
 from trawl_ros.lab.studies.discrepancy.trials.making import DROPOUTS, WRONG_BY
-from trawl_ros.lab.studies.discrepancy.trials.plan import IN_BAGS, PLANTS, POOR_STRENGTH, Plan
+from trawl_ros.lab.studies.discrepancy.trials.plan import (
+    IN_BAGS,
+    PLANTS,
+    POOR_STRENGTH,
+    BlindStudyPlan,
+)
 from trawl_ros.lab.studies.discrepancy.trials.plant import FRICTION, NORMAL_DRAG
 from trawl_ros.lab.studies.discrepancy.trials.towing import HAULING_SPEED
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
@@ -36,8 +41,8 @@ CAPTION = (
 
 
 def write_discrepancy(
-    folder: Path, plan: Plan, trials: Sequence[Scored], classes: Classes
-) -> list[Row]:
+    folder: Path, plan: BlindStudyPlan, trials: Sequence[Scored], classes: Classes
+) -> list[StudyRow]:
     """Write ``discrepancy.json``, ``.md``, ``.html`` and ``.png``, log it, and give the rows."""
     sections = all_rows(trials, classes)
     page = Page(
@@ -54,13 +59,13 @@ def write_discrepancy(
     return rows
 
 
-def _options(plan: Plan) -> str:
-    usual = asdict(Plan())
+def _options(plan: BlindStudyPlan) -> str:
+    usual = asdict(BlindStudyPlan())
     words = [f'--{key} {value}' for key, value in asdict(plan).items() if value != usual[key]]
     return ''.join(f' {word}' for word in words)
 
 
-def _method(plan: Plan, trials: Sequence[Scored], classes: Classes) -> str:
+def _method(plan: BlindStudyPlan, trials: Sequence[Scored], classes: Classes) -> str:
     """Method in sentences."""
     not_testable = [trial for trial in trials if trial.diagnosis is None]
     why = Counter(re.split(' of |:', trial.key['why_not'])[0] for trial in not_testable)
@@ -111,7 +116,7 @@ def _listed(classes: Classes) -> str:
 SCORINGS = 'scorings.jsonl'
 
 
-def log_scoring(folder: Path, plan: Plan, trials: int, rows: Sequence[Row]) -> None:
+def log_scoring(folder: Path, plan: BlindStudyPlan, trials: int, rows: Sequence[StudyRow]) -> None:
     """Add a line: when, of which plan and rules, which targets were asked for, and missed."""
     asked = [row for row in rows if row.asked]
     source = Path(rules.__file__).read_bytes()

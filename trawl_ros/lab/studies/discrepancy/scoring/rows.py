@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from trawl_ros.lab.report.row import Row
+from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.discrepancy.scoring.rates import rate
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
@@ -27,7 +27,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
 
-def all_rows(trials: Sequence[Scored], classes: Classes) -> list[tuple[str, tuple[Row, ...]]]:
+def all_rows(trials: Sequence[Scored], classes: Classes) -> list[tuple[str, tuple[StudyRow, ...]]]:
     """All sections with their rows."""
     return [
         ('Clean trials', tuple(clean_rows(trials))),
@@ -42,7 +42,7 @@ def all_rows(trials: Sequence[Scored], classes: Classes) -> list[tuple[str, tupl
     ]
 
 
-def clean_rows(trials: Sequence[Scored]) -> list[Row]:
+def clean_rows(trials: Sequence[Scored]) -> list[StudyRow]:
     """Rate of false alarms."""
     clean = chosen(trials, 'clean')
     return [
@@ -53,7 +53,7 @@ def clean_rows(trials: Sequence[Scored]) -> list[Row]:
     ]  # fmt: skip
 
 
-def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     """Detection and naming of effects in the catalogue."""
     inside = chosen(trials, 'inside')
     said = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
@@ -68,7 +68,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
     ]
     testable = {effects_of(trial)[0] for trial in third}
     rows = [
-        Row(
+        StudyRow(
             'effects that can be tested at 3 times the smallest detectable size',
             float(len(testable)),
             least=12.0,
@@ -94,7 +94,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
             )
             for strength, least in ((1.5, None), (3.0, 90.0), (6.0, 97.0))
         ),
-        Row('mean size of the set at 3 times', float(np.mean(sizes)) if sizes else np.nan,
+        StudyRow('mean size of the set at 3 times', float(np.mean(sizes)) if sizes else np.nan,
             target=1.5, note='classes not excluded, of trials NAMED or AMBIGUOUS'),
         rate('wrong single name', [verdict(t) == 'NAMED' and not right(t, names_of(t), classes)
                                     for t in inside], most=2.0),
@@ -113,12 +113,12 @@ def _one_class(names: set[str], classes: Classes) -> set[str]:
     return names | {other for name in names for other in classes.get(name, ())}
 
 
-def outside_rows(trials: Sequence[Scored]) -> list[Row]:
+def outside_rows(trials: Sequence[Scored]) -> list[StudyRow]:
     """Verdicts on effects outside the catalogue."""
     outside = chosen(trials, 'outside')
     kinds = {effects_of(trial)[0] for trial in outside}
     return [
-        Row('kinds of effects outside the catalogue', float(len(kinds)), least=10.0,
+        StudyRow('kinds of effects outside the catalogue', float(len(kinds)), least=10.0,
             note=', '.join(sorted(kinds))),
         *(
             rate(
@@ -133,7 +133,7 @@ def outside_rows(trials: Sequence[Scored]) -> list[Row]:
     ]  # fmt: skip
 
 
-def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     """Verdicts on two effects at once."""
     pairs = chosen(trials, 'pair')
     return [
@@ -146,7 +146,7 @@ def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
     ]
 
 
-def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     """Tows so much alike that effects are too, and the proposed next tow."""
     poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
     alone = [trial for trial in poor if verdict(trial) == 'NAMED' and len(reported(trial)) == 1]
@@ -161,7 +161,7 @@ def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
     ]  # fmt: skip
 
 
-def bag_rows(trials: Sequence[Scored]) -> list[Row]:
+def bag_rows(trials: Sequence[Scored]) -> list[StudyRow]:
     """Agreement of verdicts from full bags with those from simulated windows."""
     by_number: Mapping[int, Scored] = {
         trial.key['spec']['number']: trial
@@ -194,7 +194,7 @@ def bag_rows(trials: Sequence[Scored]) -> list[Row]:
     return rows
 
 
-def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     """Right names of each effect at 3 and 6 times together."""
     rows = []
     for name in sorted({effects_of(trial)[0] for trial in chosen(trials, 'inside')}):
@@ -219,7 +219,7 @@ def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
     return rows
 
 
-def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[Row]:
+def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     """Score by chance: the same with keys that belong to other trials."""
     inside = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
     if len(inside) < 2:

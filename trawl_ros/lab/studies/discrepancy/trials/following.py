@@ -6,7 +6,7 @@ from typing import Any
 
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.studies.discrepancy.trials.making import chance_of, hide, windows_of
-from trawl_ros.lab.studies.discrepancy.trials.tows import PlannedTow, TrialPlan
+from trawl_ros.lab.studies.discrepancy.trials.tows import BlindTrialPlan, PlannedTow
 from trawl_ros.lab.studies.discrepancy.trials.trial import Key, Spec
 from trawl_ros.lab.studies.identification.plant import Cut
 
@@ -33,7 +33,7 @@ def tow_on(
     """Add a tow to the windows of a trial, or say in the key why it cannot be towed."""
     hiding = hide(spec, gear, cut, seed)
     key = replace(hiding.key, spec=replace(spec, series=SERIES))
-    plan = TrialPlan((tow,), baseline=0)
+    plan = BlindTrialPlan((tow,), baseline=0)
     towed = hiding.towed(plan)
     if towed is None:
         return replace(key, testable=False, why_not='cannot be towed'), None

@@ -17,7 +17,7 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant, draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood, likelihood
-from trawl_ros.lab.studies.discrepancy.trials.tows import PLANS, TrialPlan
+from trawl_ros.lab.studies.discrepancy.trials.tows import PLANS, BlindTrialPlan
 from trawl_ros.lab.studies.discrepancy.trials.trial import Key, Spec
 from trawl_ros.lab.studies.identification.plant import Cut, Look
 from trawl_ros.lab.studies.identification.readings import (
@@ -48,7 +48,7 @@ class Hiding:
     effects: tuple[tuple[Hidden, float], ...]
     sensors: Sensors
 
-    def towed(self, plan: TrialPlan) -> tuple[tuple[Look, ...], ...] | None:
+    def towed(self, plan: BlindTrialPlan) -> tuple[tuple[Look, ...], ...] | None:
         """Tows of the plant, or None if it cannot be towed."""
         try:
             return self.plant.towed(self.effects, plan)
@@ -137,7 +137,7 @@ def floor_of(
 def windows_of(
     tows: Sequence[Sequence[Look]],
     chance: np.random.Generator,
-    plan: TrialPlan,
+    plan: BlindTrialPlan,
     sensors: Sensors,
     *,
     first: int = 0,

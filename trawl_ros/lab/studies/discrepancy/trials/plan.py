@@ -44,7 +44,7 @@ IN_BAGS = 20
 
 
 @dataclass(frozen=True)
-class Plan:
+class BlindStudyPlan:
     """Plan of the study's size.
 
     Attributes

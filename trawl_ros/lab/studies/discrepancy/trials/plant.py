@@ -11,9 +11,9 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.tows import (
     FULL,
     STATES,
+    BlindTrialPlan,
     PlannedTow,
     State,
-    TrialPlan,
     nearest,
 )
 from trawl_ros.lab.studies.identification.plant import Cut, Look
@@ -66,7 +66,7 @@ class Plant:
     def towed(
         self,
         effects: Sequence[tuple[Hidden, float]],
-        plan: TrialPlan = FULL,
+        plan: BlindTrialPlan = FULL,
     ) -> tuple[tuple[Look, ...], ...]:
         """All tows with effects of some sizes hidden in those that are no baseline.
 

@@ -23,7 +23,7 @@ from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
-from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, TrialPlan
+from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, BlindTrialPlan
 from trawl_ros.lab.studies.identification.plant import Look
 from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import MEASURED
@@ -48,7 +48,7 @@ class Likelihood:
 
     plant: Plant
     fit: Fit
-    plan: TrialPlan
+    plan: BlindTrialPlan
 
     def detectable(self, hidden: Hidden, sign: float, *, beside_catalogue: bool) -> float:
         """Smallest size that is detected in 80 % of trials, infinite if no possible one is.
@@ -124,7 +124,7 @@ class Likelihood:
 
 
 def likelihood(
-    plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow], plan: TrialPlan = FULL
+    plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow], plan: BlindTrialPlan = FULL
 ) -> Likelihood:
     """Linearise a plant.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
-from trawl_ros.effects.effect_set import Acting, Active
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.course import EARLY_S, HOLD_S, Course, settling
 from trawl_ros.lab.studies.discrepancy.trials.tows import PlannedTow
@@ -29,7 +29,7 @@ class InTime(Effect):
 
     hidden: Hidden | None = None
 
-    def towed(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
         """Apply to inputs: true warp lengths and speed (3,)."""
         assert self.hidden is not None
         return self.hidden.towed(float(values[0]), inputs, at)
@@ -39,17 +39,17 @@ class InTime(Effect):
         assert self.hidden is not None
         return self.hidden.gear(float(values[0]), model, at)
 
-    def shown(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
         """Apply to sensors: readings with the hidden effect."""
         assert self.hidden is not None
         return self.hidden.shown(float(values[0]), readings, at)
 
 
-def acting(effects: Sequence[tuple[Hidden, float]]) -> Acting:
+def hidden_effect_set(effects: Sequence[tuple[Hidden, float]]) -> EffectSet:
     """Effect set of hidden effects with their sizes."""
-    return Acting(
+    return EffectSet(
         tuple(
-            Active(
+            ActiveEffect(
                 InTime(
                     name=hidden.name,
                     sentence='',
@@ -76,7 +76,7 @@ def towed_in_time(
     StepFailed
         If its motion cannot be computed.
     """
-    heading, there = (0.0 if tow.eastward else np.pi), acting(effects)
+    heading, there = (0.0 if tow.eastward else np.pi), hidden_effect_set(effects)
     length, speed = tow.states[0]
     simulation = Simulation(
         model, Command(length, length, speed), heading=heading, period=PERIOD_S, acting=there
@@ -108,18 +108,18 @@ def towed_in_time(
     return Course(np.array(times), np.array(inputs), np.array(values), heading, tuple(moments))
 
 
-def _shown(now: Instant, there: Acting, heading: float, hours: float) -> np.ndarray:
+def _shown(now: Instant, there: EffectSet, heading: float, hours: float) -> np.ndarray:
     """Indicated inputs by fixed-point iteration, from the true ones."""
     towed = np.array([now.winches[0].length, now.winches[1].length, now.ship.speed])
     shown = towed
     for _ in range(ROUNDS):
         at = Situation((shown[0], shown[1], shown[2]), heading, hours=hours)
-        shown = shown + towed - there.towed(shown, at)
+        shown = shown + towed - there.apply_to_inputs(shown, at)
     return shown
 
 
 def _seen(
-    simulation: Simulation, there: Acting, sense: float, shown: np.ndarray, hours: float
+    simulation: Simulation, there: EffectSet, sense: float, shown: np.ndarray, hours: float
 ) -> np.ndarray:
     """Readings (22,) of the sensors."""
     now, model = simulation.now, simulation.model
@@ -127,5 +127,5 @@ def _seen(
     seen = observe(model, state, tow_of(model, now.ship, now.winches)).array()
     readings = dict(zip(OBSERVABLES, map(float, seen), strict=True))
     at = Situation((shown[0], shown[1], shown[2]), sense=sense, hours=hours)
-    readings = there.shown(readings, at)
+    readings = there.apply_to_sensors(readings, at)
     return np.array([readings[name] for name in OBSERVABLES])

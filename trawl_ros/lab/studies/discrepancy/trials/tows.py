@@ -42,14 +42,14 @@ class PlannedTow:
 
 
 @dataclass(frozen=True)
-class TrialPlan:
+class BlindTrialPlan:
     """Planned trial: tows, of which the first ``baseline`` are from when the gear was in order."""
 
     tows: tuple[PlannedTow, ...]
     baseline: int
 
 
-FULL = TrialPlan(
+FULL = BlindTrialPlan(
     tuple(
         PlannedTow(states, eastward=number % 2 == 0)
         for number, states in enumerate((_ONE, _TWO, _THREE, _ONE, _TWO, _THREE, _ONE, _TWO))
@@ -59,13 +59,13 @@ FULL = TrialPlan(
 """The states of a tow come early in one and late in another, on both courses."""
 
 _ALIKE: tuple[State, ...] = ((550.0, 2.0), (550.0, 2.2), (550.0, 2.4))
-POOR = TrialPlan(
+POOR = BlindTrialPlan(
     (*FULL.tows[:2], *(PlannedTow(_ALIKE, eastward=True) for _ in range(3))), baseline=2
 )
 """With the suspect gear nobody turned round or changed the length of the warps, so that there is
 much that such tows cannot tell apart."""
 
-PLANS: Mapping[str, TrialPlan] = {'full': FULL, 'poor': POOR}
+PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL, 'poor': POOR}
 
 STATES = tuple(
     sorted({state for plan in PLANS.values() for tow in plan.tows for state in tow.states})
