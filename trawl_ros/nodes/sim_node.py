@@ -10,13 +10,11 @@ from typing import Any, ClassVar
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.files import packaged
 from trawl_ros.core.time import SECOND
-from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
-from trawl_ros.model.gear_model import build_model
 from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
 from trawl_ros.nodes.runtime.message_classes import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
@@ -25,13 +23,12 @@ from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
-from trawl_ros.nodes.towing import CommandedTow, TowSetup
+from trawl_ros.nodes.towing import DEFAULT_START, CommandedTow, TowSetup, commanded_tow
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
-from trawl_ros.simulation.simulation import Command
 
 GEAR_MARKERS = 'truth/gear'
 BURST_S = 0.02
@@ -55,8 +52,10 @@ class SimNode(TrawlNode):
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
         Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
         Flag('exit_at_end', False, 'Whether to end with the scenario.'),
-        Number('warp_length_m', 500.0, 'm', *LENGTHS, 'Length of both warps at the start.'),
-        Number('speed_m_s', 2.0, 'm/s', *SPEEDS, 'Speed through the water at the start.'),
+        Number('warp_length_m', DEFAULT_START[0], 'm', *LENGTHS,
+               'Length of both warps at the start.'),
+        Number('speed_m_s', DEFAULT_START[1], 'm/s', *SPEEDS,
+               'Speed through the water at the start.'),
         Number('heading_deg', 0.0, 'deg', -360.0, 360.0, 'First heading as ENU yaw.'),
         Number(
             'time_scale', 1.0, 'factor', 0.0, 1000.0, 'Simulated seconds per second of wall time; '
@@ -170,14 +169,12 @@ class SimNode(TrawlNode):
         if self._scenario is not None:
             return Trial(self._scenario), round(SECOND / self._scenario.record.truth_rate_hz)
         rate = self.parameters['truth_rate_hz']
-        length, speed = self.parameters['warp_length_m'], self.parameters['speed_m_s']
-        gear = load_gear(self.parameters['gear'])
-        tow = CommandedTow(
-            build_model(gear),
-            Command(length, length, speed),
+        tow = commanded_tow(
+            load_gear(self.parameters['gear']),
+            (self.parameters['warp_length_m'], self.parameters['speed_m_s']),
             heading=math.radians(self.parameters['heading_deg']),
             truth_rate_hz=rate,
-            acting=effects_of(gear),
+            warn=self.get_logger().warning,
         )
         return tow, round(SECOND / rate)
 

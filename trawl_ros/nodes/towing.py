@@ -1,15 +1,23 @@
 """Tow that obeys commands as they come, beside `Trial`, which follows a scenario's."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
-from trawl_ros.core.errors import ScenarioError
-from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
-from trawl_ros.model.gear_model import GearModel
+from trawl_ros.core.errors import NoSteadyState, ScenarioError
+from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet, effects_of
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
 from trawl_ros.solver.stepper import StepFailed
+
+DEFAULT_START = (500.0, 2.0)
+"""Warp length (m) and speed (m/s)."""
+
+OTHER_STARTS = ((500.0, 2.2), (400.0, 2.3), (300.0, 2.3))
+"""Tried in this order where the gear cannot be towed at the default."""
 
 
 class TowSetup(Protocol):
@@ -115,3 +123,48 @@ class CommandedTow:
                     ) from reason
         self._started = True
         return self.simulation.truth()
+
+
+def commanded_tow(
+    gear: GearRecord,
+    start: tuple[float, float],
+    *,
+    heading: float,
+    truth_rate_hz: float,
+    warn: Callable[[str], object],
+) -> CommandedTow:
+    """Build a tow from where it is asked for or, at the default, from where this gear has one.
+
+    A gear that was refitted or repaired need not have a steady state at the default start.
+
+    Parameters
+    ----------
+    gear
+        The plant, with its effects.
+    start
+        Warp length (m) and speed (m/s).
+    heading, truth_rate_hz
+        As in `CommandedTow`.
+    warn
+        Takes a sentence where the tow starts elsewhere.
+
+    Raises
+    ------
+    NoSteadyState
+        If there is none at the start, nor at those tried instead of the default.
+    """
+    model, effects = build_model(gear), effects_of(gear)
+    refusals: list[str] = []
+    for length, speed in (start, *OTHER_STARTS) if start == DEFAULT_START else (start,):
+        command = Command(length, length, speed)
+        try:
+            tow = CommandedTow(
+                model, command, heading=heading, truth_rate_hz=truth_rate_hz, acting=effects
+            )
+        except NoSteadyState as reason:
+            refusals.append(str(reason))
+            continue
+        if refusals:
+            warn(f'{"; ".join(refusals)}; starts at {length:g} m and {speed:g} m/s')
+        return tow
+    raise NoSteadyState('; '.join(refusals))
