@@ -1,17 +1,22 @@
 """Every subscription of every node bears messages that make no sense."""
 
+import math
+
 import numpy as np
 import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from trawl_ros.core.errors import MessageError  # noqa: E402
+from trawl_ros.lab.studies.hostile.attack import RANGE, unsound  # noqa: E402
 from trawl_ros.lab.studies.hostile.mutations import hostile  # noqa: E402
 from trawl_ros.lab.studies.hostile.report import rows_of  # noqa: E402
 from trawl_ros.lab.studies.hostile.study import STEPS, run_hostile  # noqa: E402
 from trawl_ros.messages.cdr import deserialize, serialize  # noqa: E402
 from trawl_ros.messages.commands import winch_command  # noqa: E402
 from trawl_ros.messages.fields import not_finite  # noqa: E402
+from trawl_ros.messages.to_messages import sample_message  # noqa: E402
+from trawl_ros.records.samples import RangeSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 JOINTS = 'sensor_msgs/msg/JointState'
@@ -32,6 +37,15 @@ def test_hostile_messages_are_of_many_kinds():
     assert unread > 50
     assert nonsense > 10
     assert {-5, 2**31 - 1} <= stamps
+
+
+@pytest.mark.parametrize(('distance', 'fields'), [
+    (math.inf, set()), (-math.inf, set()), (math.nan, {RANGE}), (120.0, set()),
+])  # fmt: skip
+def test_an_infinite_range_is_beyond_the_sensor_and_nan_is_nonsense(distance, fields):
+    sample = RangeSample(0, 'spread', distance, 1.0, 5.0, 400.0)
+    _, message = sample_message(sample)
+    assert unsound(message) == fields
 
 
 @pytest.mark.slow
