@@ -73,3 +73,10 @@ def test_one_door_that_turns_away_is_enough_to_lose_the_sound() -> None:
         for k, angle in enumerate(np.radians([20.0, 39.0, 41.0, 20.0]))
     ]
     assert heard == [1, 1, 0, 1]
+
+
+def test_below_the_deepest_ocean_sound_is_no_faster() -> None:
+    """A seabed that a false truth puts at 10⁸ m must not make a NaN of what is sounded."""
+    sea = Surroundings(PRESSURE, ((0.0, 8.0),))
+    assert sea.sound_speed(1e8) == sea.sound_speed(11_000.0)
+    assert 1500.0 < sea.mean_sound_speed(5.0, 1e8) < 1700.0

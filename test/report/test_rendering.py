@@ -7,12 +7,13 @@ import pytest
 import trawl_ros
 from trawl_ros.report import rendering
 
-PAGES = sorted(Path(trawl_ros.__file__).parent.glob('*/templates/*.html.j2'))
+ROOT = Path(trawl_ros.__file__).parents[1]
+PAGES = sorted((ROOT / 'trawl_ros').rglob('templates/*.html.j2'))
 
 
 @pytest.mark.parametrize('path', PAGES, ids=lambda path: f'{path.parts[-3]}/{path.name}')
 def test_every_html_page_escapes_what_is_filled_in(path: Path) -> None:
-    environment = rendering._templates(f'trawl_ros.{path.parts[-3]}')
+    environment = rendering._templates('.'.join(path.relative_to(ROOT).parts[:-2]))
     assert callable(environment.autoescape)
     assert environment.autoescape(environment.get_template(path.name).name)
 

@@ -12,6 +12,9 @@ PressureAt = Callable[[float], float]
 
 SURFACE_PRESSURE = 101_325.0
 DECIBAR = 1e4
+DEEPEST = 11_000.0
+"""Depth (m) of the deepest ocean; what TEOS-10 says of water ends there."""
+
 DEPTH_STEP = 1.0
 """Sound speed is computed at multiples of this (m), over which it changes by some cm/s."""
 
@@ -35,10 +38,10 @@ class Surroundings:
         return float(np.interp(depth, depths, values))
 
     def sound_speed(self, depth: float) -> float:
-        """Return the speed of sound (m/s) at a depth (m), by TEOS-10."""
+        """Return the speed of sound (m/s) at a depth (m), by TEOS-10, no deeper than `DEEPEST`."""
         if not np.isfinite(depth):
             return float('nan')
-        level = DEPTH_STEP * round(max(depth, 0.0) / DEPTH_STEP)
+        level = DEPTH_STEP * round(min(max(depth, 0.0), DEEPEST) / DEPTH_STEP)
         gauge = (self.pressure_at(level) - SURFACE_PRESSURE) / DECIBAR
         return _sound_speed(self.salinity, self.temperature(level), round(gauge, 3))
 

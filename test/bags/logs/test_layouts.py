@@ -116,6 +116,7 @@ topics:
         ('{columns: [t], format: iso, zone: Oslo}', "zone: found 'Oslo', expected a name such as"),
         ('{columns: [t], format: iso, zone: UTC, utc_offset_h: 1}', 'zone: beside utc_offset_h'),
         ('{columns: [t], format: sekunden}', "format: found 'sekunden', expected one such as"),
+        ("{columns: [t], format: '%Y%Y'}", "format: found '%Y%Y', expected each directive once"),
         ('{columns: [t], format: elapsed hours, start: noon}', "start: found 'noon'"),
     ],
 )

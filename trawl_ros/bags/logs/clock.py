@@ -86,6 +86,14 @@ class Clock(Record):
                 f"format: found {self.format!r}, expected one such as '%Y-%m-%d %H:%M:%S', or one "
                 f'of {", ".join(WORDS)}'
             )
+        try:
+            datetime.strptime('', self.format)
+        except re.error:
+            raise ValueError(
+                f'format: found {self.format!r}, expected each directive once'
+            ) from None
+        except ValueError:
+            pass  # An empty text has no format; rows say what is wrong with theirs.
         self._check_key('start', self.start, self.format in ELAPSED, '2026-08-01 10:00:00')
         self._check_key('year', self.year, self.format == DAY_OF_YEAR, '2026')
         timed_only = self.format not in WORDS and not any(p in self.format for p in _DATED)
