@@ -67,7 +67,9 @@ def _number(name: str) -> SearchStrategy[Any]:
             return st.booleans()
         case 'float32' | 'float64':
             return st.sampled_from([float(number) for number in np.array(REAL, dtype=name)])
-    low, high = (np.iinfo(name).min, np.iinfo(name).max) if name != 'byte' else (0, 255)
+    # CDR of a byte is signed here.
+    bounds = np.iinfo('int8' if name == 'byte' else name)
+    low, high = bounds.min, bounds.max
     return st.sampled_from((int(low), int(high), *WHOLE))
 
 
