@@ -3,8 +3,6 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from trawl_ros.records.samples import (
     AttitudeSample,
     FixSample,
@@ -46,7 +44,9 @@ def _bounded(sample: Sample) -> Iterator[tuple[str, float, float, float, str]]:
             yield 'latitude', sample.latitude, -90.0, 90.0, 'degrees'
             yield 'longitude', sample.longitude, -180.0, 180.0, 'degrees'
         case VelocitySample():
-            yield 'speed', float(np.linalg.norm(sample.velocity)), 0.0, FASTEST_M_S, 'm/s'
+            # One by one: a norm with an unknown part is unknown, whatever the others are.
+            for part in sample.velocity:
+                yield 'speed', abs(float(part)), 0.0, FASTEST_M_S, 'm/s'
         case RangeSample():
             yield 'distance', sample.distance, -DEEPEST_M, DEEPEST_M, 'm'
         case PressureSample():
