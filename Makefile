@@ -17,7 +17,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
-# Tests of what needs no steady state: some 1200 in half a minute.
+# Tests of what needs no steady state.
 QUICK := $(addprefix test/,bags config effects gear instruments launch messages model lab/reference_codes \
     core/test_schema.py core/test_resources.py test_layers.py)
 
@@ -39,7 +39,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 help:
 	@echo 'make demo       tow a sea trial through the ROS graph, replay it, refit: $(DEMO)/'
-	@echo 'make check      style, types and the quick tests: a minute'
+	@echo 'make check      style, types, imports and the quick tests'
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
