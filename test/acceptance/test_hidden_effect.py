@@ -24,6 +24,7 @@ from trawl_ros.lab.running.processes import Processes
 pytestmark = [pytest.mark.ros, pytest.mark.slow, pytest.mark.timeout(1200)]
 
 RECORDED_S = 10.0
+STARTS_S = 120.0
 
 
 @pytest.fixture(scope='module')
@@ -59,8 +60,9 @@ def test_the_repaired_gear_is_towed_by_the_node_and_recorded(folder, tmp_path):
         processes.start('bag_recorder', output=str(bag))
         processes.start('winch_node', gear=str(model))
         processes.start('sim_node', gear=str(model), wait_for=['bag_recorder', 'winch_node'])
-        end = time.monotonic() + 60.0
-        while not bag.exists() and time.monotonic() < end:
+        log = tmp_path / 'log' / 'sim_node.txt'
+        end = time.monotonic() + STARTS_S
+        while 'publishes truth' not in log.read_text() and time.monotonic() < end:
             processes.check()
             time.sleep(0.1)
         time.sleep(RECORDED_S)
