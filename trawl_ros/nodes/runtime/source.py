@@ -62,9 +62,8 @@ class Source:
 
         Without numbers (None), as with some middleware, no message of several publishers does.
         """
-        several = self._publishers() > 1
         if number is None:
-            return not several
+            return self._publishers() <= 1
         now = self._clock()
         source = self._source
         if source is None:
@@ -73,6 +72,8 @@ class Source:
         if number == source.number + 1:
             source.heard(number, now)
             return True
+        # Not asked of each message: numbers that follow one another are of one publisher.
+        several = self._publishers() > 1
         other = next((one for one in self._others if number == one.number + 1), None)
         if not several and other is None:
             self._go_on(source, number, now)
