@@ -10,6 +10,7 @@ from mcap.reader import make_reader
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, LogError
+from trawl_ros.core.limits import Limit
 from trawl_ros.messages.from_messages import to_sample
 
 ROOT = Path(__file__).parents[3]
@@ -249,6 +250,14 @@ def test_mistakes_in_the_mapping_are_named_with_their_key(run, tmp_path, old, ne
     with pytest.raises(LogError, match=words) as caught:
         run(mapping=MAPPING.replace(old, new, 1))
     assert str(caught.value).startswith(str(tmp_path / 'mapping.yaml'))
+
+
+def test_a_log_of_too_many_readings_is_refused_and_nothing_written(run, tmp_path, monkeypatch):
+    limit = Limit(5, 'readings', 'a log')
+    monkeypatch.setattr('trawl_ros.bags.logs.import_log.LOG_READINGS', limit)
+    with pytest.raises(LogError, match=r'log.csv: more than 5 readings; expected .* several files'):
+        run()
+    assert not (tmp_path / 'bag').exists()
 
 
 def test_a_bag_that_exists_is_kept(run, tmp_path):

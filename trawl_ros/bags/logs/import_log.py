@@ -8,6 +8,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Literal
 
@@ -27,6 +28,7 @@ from trawl_ros.bags.logs.units import UNITS
 from trawl_ros.bags.possible import impossible, impossible_compass
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import LogError
+from trawl_ros.core.limits import LOG_READINGS
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.samples import (
@@ -123,11 +125,14 @@ def write_samples(
     Raises
     ------
     LogError
-        If there is no sample.
+        If there is no sample, or more than `LOG_READINGS`.
     BagError
         If the bag exists or cannot be written.
     """
-    ordered = sorted(samples, key=lambda sample: sample.stamp)
+    ordered = list(islice(samples, LOG_READINGS.value + 1))
+    if len(ordered) > LOG_READINGS.value:
+        raise LogError(f'{path}: more than {LOG_READINGS}; expected a log in several files')
+    ordered.sort(key=lambda sample: sample.stamp)
     rows, left_out = told()
     if not ordered:
         why = f' ({listed(left_out)})' if left_out else ''
