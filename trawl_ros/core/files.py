@@ -1,6 +1,7 @@
 """Files and folders: as a user names them, or as they come with the package; written whole."""
 
 import json
+import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -40,6 +41,21 @@ def empty_folder(path: Path, *, force: bool) -> Path:
             f'{path}: holds files already, which are not written over; expected a new or empty '
             'folder, or --force'
         )
+    return path
+
+
+def made_folder(path: Path) -> Path:
+    """Make a folder, and those above it, where they do not exist.
+
+    Raises
+    ------
+    TrawlError
+        If it cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as reason:
+        raise TrawlError(f'{path}: cannot be made ({reason.strerror})') from reason
     return path
 
 
@@ -92,6 +108,11 @@ def write_json(
         If a number is not finite, which JSON does not know.
     """
     write_text(path, json.dumps(record, indent=indent, ensure_ascii=ensure_ascii, allow_nan=False))
+
+
+def finite(value: float) -> float | None:
+    """Return a number as JSON has it: None where it is NaN or infinite."""
+    return float(value) if math.isfinite(value) else None
 
 
 def write_figure(path: Path, figure: 'Figure', dpi: float) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder, write_figure
+from trawl_ros.core.files import empty_folder, made_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -16,7 +16,7 @@ from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure, left_out
 from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments
-from trawl_ros.plots.page import PAGE, Picture, write_page
+from trawl_ros.plots.page import PAGE, write_page
 from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.records import SonarPicture, TowHistory
 from trawl_ros.plots.shapes import gear_shape
@@ -24,7 +24,8 @@ from trawl_ros.plots.sonar import sonar_figure
 from trawl_ros.plots.sweeps import read_sweeps
 from trawl_ros.plots.track import track_figure
 from trawl_ros.records.topics import NAMESPACE
-from trawl_ros.report.style import DPI, clock
+from trawl_ros.report.pictures import Drawing, Picture, draw
+from trawl_ros.report.style import clock
 
 EARLY_MIDDLE_LATE = (0.05, 0.5, 0.95)
 """Parts of a tow at which the gear is drawn unless told otherwise."""
@@ -101,7 +102,7 @@ def plot(
     on_progress(WorkProgress('reading'))
     tow = read_tow(bag, build_water(record).depth, namespace)
     chosen = _chosen(times, tow)
-    out.mkdir(parents=True, exist_ok=True)
+    made_folder(out)
     album = Album(bag, out, tow, record, namespace)
     on_progress(WorkProgress('drawing'))
     album.histories()
@@ -137,7 +138,7 @@ class Album:
 
     def histories(self) -> None:
         """Draw all quantities over time."""
-        self._add(history_figure(self._tow), 'history.png', 'truth and readings', 'Over time')
+        self._add(history_figure(self._tow), 'history', 'truth and readings', 'Over time')
 
     def track(self) -> None:
         """Draw where the ship went."""
@@ -147,7 +148,7 @@ class Album:
                 "Neither truth/vessel/odom nor vessel/fix: the ship's track is unknown."
             )
         else:
-            self._add(figure, 'track.png', "the ship's track over ground", 'The ship')
+            self._add(figure, 'track', "the ship's track over ground", 'The ship')
 
     def moments(self, times: Sequence[float]) -> None:
         """Draw the gear, and what the sonar showed, at some times."""
@@ -158,14 +159,14 @@ class Album:
                 self._note(f'At {at} too little of the gear is known to draw it.')
             else:
                 self._add(
-                    gear_figure(shape, self._tow.name), f'gear_{stem}.png',
+                    gear_figure(shape, self._tow.name), f'gear_{stem}',
                     f'the gear at {at} ({shape.source})', 'The gear',
                 )  # fmt: skip
             if picture is None:
                 self._note(f'No {IMAGE} that could be drawn near {at}.')
             else:
                 self._add(
-                    sonar_figure(picture, self._tow.name), f'sonar_{stem}.png',
+                    sonar_figure(picture, self._tow.name), f'sonar_{stem}',
                     f'the sweep from {clock(picture.time)} on', "The sonar's picture",
                 )  # fmt: skip
 
@@ -202,9 +203,8 @@ class Album:
         moments = read_moments(self._bag, self._tow, times, self._namespace, [GEAR, MOUTH])
         return zip(moments, sweeps, strict=True)
 
-    def _add(self, figure: Figure, file: str, caption: str, section: str) -> None:
-        write_figure(self._folder / file, figure, DPI)
-        self.pictures.append(Picture(file, caption, section))
+    def _add(self, figure: Figure, name: str, caption: str, section: str) -> None:
+        self.pictures += draw(self._folder, [Drawing(name, caption, figure, section)])
 
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:

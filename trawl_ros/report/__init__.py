@@ -1,1 +1,1 @@
-"""The kit of reports: templates, and the style of figures."""
+"""The kit of reports: templates, pictures, and the style of figures."""

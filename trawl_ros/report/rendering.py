@@ -4,7 +4,7 @@ import re
 from functools import lru_cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
 DPI = 110
 
@@ -12,7 +12,7 @@ DPI = 110
 @lru_cache
 def _templates(package: str) -> Environment:
     environment = Environment(
-        loader=PackageLoader(package, 'templates'),
+        loader=ChoiceLoader([PackageLoader(package), PackageLoader('trawl_ros.report')]),
         # Their names end with .j2, which jinja would take for text.
         autoescape=select_autoescape(['html.j2']),
         undefined=StrictUndefined,
@@ -24,7 +24,7 @@ def _templates(package: str) -> Environment:
 
 
 def page(package: str, name: str, /, **content: Any) -> str:
-    """Fill in the template ``<name>.j2`` of a package.
+    """Fill in the template ``<name>.j2`` of a package, which may use those of this one.
 
     On HTML pages all that is filled in is escaped. In Markdown what others named, such as a gear,
     goes through the filter `foreign`.

@@ -247,9 +247,9 @@ def test_the_page_needs_nothing_beside_it_and_begins_with_the_verdict(sea, tows,
     assert body.index(verdict(found).fit) < body.index('<h2>')
     assert body.index('900 m at 2.0 m/s') > body.index('What to tow next')
     assert REASONS['outlier'] in text
-    assert 'What to tow next' not in page(found, tmp_path, [])
+    assert 'What to tow next' not in page(found, [])
     named = replace(found, found={'outlier': '<script>'})
-    hostile = page(named, tmp_path, [], ['<script>'])
+    hostile = page(named, [], ['<script>'])
     assert '<script' not in hostile
     assert hostile.count('&lt;script&gt;') == 2
 

@@ -1,18 +1,15 @@
 """Figures of a diagnosis."""
 
-from pathlib import Path
-
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.core.files import write_figure
 from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison
 from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.diagnosis.score_test import ScoreTest
-from trawl_ros.estimation.report.figures import ReportFigure
 from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.report.style import DPI, FAINT, MEASURED, SECOND, quiet
+from trawl_ros.report.pictures import Drawing
+from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 
 WHERE, WHICH, GAP = 'Where they disagree', 'Which effect it is', 'The gap before and after'
 
@@ -23,62 +20,54 @@ BARS = 10
 """So many effects are drawn."""
 
 
-def drawings(found: Diagnosis) -> list[ReportFigure]:
+def drawings(found: Diagnosis) -> list[Drawing]:
     """Return all figures for which there are numbers."""
     seen, shown, made = found.seen, found.shown, []
     if seen is not None:
         made.append(
-            ReportFigure(
-                'where.png', WHERE,
+            Drawing(
+                'where',
                 'Residuals of each channel with each variable, in standard deviations of what '
                 'errors would make, boards and calibration taken out. Red: grows with it.',
-                where_figure(seen),
+                where_figure(seen), WHERE,
             )
         )  # fmt: skip
         made.append(
-            ReportFigure(
-                'evidence.png', WHICH,
+            Drawing(
+                'evidence',
                 'By how much each effect alone lowers χ² of all readings, boards refitted (dark: '
                 'solved anew, light: to first order).',
-                evidence_figure(found, seen),
+                evidence_figure(found, seen), WHICH,
             )
         )  # fmt: skip
         made.append(
-            ReportFigure(
-                'confusable.png', WHICH,
+            Drawing(
+                'confusable',
                 'How alike effects look in these tows: the cosine of what the one changes with '
                 'the nearest that the other could do. 1 cannot be told apart.',
-                confusable_figure(seen),
+                confusable_figure(seen), WHICH,
             )
         )  # fmt: skip
     if shown is not None and shown.after is not None:
         made.append(
-            ReportFigure(
-                'gap.png', GAP,
+            Drawing(
+                'gap',
                 'Errors of each channel on what was kept back, over what errors of instruments '
                 'alone would make (1): boards refitted alone, with '
                 f'{found.added_as}, and with the best other effect.',
-                gap_figure(shown, found.added_as),
+                gap_figure(shown, found.added_as), GAP,
             )
         )  # fmt: skip
     if found.base is not None and found.added is not None:
         made.append(
-            ReportFigure(
-                'coefficients.png', GAP,
+            Drawing(
+                'coefficients',
                 'The coefficients of the boards with and without '
                 f'{found.added_as}, in standard deviations of the prior: what moves had been '
                 'bent to hide it.',
-                coefficients_figure(found),
+                coefficients_figure(found), GAP,
             )
         )  # fmt: skip
-    return made
-
-
-def draw_figures(found: Diagnosis, folder: Path) -> list[ReportFigure]:
-    """Draw all figures into a folder."""
-    made = drawings(found)
-    for drawing in made:
-        write_figure(folder / drawing.file, drawing.figure, DPI)
     return made
 
 

@@ -1,14 +1,12 @@
 """Files of a plan: JSON, scenario and figure."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import write_figure, write_text
+from trawl_ros.core.files import finite, made_folder, write_figure, write_json, write_text
 from trawl_ros.estimation.fit.laws import QUANTITIES, LawQuantities
 from trawl_ros.estimation.planning.figure import plan_figure
 from trawl_ros.estimation.planning.plan import TrialPlan
@@ -39,21 +37,17 @@ def write_plan(plan: TrialPlan, gear: str, folder: Path) -> None:
     TrawlError
         If the folder cannot be written to.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(plan_record(plan), indent=2)
-        write_text(folder / PLAN, text)
-        named = gear
-        if Path(gear).is_file():
-            named = f'{Path(gear).stem}.yaml'
-            if not (folder / named).exists() or not Path(gear).samefile(folder / named):
-                write_text(folder / named, Path(gear).read_text(encoding='utf-8'))
-        record = scenario_of(plan.trial, named)
-        lines = yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100)
-        write_text(folder / SCENARIO, lines)
-        write_figure(folder / PICTURE, plan_figure(plan), DPI)
-    except OSError as reason:
-        raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
+    made_folder(folder)
+    write_json(folder / PLAN, plan_record(plan), indent=2)
+    named = gear
+    if Path(gear).is_file():
+        named = f'{Path(gear).stem}.yaml'
+        if not (folder / named).exists() or not Path(gear).samefile(folder / named):
+            write_text(folder / named, Path(gear).read_text(encoding='utf-8'))
+    record = scenario_of(plan.trial, named)
+    lines = yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100)
+    write_text(folder / SCENARIO, lines)
+    write_figure(folder / PICTURE, plan_figure(plan), DPI)
     load_scenario(folder / SCENARIO)
 
 
@@ -80,8 +74,8 @@ def plan_record(plan: TrialPlan) -> dict[str, Any]:
         ],
         'quantities': {
             name: {
-                'sd_of_span_before': float(plan.before.ratio[index]),
-                **{_key(one): float(one.known.ratio[index]) for one in (plan.trial, *plan.sweeps)},
+                'sd_of_span_before': finite(plan.before.ratio[index]),
+                **{_key(one): finite(one.known.ratio[index]) for one in (plan.trial, *plan.sweeps)},
                 'well_known': bool(plan.trial.known.well_known[index]),
                 'limited_by': plan.limits.get(name),
             }

@@ -1,54 +1,35 @@
 """HTML report as one self-contained page."""
 
-import base64
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from trawl_ros.core.version import __version__
 from trawl_ros.estimation.fit.laws import LAWS
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.report.figures import ReportFigure
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.report.verdict import BEYOND, verdict
 from trawl_ros.estimation.windows.records import REASONS
 from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.report.pictures import Picture, by_section
 from trawl_ros.report.rendering import page as filled
 
 PAGE = 'report.html'
 
 
-@dataclass(frozen=True)
-class Embedded:
-    """Figure embedded as text, and its caption."""
-
-    caption: str
-    data: str
-
-
-def page(
-    report: Report, folder: Path, drawings: Sequence[ReportFigure], advice: Sequence[str] = ()
-) -> str:
+def page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()) -> str:
     """Render the page as HTML.
 
     Parameters
     ----------
     report
         What it is about.
-    folder
-        Where the figures have been drawn.
-    drawings
-        The figures.
+    pictures
+        Its figures, embedded.
     advice
         Sentences on what to tow next; without any the page has no such heading.
     """
-    sections: dict[str, list[Embedded]] = {}
-    for drawing in drawings:
-        data = base64.b64encode((folder / drawing.file).read_bytes()).decode('ascii')
-        sections.setdefault(drawing.section, []).append(Embedded(drawing.caption, data))
     return filled(
         'trawl_ros.estimation.report',
         PAGE,
@@ -56,7 +37,7 @@ def page(
         verdict=verdict(report),
         advice=advice,
         coefficients=_coefficients(report),
-        sections=list(sections.items()),
+        sections=by_section(pictures),
         residuals=[_residual(row) for row in report.residuals],
         channels=PAPER_CHANNELS,
         tows=_tows(report),

@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.report import Report
@@ -16,7 +17,7 @@ def result(report: Report) -> dict[str, Any]:
     return {
         'windows': estimate.windows,
         'rejected': dict(report.rejected),
-        'objective': {key: _number(value) for key, value in report.objectives.items()},
+        'objective': {key: finite(value) for key, value in report.objectives.items()},
         'coefficients': {
             name: {
                 'start': float(report.prior.start[i]),
@@ -32,13 +33,13 @@ def result(report: Report) -> dict[str, Any]:
         'channels': {
             channel.name: {
                 'unit': channel.unit,
-                'mnae_start': _number(errors['start'][i]),
-                'mnae_end': _number(errors['end'][i]),
-                'mnae_held_out': _number(errors['held_out'][i]),
+                'mnae_start': finite(errors['start'][i]),
+                'mnae_end': finite(errors['end'][i]),
+                'mnae_held_out': finite(errors['held_out'][i]),
             }
             for i, channel in enumerate(PAPER_CHANNELS)
         },
-        'condition_number': _number(estimate.condition_number),
+        'condition_number': finite(estimate.condition_number),
         'undetermined': [str(combination) for combination in estimate.undetermined],
         'converged': estimate.converged,
         'reason': estimate.reason,
@@ -49,7 +50,7 @@ def result(report: Report) -> dict[str, Any]:
             {
                 'names': list(combination.names),
                 'weights': dict(zip(COEFFICIENTS, combination.weights.tolist(), strict=True)),
-                'std': _number(combination.std),
+                'std': finite(combination.std),
             }
             for combination in estimate.undetermined
         ],
@@ -108,7 +109,7 @@ def _tows(report: Report) -> list[dict[str, Any]]:
                 'windows': tow.windows,
                 'states': tow.states,
                 'mnae_held_out': {
-                    channel.name: _number(error)
+                    channel.name: finite(error)
                     for channel, error in zip(PAPER_CHANNELS, tow.held_out, strict=True)
                 },
                 'biases': {
@@ -131,10 +132,10 @@ def _statistics(row: ChannelResiduals) -> dict[str, Any]:
     return {
         'unit': row.unit,
         'windows': len(row.values),
-        'mean': row.mean,
-        'std': _number(row.std),
-        'stated_std': row.stated_std,
-        'test_ratio': row.test_ratio,
+        'mean': finite(row.mean),
+        'std': finite(row.std),
+        'stated_std': finite(row.stated_std),
+        'test_ratio': finite(row.test_ratio),
         'whiteness': None
         if white is None
         else {
@@ -144,8 +145,3 @@ def _statistics(row: ChannelResiduals) -> dict[str, Any]:
             'white': white.white,
         },
     }
-
-
-def _number(value: float) -> float | None:
-    # JSON has neither NaN nor infinity.
-    return float(value) if math.isfinite(value) else None

@@ -1,15 +1,14 @@
 """Files of a report."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import write_text
-from trawl_ros.estimation.report.figures import draw_figures
+from trawl_ros.core.files import made_folder, write_json, write_text
+from trawl_ros.estimation.report.figures import drawings
 from trawl_ros.estimation.report.page import PAGE, page
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.result import result
+from trawl_ros.report.pictures import draw, embedded
 
 
 def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> None:
@@ -29,11 +28,7 @@ def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> Non
     TrawlError
         If the folder cannot be written to.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(result(found), indent=2)
-        write_text(folder / 'identification.json', text)
-        drawings = draw_figures(found, folder)
-        write_text(folder / PAGE, page(found, folder, drawings, advice))
-    except OSError as reason:
-        raise TrawlError(f'{folder}: cannot be written ({reason.strerror})') from reason
+    made_folder(folder)
+    write_json(folder / 'identification.json', result(found), indent=2)
+    pictures = embedded(folder, draw(folder, drawings(found)))
+    write_text(folder / PAGE, page(found, pictures, advice))
