@@ -240,22 +240,10 @@ def identify(
     if all(part.why_not is not None for part in found):
         raise TrawlError('; '.join(f'{part.name}: {part.why_not}' for part in found))
     identification = identification_for(record, estimator_options=options)
-    names = estimate_tows(
-        identification,
-        found,
-        lambda done, of: on_progress(WorkProgress('fitting', done, of, 'windows')),
-    )
+    names = estimate_tows(identification, found, on_progress)
     if reason := identification.why_not():
         raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
-    result = report(
-        identification,
-        known,
-        tows=names,
-        gear=record,
-        begun=lambda number, of: on_progress(
-            WorkProgress('leaving out, one after another', number - 1, of, 'fits')
-        ),
-    )
+    result = report(identification, known, tows=names, gear=record, on_progress=on_progress)
     if out is not None:
         write_report(result, Path(out))
     return result
@@ -307,13 +295,7 @@ def diagnose(
         result = unread(record, names, '; '.join(reasons))
     else:
         in_order = frozenset(window.tow for window in known)
-        result = diagnosis.diagnose(
-            record,
-            windows,
-            names,
-            in_order,
-            lambda stage: on_progress(WorkProgress('diagnosing', detail=stage)),
-        )
+        result = diagnosis.diagnose(record, windows, names, in_order, on_progress)
     if out is not None:
         write_diagnosis(result, [source(path) for path in paths], Path(out))
     return result
@@ -352,12 +334,7 @@ def plan_trial(
     """
     if out is not None:
         empty_folder(Path(out), force=force)
-    plan = plan_for(
-        load_gear(gear),
-        hours=hours,
-        limits=limits,
-        progress=lambda stage, done, of: on_progress(WorkProgress(stage, done, of)),
-    )
+    plan = plan_for(load_gear(gear), hours=hours, limits=limits, on_progress=on_progress)
     if out is not None:
         write_plan(plan, str(gear), Path(out))
     return plan

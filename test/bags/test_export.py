@@ -12,6 +12,7 @@ from trawl_ros.bags.export import DICTIONARY, export_bag
 from trawl_ros.bags.flattening import MAX_COLUMNS
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
+from trawl_ros.core.progress import WorkProgress
 from trawl_ros.messages.cdr import definition, serialize
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.to_messages import sample_message
@@ -230,6 +231,6 @@ def test_a_damaged_bag_is_exported_as_far_as_it_can_be_read(bag_path, mcap_path,
 
 def test_progress_is_told_in_recorded_time(sound_bag, tmp_path):
     told = []
-    export_bag(sound_bag, tmp_path / 'out', progress=told.append)
-    assert told[0] == 0.0
-    assert told[-1] == 299.0
+    export_bag(sound_bag, tmp_path / 'out', on_progress=told.append)
+    assert told[0] == WorkProgress('exporting', 0.0, None, 's')
+    assert told[-1].done == 299.0

@@ -1,7 +1,7 @@
 """CSV export of bags: one file per topic, for spreadsheets and data frames."""
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +12,7 @@ from trawl_ros.bags.field_units import unit_of
 from trawl_ros.bags.flattening import FlatColumn, FlatLayout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.topics import NAMESPACE, absolute, find_topic
 
@@ -22,9 +23,6 @@ DICTIONARY = 'columns.csv'
 """The file that says what the columns of the others are."""
 
 LOG_COLUMNS = ('log_time_s', 'log_time_ns')
-
-Progress = Callable[[float], None]
-"""Takes the recorded time done, s."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +50,7 @@ def export_bag(
     topics: Collection[str] = (),
     namespace: str = NAMESPACE,
     array_limit: int = ARRAY_LIMIT,
-    progress: Progress = lambda done_s: None,
+    on_progress: OnProgress = ignore,
 ) -> Exported:
     """Write the messages of a bag as CSV files into a new folder.
 
@@ -69,8 +67,8 @@ def export_bag(
         Where the project's topics live in this bag.
     array_limit
         Longer arrays do not go into columns.
-    progress
-        Is told how far things are.
+    on_progress
+        Called after each row, with the recorded time (s) that is done.
 
     Raises
     ------
@@ -99,7 +97,7 @@ def export_bag(
     except OSError as reason:
         raise BagError(f'{folder}: cannot be made ({reason.strerror})') from reason
     try:
-        done = tuple(_write(bag, folder, layouts, progress))
+        done = tuple(_write(bag, folder, layouts, on_progress))
         _write_dictionary(bag, folder, layouts, namespace)
     except OSError as reason:
         raise BagError(f'{folder}: cannot be written ({reason.strerror})') from reason
@@ -179,7 +177,7 @@ def _file_names(topics: Collection[str]) -> dict[str, str]:
 
 
 def _write(
-    bag: Bag, folder: Path, tables: Mapping[str, _Table], progress: Progress
+    bag: Bag, folder: Path, tables: Mapping[str, _Table], on_progress: OnProgress
 ) -> Iterator[ExportedTopic]:
     rows = dict.fromkeys(tables, 0)
     written = {topic: table for topic, table in tables.items() if table.columns}
@@ -198,7 +196,8 @@ def _write(
                 writers[received.topic].row(cells)
                 rows[received.topic] += 1
                 start = received.log_time if start is None else start
-                progress((received.log_time - start) / SECOND)
+                done_s = (received.log_time - start) / SECOND
+                on_progress(WorkProgress('exporting', done_s, None, 's'))
     for topic, table in tables.items():
         file = folder / table.file_name if topic in written else None
         yield ExportedTopic(topic, file, rows[topic], dict(table.layout.left_out))

@@ -6,7 +6,7 @@ indexes and metadata again; what is known to have been there and is not, is coun
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,6 +18,7 @@ from trawl_ros.bags.storage.stored import Definition, Stored
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import reading
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 
 SUFFIX = '_repaired'
 
@@ -52,7 +53,7 @@ def repair_bag(
     path: Path,
     out: Path | None = None,
     *,
-    progress: Callable[[float], None] = lambda done_s: None,
+    on_progress: OnProgress = ignore,
 ) -> Repair:
     """Write all readable messages of a bag of MCAP files into a new one, file for file.
 
@@ -62,8 +63,8 @@ def repair_bag(
         The bag's folder, or one MCAP file. It is left as it is.
     out
         Folder to be made; by default beside the bag, with `SUFFIX` behind its name.
-    progress
-        Told how much recorded time (s) is done.
+    on_progress
+        Called after each message, with the recorded time (s) of its file that is done.
 
     Raises
     ------
@@ -83,7 +84,7 @@ def repair_bag(
         bag: BagWriter | None = None
         for number, file in enumerate(damaged.files):
             begun = False
-            for definition, stored in damaged.messages(file, progress):
+            for definition, stored in damaged.messages(file, on_progress):
                 if bag is None:
                     bag = stack.enter_context(BagWriter(target, custom_data=damaged.custom_data))
                 elif number and not begun:
@@ -158,7 +159,7 @@ class _Damaged:
         return not self.problems
 
     def messages(
-        self, file: McapFile, progress: Callable[[float], None] = lambda done_s: None
+        self, file: McapFile, on_progress: OnProgress = ignore
     ) -> Iterator[tuple[Definition, Stored]]:
         """Yield the readable messages of a file, each with the definition of its topic."""
         said = file.definitions
@@ -174,7 +175,7 @@ class _Damaged:
             if not definition.qos and stated.get(topic):
                 definition = self._types[topic] = replace(definition, qos=stated[topic])
             begin = time if begin is None else begin
-            progress((time - begin) / _SECOND)
+            on_progress(WorkProgress('repairing', (time - begin) / _SECOND, None, 's'))
             yield definition, stored
         for topic, count in left_out.items():
             self._report(

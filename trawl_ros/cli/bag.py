@@ -10,7 +10,7 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.cli.bag_repair import repair
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
 from trawl_ros.cli.files import BAG, FOLDER
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console
 from trawl_ros.core.errors import BagError
 from trawl_ros.records.topics import NAMESPACE
@@ -109,15 +109,14 @@ def export(bag: Path, out: Path, topics: tuple[str, ...], array_limit: int, name
     Columns are named by the path of their field; columns.csv says the unit of each. Times stand
     there twice, in seconds and in whole nanoseconds. A cell is empty where there is no reading.
     """
-    console = error_console()
-    with TimeProgress('exporting', None, console) as progress:
+    with ProgressDisplay(error_console()) as display:
         done = export_bag(
             bag,
             out,
             topics=topics,
             namespace=namespace,
             array_limit=array_limit,
-            progress=progress.update,
+            on_progress=display,
         )
     for topic in done.topics:
         where = topic.file or 'no file'

@@ -6,7 +6,7 @@ import click
 
 from trawl_ros.bags.repair import SUFFIX, repair_bag
 from trawl_ros.cli.files import BAG, FOLDER
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 
 LOST = 3
 """Exit code where something was lost; 1 is an error, 2 a wrong call."""
@@ -29,8 +29,8 @@ def repair(context: click.Context, bag: Path, out: Path | None) -> None:
     Exit codes: 0 nothing was lost, or there was nothing to repair; 3 messages were lost, or may
     have been in what could not be read; 1 nothing could be saved.
     """
-    with TimeProgress('repairing', None, error_console()) as progress:
-        done = repair_bag(bag, out, progress=progress.update)
+    with ProgressDisplay(error_console()) as display:
+        done = repair_bag(bag, out, on_progress=display)
     count = sum(done.saved.values())
     if done.out is None:
         click.echo(f'{bag}: sound, {count} messages; nothing to repair')

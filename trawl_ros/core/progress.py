@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import count
 
 
 @dataclass(frozen=True)
@@ -33,3 +34,14 @@ OnProgress = Callable[[WorkProgress], None]
 
 def ignore(progress: WorkProgress) -> None:
     """Take no notice of progress."""
+
+
+def step_counter(stage: str, total: int, on_progress: OnProgress) -> Callable[[], None]:
+    """Make a function that reports one more step of a stage as done; report that none is yet."""
+    numbers = count()
+
+    def step() -> None:
+        on_progress(WorkProgress(stage, next(numbers), total))
+
+    step()
+    return step

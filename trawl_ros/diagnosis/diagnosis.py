@@ -1,10 +1,11 @@
 """Diagnosis of a gear: detect, locate, name, repair, and compare on held-out windows."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.empirical import Empirical, empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
@@ -25,8 +26,6 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
-
-Told = Callable[[str], None]
 
 PLACEBO_STEPS = 3
 """A wrong effect has no place to come to rest at, and what it is worth is seen before."""
@@ -124,7 +123,7 @@ def diagnose(
     windows: Sequence[SteadyWindow],
     tows: Sequence[str],
     baseline: frozenset[int] = frozenset(),
-    told: Told = lambda what: None,
+    on_progress: OnProgress = ignore,
 ) -> Diagnosis:
     """Diagnose the missing effects of a gear's model.
 
@@ -138,8 +137,8 @@ def diagnose(
         Names of the tows.
     baseline
         Tows of when the gear was known to be in order.
-    told
-        Told what is being done.
+    on_progress
+        Called at each step of the diagnosis.
 
     Raises
     ------
@@ -161,7 +160,7 @@ def diagnose(
             reason=f'found {len(examined)} steady states to examine, expected at least '
             f'{FEWEST_STATES}: what does not vary cannot be told from the boards',
         )
-    told('fitting the boards')
+    on_progress(_step('fitting the boards'))
     prior = board_prior(gear)
     fit = fit_beside if new else fit_boards
     base = fit(predictor, prior, parts.deciding)
@@ -172,7 +171,7 @@ def diagnose(
             or 'most of the windows have no steady state in this model: it is another gear, or far '
             'from how it was towed',
         )
-    told('looking for effects')
+    on_progress(_step('looking for effects'))
     seen = score_test(predictor, base.fit, catalogue())
     where = sorted((*telling(seen), *changes(seen)), key=lambda one: -abs(one.z))
     known = replace(known, base=base, seen=seen, where=tuple(where))
@@ -183,18 +182,18 @@ def diagnose(
             reason='nothing in the readings is beyond what boards and errors explain',
             shown=_shown(predictor, base, None, None, parts),
         )
-    named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
+    named = name(predictor, base, seen, on_progress)
     if named.lost:
-        told('leaving out what has no steady state with the best effect')
+        on_progress(_step('leaving out what has no steady state with the best effect'))
         kept = tuple(window for window in parts.deciding if window.index not in named.lost)
         if (again := fit(predictor, prior, kept)) is not None:
             base, seen = again, score_test(predictor, again.fit, catalogue())
             known = replace(known, base=base, seen=seen)
-            named = name(predictor, base, seen, lambda effect: told(f'refitting with {effect}'))
+            named = name(predictor, base, seen, on_progress)
     best = named.weighed[0].refit if named.weighed else None
     other, found = None, None
     if named.verdict == 'UNKNOWN':
-        told('looking for an empirical term')
+        on_progress(_step('looking for an empirical term'))
         found = empirical(predictor, base, seen)
         if found is not None:
             other, best = best, found.weighed.refit
@@ -207,11 +206,11 @@ def diagnose(
                 or f'readings are {noise:.0f} times further from the model than their errors '
                 'explain, and no effect brings them near: it is another gear',
             )
-    told('predicting what was kept back')
+    on_progress(_step('predicting what was kept back'))
     if best is not None and other is None:
         other = _placebo(predictor, base, seen, named)
     shown = _shown(predictor, base, best, other, parts)
-    told('looking for the next tow')
+    on_progress(_step('looking for the next tow'))
     checks, proposals = _advice(predictor, seen, named)
     return replace(
         known,
@@ -229,6 +228,10 @@ def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
     """The diagnosis of recordings without a single steady window."""
     nothing = Split((), (), 'state')
     return Diagnosis('NOT_TESTABLE', reason, gear, tuple(tows), frozenset(), nothing)
+
+
+def _step(detail: str) -> WorkProgress:
+    return WorkProgress('diagnosing', detail=detail)
 
 
 def _advice(

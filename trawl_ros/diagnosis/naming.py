@@ -1,10 +1,11 @@
 """Naming of an effect: refits of the best candidates, their comparison, and the verdict."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.candidates import Candidate, extended
 from trawl_ros.diagnosis.refit import OPTIONS, Refit, likelier, refit
 from trawl_ros.diagnosis.rules import (
@@ -70,7 +71,7 @@ def name(
     predictor: Predictor,
     base: Refit,
     seen: ScoreTest,
-    tried: Callable[[str], None] = lambda what: None,
+    on_progress: OnProgress = ignore,
 ) -> Named:
     """Name the detected effect, or say why it cannot be named.
 
@@ -82,8 +83,8 @@ def name(
         Boards alone.
     seen
         What was detected.
-    tried
-        Told the names of effects before they are refitted.
+    on_progress
+        Called before each refit.
     """
     ranked = sorted(seen.wanted, key=seen.penalised, reverse=True)
     first = seen.penalised(ranked[0])
@@ -95,7 +96,7 @@ def name(
             chosen.append(candidate)
     refits = []
     for candidate in chosen[:SCREENED]:
-        tried(candidate.name)
+        on_progress(_refitting(candidate.name))
         found = _refitted(predictor, base, seen, (candidate,), REFITTING)
         lost = _lost(base, found)
         if found is not None and not lost:
@@ -108,7 +109,7 @@ def name(
     best = weighed[0]
     left = left_over(base, seen, best.refit)
     if seconds := _seconds(seen, weighed, left):
-        weighed, left = _with_second(predictor, base, seen, refits, weighed, seconds, tried)
+        weighed, left = _with_second(predictor, base, seen, refits, weighed, seconds, on_progress)
         best = weighed[0]
     alike = twins(seen, best.refit)
     rivals = _rivals(seen, weighed)
@@ -261,6 +262,10 @@ def _refitted(
     return best
 
 
+def _refitting(names: str) -> WorkProgress:
+    return WorkProgress('diagnosing', detail=f'refitting with {names}')
+
+
 def _with_second(
     predictor: Predictor,
     base: Refit,
@@ -268,16 +273,16 @@ def _with_second(
     refits: Sequence[Refit],
     weighed: tuple[Weighed, ...],
     seconds: Sequence[Candidate],
-    tried: Callable[[str], None],
+    on_progress: OnProgress,
 ) -> tuple[tuple[Weighed, ...], LeftOver]:
     """Weigh the best effect together with a second, and that one alone; with their residuals."""
     (first,) = weighed[0].refit.wanted
     more = []
     for second in seconds:
         if second.name not in [one.names[0] for one in refits]:
-            tried(second.name)
+            on_progress(_refitting(second.name))
             more.append(refitted(predictor, base, seen, (second,)))
-        tried(f'{first.name} and {second.name}')
+        on_progress(_refitting(f'{first.name} and {second.name}'))
         more.append(refitted(predictor, base, seen, (first, second)))
     found = _possible_first(weigh(base, seen, [*refits, *(one for one in more if one is not None)]))
     pair = next((one for one in found if len(one.refit.wanted) == PAIR), None)

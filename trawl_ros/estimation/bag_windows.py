@@ -1,7 +1,7 @@
 """Steady windows of bags, each read apart from the others."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
@@ -25,15 +25,15 @@ class BagTask:
     namespace: str
 
 
-def read_tow(task: BagTask, read: Callable[[float, int], None] | None = None) -> FoundWindows:
+def read_tow(task: BagTask, on_progress: OnProgress = ignore) -> FoundWindows:
     """Find the steady windows of one bag.
 
     Parameters
     ----------
     task
         Which bag.
-    read
-        Told how much of the tow (s) is read, and how many windows were in it.
+    on_progress
+        Called after each sample, with the part of the tow (s) that is read.
     """
     identification = identification_for(task.gear)
     finder = identification.finder
@@ -45,8 +45,8 @@ def read_tow(task: BagTask, read: Callable[[float, int], None] | None = None) ->
         done += 0 if newest is None else max(0, sample.stamp - newest)
         newest = sample.stamp if newest is None else max(newest, sample.stamp)
         windows += [item for item in finder.feed(sample) if isinstance(item, SteadyWindow)]
-        if read is not None:
-            read(done / SECOND, len(windows))
+        detail = f'{len(windows)} steady windows'
+        on_progress(WorkProgress('reading', done / SECOND, None, 's', detail))
     windows += [item for item in finder.finish() if isinstance(item, SteadyWindow)]
     return FoundWindows(
         name=str(task.path),
@@ -94,13 +94,11 @@ def _in_turn(tasks: Sequence[BagTask], on_progress: OnProgress) -> list[FoundWin
     found: list[FoundWindows] = []
     before_s = reached_s = 0.0
 
-    def show(seconds: float, windows: int) -> None:
+    def show(progress: WorkProgress) -> None:
         nonlocal reached_s
-        reached_s = before_s + seconds
+        reached_s = before_s + progress.done
         bag = f'bag {len(found) + 1} of {len(tasks)}, ' if len(tasks) > 1 else ''
-        windows += sum(len(part.windows) for part in found)
-        detail = f'{bag}{windows} steady windows'
-        on_progress(WorkProgress('reading', reached_s, None, 's', detail))
+        on_progress(replace(progress, done=reached_s, detail=f'{bag}{progress.detail}'))
 
     for task in tasks:
         found.append(read_tow(task, show))

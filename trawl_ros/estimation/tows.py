@@ -1,8 +1,9 @@
 """Tows read in parallel, and brought together in one estimate."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.records import Rejections, SteadyWindow
 
@@ -70,7 +71,7 @@ def numbered(found: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[st
 def estimate_tows(
     identification: Identification,
     found: Sequence[FoundWindows],
-    taken: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = ignore,
 ) -> list[str]:
     """Use the windows of several recordings, as if one finder had found them one after another.
 
@@ -80,8 +81,8 @@ def estimate_tows(
         To which nothing was fed yet; brought to rest afterwards.
     found
         Recordings in the order in which they count.
-    taken
-        Told after each window how many of how many are taken.
+    on_progress
+        Called after each window.
 
     Returns
     -------
@@ -97,7 +98,6 @@ def estimate_tows(
         finder.rejections.sentences.update(part.rejections.sentences)
     for number, window in enumerate(windows, start=1):
         identification.take([window])
-        if taken is not None:
-            taken(number, len(windows))
+        on_progress(WorkProgress('fitting', number, len(windows), 'windows'))
     identification.estimator.finish()
     return names

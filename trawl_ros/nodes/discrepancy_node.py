@@ -23,7 +23,7 @@ from trawl_ros.nodes.runtime.parameters import Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.rewinding import Reached, Rewinding
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.workers.diagnosis_worker import Tried, WatchingThread
+from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, WatchingThread
 from trawl_ros.nodes.workers.finding_status import CALM, finding_statuses
 from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
 from trawl_ros.records.channels import CHANNELS
@@ -61,11 +61,11 @@ class DiscrepancyNode(TrawlNode):
         self._gear = load_gear(parameters['gear'])
         self._finder = finder_for(self._gear, window_options(parameters))
         self._windows: list[SteadyWindow] = []
-        self._tried = Tried()
+        self._outcome = DiagnosisOutcome()
         self._reached = Reached()
         self._rewinding = Rewinding()
         self.advertise(FINDINGS)
-        self._watching = WatchingThread(self._look_at, self._told)
+        self._watching = WatchingThread(self._look_at, self._publish)
         self._progress = ConsumerProgress(self, idle=lambda: self._watching.idle)
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
@@ -76,7 +76,7 @@ class DiscrepancyNode(TrawlNode):
 
     def statuses(self) -> list[Status]:
         """Return the status of the diagnosis."""
-        found, trouble = self._tried.found, self._tried.trouble
+        found, trouble = self._outcome.diagnosis, self._outcome.trouble
         values = {'windows': str(len(self._windows))}
         if trouble:
             return [Status('discrepancy', ERROR, trouble, values)]
@@ -105,7 +105,7 @@ class DiscrepancyNode(TrawlNode):
     def _forget(self) -> None:
         self._finder.reset()
         self._watching.forget()
-        self._windows, self._reached, self._tried = [], Reached(), Tried()
+        self._windows, self._reached, self._outcome = [], Reached(), DiagnosisOutcome()
         self.get_logger().warning('stamps of the winch went back; all begins anew')
 
     def _take(self, decided: Sequence[SteadyWindow | RejectedWindow]) -> None:
@@ -119,15 +119,15 @@ class DiscrepancyNode(TrawlNode):
         baseline = frozenset(range(self.parameters['baseline_tows']))
         return diagnose(self._gear, windows, tows, baseline)
 
-    def _told(self, tried: Tried) -> None:
-        self._tried = replace(tried, found=tried.found or self._tried.found)
-        if tried.found is not None:
-            statuses = finding_statuses(tried.found)
+    def _publish(self, outcome: DiagnosisOutcome) -> None:
+        self._outcome = replace(outcome, diagnosis=outcome.diagnosis or self._outcome.diagnosis)
+        if outcome.diagnosis is not None:
+            statuses = finding_statuses(outcome.diagnosis)
             self.send(FINDINGS, diagnostic_array(self._reached.stamp, statuses))
 
     def _write(self) -> tuple[str, bool]:
         """Write the report; return the closing sentence, and True if all windows count."""
-        found, trouble = self._tried.found, self._tried.trouble
+        found, trouble = self._outcome.diagnosis, self._outcome.trouble
         if found is None:
             found = unread(self._gear, (), trouble or 'no steady window has been heard')
         said = f'{found.verdict}: {headline(found)}'

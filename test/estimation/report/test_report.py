@@ -114,8 +114,8 @@ def test_a_tow_with_false_readings_is_predicted_as_if_never_seen(sea, model, pri
 
 def test_each_fit_of_the_hold_out_is_told(tows, one_tow):
     told = []
-    hold_out(tows.estimator, begun=lambda number, of: told.append((number, of)))
-    assert told == [(1, 3), (2, 3), (3, 3)]
+    hold_out(tows.estimator, on_progress=told.append)
+    assert [(progress.done, progress.total) for progress in told] == [(0, 3), (1, 3), (2, 3)]
     assert hold_out(one_tow.estimator).by == 'state'
 
 

@@ -1,7 +1,6 @@
 """Chaos in the graph: what happens is planned from a seed, and what is seen is reported."""
 
 import json
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +11,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `
 
 
 from trawl_ros.cli.main import trawl
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.core.progress import ignore
 from trawl_ros.lab.running.chain import Glance
 from trawl_ros.lab.studies.chaos.crew import Recording
 from trawl_ros.lab.studies.chaos.kills import Kills
@@ -23,7 +22,6 @@ from trawl_ros.lab.studies.chaos.study import Chaos, run_chaos
 from trawl_ros.lab.studies.chaos.tow import Tow
 from trawl_ros.messages.estimates import COEFFICIENTS
 
-CONSOLE = error_console()
 NODES = ('sim_node', 'bag_recorder', 'winch_node', 'door_sensor_node', 'trawl_sonar_node',
          'vessel_node', 'identification_node')  # fmt: skip
 
@@ -94,18 +92,12 @@ def test_the_worst_of_the_kills_counts():
     assert missed(tow(), kills=Kills(tuple(killed), 3.0)) == ['lost before the kill']
 
 
-@contextmanager
-def counted(title, number):
-    yield lambda: None
-
-
 @pytest.mark.ros
 @pytest.mark.slow
 @pytest.mark.timeout(500)
 def test_three_minutes_at_sea_and_two_kills(tmp_path):
     plan = Plan(hours=0.05, kills=2, seed=3)
-    shown = lambda title, total_s: TimeProgress(title, total_s, CONSOLE)  # noqa: E731
-    chaos = run_chaos(plan, tmp_path, shown, counted, lambda: False)
+    chaos = run_chaos(plan, tmp_path, ignore, lambda: False)
     assert [fault.kind for fault in chaos.wild.done] == [f.kind for f in faults_of(plan)]
     rows = write_chaos(tmp_path, chaos)
     assert [row.what for row in rows if not row.ok] == []

@@ -6,7 +6,7 @@ from threading import Event
 import pytest
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.nodes.workers.diagnosis_worker import Tried, WatchingThread
+from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, WatchingThread
 
 
 class Slow:
@@ -47,7 +47,7 @@ def test_of_several_the_newest_count(watched):
     slow.may.set()
     asyncio.run(at_rest(thread))
     assert thread.idle
-    assert [one.found for one in told] == [(1,), (1, 2, 3)]
+    assert [outcome.diagnosis for outcome in told] == [(1,), (1, 2, 3)]
 
 
 def test_nothing_is_said_of_windows_that_are_forgotten(watched):
@@ -60,7 +60,7 @@ def test_nothing_is_said_of_windows_that_are_forgotten(watched):
     assert told == []
     thread.look_at((4,))
     asyncio.run(at_rest(thread))
-    assert told == [Tried((4,))]
+    assert told == [DiagnosisOutcome((4,))]
 
 
 def test_what_goes_wrong_is_said(watched):
@@ -68,7 +68,7 @@ def test_what_goes_wrong_is_said(watched):
     slow.may.set()
     thread.look_at(())
     asyncio.run(at_rest(thread))
-    assert told == [Tried(None, 'nothing to diagnose')]
+    assert told == [DiagnosisOutcome(None, 'nothing to diagnose')]
 
 
 def test_an_error_of_the_program_is_told_whole_and_the_next_windows_are_diagnosed(watched):
@@ -80,7 +80,7 @@ def test_an_error_of_the_program_is_told_whole_and_the_next_windows_are_diagnose
     asyncio.run(at_rest(thread))
     assert told[0].trouble.startswith('an error of the program; Traceback')
     assert 'ZeroDivisionError: nothing to divide by' in told[0].trouble
-    assert told[1:] == [Tried((1,))]
+    assert told[1:] == [DiagnosisOutcome((1,))]
 
 
 def test_it_ends_after_what_it_has_to_do(watched):
@@ -89,7 +89,7 @@ def test_it_ends_after_what_it_has_to_do(watched):
     slow.may.set()
     thread.stop()
     assert not thread.is_alive()
-    assert [one.found for one in told] == [(1,)]
+    assert [outcome.diagnosis for outcome in told] == [(1,)]
 
 
 async def at_rest(thread):

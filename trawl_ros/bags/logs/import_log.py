@@ -107,7 +107,7 @@ def write_samples(
     path: Path,
     samples: Iterable[Sample],
     bag_path: str | Path,
-    told: Callable[[], tuple[int, Mapping[str, int]]],
+    row_counts: Callable[[], tuple[int, Mapping[str, int]]],
 ) -> Imported:
     """Write the samples of a log as a bag, in the order of time.
 
@@ -119,8 +119,8 @@ def write_samples(
         What it says.
     bag_path
         Folder to be made.
-    told
-        Gives rows read and left out by reason, once all samples are there.
+    row_counts
+        Rows read, and those left out by reason; called once all samples are there.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def write_samples(
     if len(ordered) > LOG_READINGS.value:
         raise LogError(f'{path}: more than {LOG_READINGS}; expected a log in several files')
     ordered.sort(key=lambda sample: sample.stamp)
-    rows, left_out = told()
+    rows, left_out = row_counts()
     if not ordered:
         why = f' ({listed(left_out)})' if left_out else ''
         raise LogError(f'{path}: {rows} rows without any reading{why}; expected at least one')

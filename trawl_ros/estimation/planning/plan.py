@@ -1,11 +1,12 @@
 """Trial planning: the most informative trial in a given time, beside the paper's sweep."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.laws import (
     QUANTITIES,
@@ -85,9 +86,6 @@ class TrialPlan:
     sweeps: tuple[SweepTrial, ...]
 
 
-Progress = Callable[[str, int, int], None]
-
-
 def plan_trial(
     gear: GearRecord,
     *,
@@ -95,7 +93,7 @@ def plan_trial(
     limits: Limits | None = None,
     windows: WindowOptions | None = None,
     estimator: EstimatorOptions | None = None,
-    progress: Progress = lambda what, done, number: None,
+    on_progress: OnProgress = ignore,
 ) -> TrialPlan:
     """Plan a trial: optimal experiment design over manoeuvres, within the given time.
 
@@ -112,8 +110,8 @@ def plan_trial(
         Among which manoeuvres one may choose.
     windows, estimator
         When a window is steady; how the estimate is found.
-    progress
-        Is told what is being looked up, how much of it is done, and how much there is.
+    on_progress
+        Called after each steady state.
 
     Raises
     ------
@@ -123,10 +121,7 @@ def plan_trial(
     prior = board_prior(gear)
     predictor = predictor_for(gear)
     explorer = Explorer(predictor, prior.start, limits)
-    choice = explore(
-        explorer,
-        lambda done: progress('steady states of the board as believed', done, len(explorer)),
-    )
+    choice = explore(explorer, on_progress)
     question = Question(
         coefficients=np.array(prior.start),
         prior=prior,
@@ -148,7 +143,7 @@ def plan_trial(
                 'until the gear has settled and its windows are taken; expected more hours'
             )
         sweep = best_sweep(designer)
-        lost = _look_up((*legs, *sweep), filed, choice.candidates, seen, progress)
+        lost = _look_up((*legs, *sweep), filed, choice.candidates, seen, on_progress)
         if not lost:
             break
         choice = choice.without(lost)
@@ -197,7 +192,7 @@ def _look_up(
     explorer: Explorer,
     near: Sequence[TowableManoeuvre],
     seen: dict[Manoeuvre, TowableManoeuvre],
-    progress: Progress,
+    on_progress: OnProgress,
 ) -> dict[Manoeuvre, Refused]:
     """Look the legs up with another board, from the states near them that are known; give those
     that are not to be had with it.
@@ -210,7 +205,7 @@ def _look_up(
             seen[manoeuvre] = found
         else:
             lost[manoeuvre] = found
-        progress('the plan with the board of the file', done, len(wanted))
+        on_progress(WorkProgress('the plan with the board of the file', done, len(wanted)))
     return lost
 
 

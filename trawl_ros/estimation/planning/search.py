@@ -1,7 +1,7 @@
 """Search for the most informative manoeuvres within a given time."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,29 +145,22 @@ class Designer:
         """Shortfall of the quantities after manoeuvres."""
         return shortfall(self.quantities(manoeuvres))
 
-    def best(self, progress: Callable[[float], None] = lambda minutes: None) -> tuple[Leg, ...]:
+    def best(self) -> tuple[Leg, ...]:
         """Return the trial of least shortfall that greedy addition and exchange find.
 
         Manoeuvres are added by what they gain per minute until the time is up; then each is
         exchanged for whatever gains most, and what has become free is filled, until nothing
         gains. Ties fall to the first candidate, so that the result is always the same.
-
-        Parameters
-        ----------
-        progress
-            Is told how many minutes of the trial are planned.
         """
         chosen: list[Manoeuvre] = []
         while True:
-            chosen = self._filled(chosen, progress)
+            chosen = self._filled(chosen)
             better = self._exchanged(chosen)
             if better is None:
                 return self.legs(chosen) or ()
             chosen = better
 
-    def _filled(
-        self, chosen: list[Manoeuvre], progress: Callable[[float], None]
-    ) -> list[Manoeuvre]:
+    def _filled(self, chosen: list[Manoeuvre]) -> list[Manoeuvre]:
         while True:
             now = self.shortfall(chosen)
             minutes = minutes_of(self.legs(chosen) or ())
@@ -186,7 +179,6 @@ class Designer:
             if best is chosen:
                 return chosen
             chosen = best
-            progress(minutes_of(self.legs(chosen) or ()))
 
     def _exchanged(self, chosen: list[Manoeuvre]) -> list[Manoeuvre] | None:
         """Return the result of one round of exchanges; None where nothing was gained."""

@@ -5,12 +5,13 @@ A turn is not among them: a gear that is towed around has no steady state in fix
 opposite heading, which shows nothing new where there is no current.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
@@ -214,17 +215,15 @@ class Explorer:
         return ''
 
 
-def explore(
-    explorer: Explorer, progress: Callable[[int], None] = lambda done: None
-) -> ManoeuvreChoice:
+def explore(explorer: Explorer, on_progress: OnProgress = ignore) -> ManoeuvreChoice:
     """Solve all manoeuvres.
 
     Parameters
     ----------
     explorer
         Which ones.
-    progress
-        Is told how many are done.
+    on_progress
+        Called after each of them.
 
     Raises
     ------
@@ -237,7 +236,8 @@ def explore(
             candidates.append(found)
         else:
             refused.append(found)
-        progress(done)
+        stage = 'steady states of the board as believed'
+        on_progress(WorkProgress(stage, done, len(explorer)))
     if not candidates:
         reasons = ', '.join(sorted({one.reason for one in refused}))
         limits = explorer.limits

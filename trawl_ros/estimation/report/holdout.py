@@ -1,10 +1,11 @@
 """Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -39,7 +40,7 @@ def hold_out(
     estimator: Estimator,
     folds: int = 5,
     seed: int = 0,
-    begun: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = ignore,
 ) -> HeldOut:
     """Predict each window by a fit without any window of its tow.
 
@@ -56,8 +57,8 @@ def hold_out(
     seed
         Of the random order in which states are dealt to the folds, so that a fold is not
         one warp length at all speeds.
-    begun
-        Told before each fit which it is, from 1, and of how many.
+    on_progress
+        Called before each fit.
     """
     windows = estimator.windows
     predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
@@ -80,9 +81,8 @@ def hold_out(
         # They are stopped before they are at rest.
         second_start=False,
     )
-    for number, left_out in enumerate(parts, start=1):
-        if begun is not None:
-            begun(number, len(parts))
+    for number, left_out in enumerate(parts):
+        on_progress(WorkProgress('leaving out, one after another', number, len(parts), 'fits'))
         part = estimator.subset(states - left_out, options)
         if part.finish() is None:
             continue

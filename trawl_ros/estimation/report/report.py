@@ -1,11 +1,12 @@
 """Report of an identification, computed once for JSON, figures and page."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Progress
 from trawl_ros.estimation.fit.laws import (
@@ -167,7 +168,7 @@ def report(
     folds: int = 5,
     tows: Sequence[str] = (),
     gear: GearRecord | None = None,
-    begun: Callable[[int, int], None] | None = None,
+    on_progress: OnProgress = ignore,
 ) -> Report:
     """Compute the report of a finished identification.
 
@@ -183,8 +184,8 @@ def report(
         Names of the tows; numbered where none are given.
     gear
         Whose boards these are, to say what is known of their laws at the angles they work at.
-    begun
-        Told before each fit of the hold-out which it is, from 1, and of how many.
+    on_progress
+        Called before each fit of the hold-out.
 
     Raises
     ------
@@ -209,7 +210,7 @@ def report(
         measured=stack([paper_values(window.means) for window in windows]),
         at_start=_values(solve(estimator, estimator.prior.start)),
         at_end=_values(at_end),
-        held_out=hold_out(estimator, folds, begun=begun),
+        held_out=hold_out(estimator, folds, on_progress=on_progress),
         at_truth=None if truth is None else _values(solve(estimator, np.asarray(truth))),
         residuals=residuals(at_end),
         innovations=innovations(identification.course),

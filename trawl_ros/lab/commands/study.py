@@ -1,18 +1,17 @@
 """``trawl study``: what takes long to find out, measured and reported."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from trawl_ros.cli.files import FILE, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.files import empty_folder
+from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.chaos.plan import Plan as ChaosPlan
@@ -29,7 +28,7 @@ from trawl_ros.lab.studies.discrepancy.trials.plan import BlindStudyPlan as Disc
 from trawl_ros.lab.studies.identification.report import REPORT as IDENTIFICATION_REPORT
 from trawl_ros.lab.studies.identification.report import write_identification
 from trawl_ros.lab.studies.identification.study import EstimationStudyPlan as IdentificationPlan
-from trawl_ros.lab.studies.identification.study import StudyProgress, run_study
+from trawl_ros.lab.studies.identification.study import run_study
 from trawl_ros.lab.studies.soak.report import REPORT, write_soak
 from trawl_ros.lab.studies.soak.study import SoakPlan, run_soak
 from trawl_ros.lab.studies.sonar.report import REPORT as SONAR_REPORT
@@ -66,11 +65,11 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
     load_gear(gear)
     empty_folder(out, force=force)
     console = error_console()
-    with Interruption() as interruption:
+    with Interruption() as interruption, ProgressDisplay(console) as display:
         seen = run_soak(
             SoakPlan(hours, gear, real_time_s, coarse=coarse),
             out,
-            lambda title, total_s: TimeProgress(title, total_s, console),
+            display,
             lambda: interruption.requested,
         )
         rows = write_soak(out, seen)
@@ -98,12 +97,11 @@ def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str
     load_gear(gear)
     empty_folder(out, force=force)
     console = error_console()
-    with Interruption() as interruption:
+    with Interruption() as interruption, ProgressDisplay(console) as display:
         seen = run_chaos(
             ChaosPlan(hours, kills, seed, gear),
             out,
-            lambda title, total_s: TimeProgress(title, total_s, console),
-            lambda title, number: _counted(title, number, console),
+            display,
             lambda: interruption.requested,
         )
         rows = write_chaos(out, seen)
@@ -129,15 +127,12 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
     study = SonarStudy(sweeps, gear=gear, instruments=instruments)
     empty_folder(out, force=force)
     console = error_console()
-    columns = TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn()
     measured = []
     try:
-        with Progress(*columns, console=console) as progress:
-            task = progress.add_task('', total=len(CASES))
-            for case in CASES:
-                progress.update(task, description=case.name)
+        with ProgressDisplay(console) as display:
+            for done, case in enumerate(CASES):
+                display(WorkProgress('measuring', done, len(CASES), 'cases', case.name))
                 measured.append(study.measure(case))
-                progress.advance(task)
     except KeyboardInterrupt:
         console.print('stopped; no report is written')
         raise SystemExit(INTERRUPTED) from None
@@ -194,15 +189,8 @@ def identification(
     plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around, tows, live_s)
     console = error_console()
     try:
-        found = run_study(
-            plan,
-            out,
-            StudyProgress(lambda title, number: _counted(title, number, console),
-                  lambda title, total_s: TimeProgress(title, total_s, console)),
-            scheduler=scheduler,
-            force=force,
-            small=small,
-        )  # fmt: skip
+        with ProgressDisplay(console) as display:
+            found = run_study(plan, out, display, scheduler=scheduler, force=force, small=small)
     except KeyboardInterrupt:
         console.print(f'stopped; the trials made so far are kept in {out}')
         raise SystemExit(INTERRUPTED) from None
@@ -227,9 +215,8 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     empty_folder(out, force=force).mkdir(parents=True, exist_ok=True)
     console = error_console()
     try:
-        rows = run_counters(
-            known, out, lambda title, number: _counted(title, number, console), seed
-        )
+        with ProgressDisplay(console) as display:
+            rows = run_counters(known, out, display, seed)
     except KeyboardInterrupt:
         console.print('stopped; no report is written')
         raise SystemExit(INTERRUPTED) from None
@@ -252,13 +239,13 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
     try:
         from trawl_ros.lab.studies.hostile.report import REPORT as HOSTILE_REPORT
         from trawl_ros.lab.studies.hostile.report import write_hostile
-        from trawl_ros.lab.studies.hostile.study import STEPS, run_hostile
+        from trawl_ros.lab.studies.hostile.study import run_hostile
     except ImportError as reason:
         raise RosMissing('the study of hostile messages', reason) from reason
     empty_folder(out, force=force)
     console = error_console()
-    with _counted('attacking', STEPS, console) as step:
-        found = run_hostile(messages, seed, step)
+    with ProgressDisplay(console) as display:
+        found = run_hostile(messages, seed, display)
     _say(write_hostile(out, found, seed), out / HOSTILE_REPORT, console)
 
 
@@ -312,27 +299,13 @@ def discrepancy(
     plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, around)
     console = error_console()
     try:
-        trials = run_blind(
-            plan,
-            out,
-            lambda title, number: _counted(title, number, console),
-            scheduler=scheduler,
-            force=force,
-        )
+        with ProgressDisplay(console) as display:
+            trials = run_blind(plan, out, display, scheduler=scheduler, force=force)
     except KeyboardInterrupt:
         console.print(f'stopped; the trials made so far are kept in {out}')
         raise SystemExit(INTERRUPTED) from None
     rows = write_discrepancy(out, plan, trials, read_classes(out))
     _say(rows, out / DISCREPANCY_REPORT, console)
-
-
-@contextmanager
-def _counted(title: str, number: int, console: Console) -> Iterator[Callable[[], None]]:
-    """Show how many of a number of steps are done."""
-    columns = TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn()
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task(title, total=number)
-        yield lambda: progress.advance(task)
 
 
 def _say(rows: Sequence[StudyRow], report: Path, console: Console) -> None:

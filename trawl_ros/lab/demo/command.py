@@ -11,9 +11,10 @@ from rich.console import Console
 
 from trawl_ros.bags.reader import summarise
 from trawl_ros.cli.files import FOLDER, SCENARIO
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import packaged, write_figure
+from trawl_ros.core.progress import WorkProgress
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
 from trawl_ros.lab.demo.report import load_result, print_result
@@ -137,13 +138,14 @@ def _tow(
     for node in INSTRUMENT_NODES:
         processes.start(node, use_sim_time=True, scenario=path, wait_for=['bag_recorder'])
     processes.start('sim_node', scenario=path, time_scale=0.0, exit_at_end=True, wait_for=consumers)
-    with TimeProgress('towing', scenario.duration_s, console) as progress:
+    began = time.monotonic()
+    with ProgressDisplay(console) as display:
         while not processes.finished('sim_node'):
             done = float(monitor.value('sim_node', 'tow', 'simulated time') or 0.0)
-            progress.update(done, monitor.value('sim_node', 'tow', 'step') or 'starting nodes')
+            step = monitor.value('sim_node', 'tow', 'step') or 'starting nodes'
+            display(WorkProgress('towing', done, scenario.duration_s, 's', step))
             time.sleep(LOOK_S)
-        progress.update(scenario.duration_s)
-        took = progress.elapsed_s
+    took = time.monotonic() - began
     # Sources before the recorder, so that it gets their last messages.
     processes.stop(*INSTRUMENT_NODES)
     processes.stop('bag_recorder')
@@ -185,13 +187,13 @@ def _replay(
         topics=topics,
         wait_for=['identification_node'],
     )
-    with TimeProgress('replaying', scenario.duration_s, console) as progress:
+    with ProgressDisplay(console) as display:
         while not processes.finished('bag_player'):
             done = float(monitor.value('bag_player', 'bag', 'played until') or 0.0)
             windows = monitor.value('identification_node', 'estimate', 'windows') or '0'
-            progress.update(done, f'{windows} steady windows')
+            detail = f'{windows} steady windows'
+            display(WorkProgress('replaying', done, scenario.duration_s, 's', detail))
             time.sleep(LOOK_S)
-        progress.update(scenario.duration_s)
     console.print('identification: all windows together, and those left out of the fit')
     success, message = monitor.finish_identification(processes.check)
     if not success:

@@ -2,13 +2,14 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING
 
 import psutil
 
+from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.lab.running.processes import Processes
 
 if TYPE_CHECKING:
@@ -61,7 +62,8 @@ def watch_chain(
     processes: Processes,
     monitor: 'DelayMonitor',
     every_s: float,
-    told: Callable[[float], None],
+    stage: WorkProgress,
+    on_progress: OnProgress,
     stop: Callable[[], bool],
 ) -> list[Glance]:
     """Monitor a running chain until its scenario ends, and end it in good order.
@@ -72,8 +74,8 @@ def watch_chain(
         The chain, started, and who listens to it.
     every_s
         Data time (s) from one glance to the next.
-    told
-        Called now and then with the data time (s) that is reached.
+    stage, on_progress
+        Stage of the work; called now and then with the data time (s) that is reached in it.
     stop
         Asked now and then whether to end before the scenario does.
 
@@ -93,7 +95,7 @@ def watch_chain(
         began = time.monotonic() if began is None else began
         for node, delay in monitor.delays_s().items():
             delays.setdefault(node, []).append(delay)
-        told(data_s)
+        on_progress(replace(stage, done=data_s))
         if not glances or data_s >= glances[-1].data_s + every_s:
             means = {node: fmean(found) for node, found in delays.items()}
             seen = glance(watched, data_s, time.monotonic() - began, means)

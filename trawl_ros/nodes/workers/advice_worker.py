@@ -25,7 +25,7 @@ class AdvisingThread(Thread):
         Nobody else may use it, or its predictor, from now on.
     at_rest
         Whether the estimator has nothing to do: it comes first.
-    told
+    on_advice
         Called in this thread with the advice, or None where there is none, and with what went
         wrong, '' for nothing.
     """
@@ -34,12 +34,12 @@ class AdvisingThread(Thread):
         self,
         adviser: Adviser,
         at_rest: Callable[[], bool],
-        told: Callable[[Advice | None, str], None],
+        on_advice: Callable[[Advice | None, str], None],
     ) -> None:
         super().__init__(name='advising', daemon=True)
         self._adviser = adviser
         self._at_rest = at_rest
-        self._told = told
+        self._on_advice = on_advice
         self._fits: SimpleQueue[Fit | None] = SimpleQueue()
         self._fit: Fit | None = None
         self._stopped = False
@@ -86,11 +86,11 @@ class AdvisingThread(Thread):
             return act(self._fit)
         except Exception as reason:
             # Without advice the node still estimates, so this ends the thread's work on this fit.
-            self._told(None, sentence_of(reason))
+            self._on_advice(None, sentence_of(reason))
         return False
 
     def _advise(self, fit: Fit) -> bool:
-        self._told(self._adviser.advise(fit), '')
+        self._on_advice(self._adviser.advise(fit), '')
         return bool(fit.windows)
 
     def _look_up(self, fit: Fit) -> bool:

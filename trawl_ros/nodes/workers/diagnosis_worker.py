@@ -14,10 +14,10 @@ Windows = tuple[SteadyWindow, ...]
 
 
 @dataclass(frozen=True)
-class Tried:
+class DiagnosisOutcome:
     """Result of a diagnosis of the newest windows, or its error."""
 
-    found: Diagnosis | None = None
+    diagnosis: Diagnosis | None = None
     trouble: str = ''
 
 
@@ -30,16 +30,18 @@ class WatchingThread(Thread):
     ----------
     diagnose
         From windows to a diagnosis.
-    told
+    on_outcome
         Called in this thread after each look, but not after one at windows that are forgotten.
     """
 
     def __init__(
-        self, diagnose: Callable[[Windows], Diagnosis], told: Callable[[Tried], None]
+        self,
+        diagnose: Callable[[Windows], Diagnosis],
+        on_outcome: Callable[[DiagnosisOutcome], None],
     ) -> None:
         super().__init__(name='diagnosis', daemon=True)
         self._diagnose = diagnose
-        self._told = told
+        self._on_outcome = on_outcome
         self._queue: SimpleQueue[None] = SimpleQueue()
         self._handing_over = Lock()
         self._newest: Windows | None = None
@@ -83,19 +85,19 @@ class WatchingThread(Thread):
             self._queue.get()
             with self._handing_over:
                 windows, self._newest = self._newest, None
-                told_until = self._forgotten
+                forgotten = self._forgotten
             if windows is not None:
-                tried = self._attempt(windows)
+                outcome = self._attempt(windows)
                 with self._handing_over:
-                    if told_until == self._forgotten:
-                        self._told(tried)
+                    if forgotten == self._forgotten:
+                        self._on_outcome(outcome)
             with self._handing_over:
                 if self._newest is None:
                     self._at_rest.set()
 
-    def _attempt(self, windows: Windows) -> Tried:
+    def _attempt(self, windows: Windows) -> DiagnosisOutcome:
         try:
-            return Tried(self._diagnose(windows))
+            return DiagnosisOutcome(self._diagnose(windows))
         except Exception as reason:
             # Unsaid, it would end the thread: the node would look alive and diagnose nothing.
-            return Tried(trouble=sentence_of(reason))
+            return DiagnosisOutcome(trouble=sentence_of(reason))

@@ -66,7 +66,7 @@ class IdentificationWorker(Thread):
     ----------
     identification
         Nobody else may use it from now on.
-    told
+    on_outcome
         Called with what is new: after each window, used or not, at the end, and after `look`
         where counts have changed.
     dealt_with
@@ -83,14 +83,14 @@ class IdentificationWorker(Thread):
     def __init__(
         self,
         identification: Identification,
-        told: Callable[[EstimatorOutcome], None],
+        on_outcome: Callable[[EstimatorOutcome], None],
         dealt_with: Callable[[int], None],
         save: Callable[[Identification], None],
         report: Callable[[Identification], str],
     ) -> None:
         super().__init__(name='identification', daemon=True)
         self._identification = identification
-        self._told = told
+        self._on_outcome = on_outcome
         self._dealt_with = dealt_with
         self._save = save
         self._report = report
@@ -171,7 +171,7 @@ class IdentificationWorker(Thread):
         if self.outcome.finished is None:
             before, self.outcome = self.outcome, self._outcome()
             if self.outcome.rejected != before.rejected:
-                self._told(self.outcome)
+                self._on_outcome(self.outcome)
 
     def _use(self, sample: Sample) -> None:
         self._fed += 1
@@ -182,7 +182,7 @@ class IdentificationWorker(Thread):
             self._whiteness = whiteness_of(self._identification)
         # One sample may decide several windows, and each brings an estimate.
         for event in used[:-1]:
-            self._told(replace(self._outcome(), estimate=event.estimate))
+            self._on_outcome(replace(self._outcome(), estimate=event.estimate))
         if events:
             self._tell()
         if used:
@@ -202,7 +202,7 @@ class IdentificationWorker(Thread):
 
     def _tell(self, finished: str | None = None, failed: bool = False) -> None:
         self.outcome = self._outcome(finished, failed)
-        self._told(self.outcome)
+        self._on_outcome(self.outcome)
 
     def _grant(self) -> None:
         wishes, self._wishes = self._wishes, []

@@ -236,10 +236,9 @@ def test_shuffled_keys_score_as_chance_would():
 
 
 def test_another_plan_in_the_same_folder_is_refused(tmp_path):
-    steps = pytest.fail
     (tmp_path / 'plan.json').write_text(json.dumps(asdict(BlindStudyPlan(seed=1))))
     with pytest.raises(TrawlError, match=r'another seed.*--force'):
-        run_blind(BlindStudyPlan(seed=2), tmp_path, steps)
+        run_blind(BlindStudyPlan(seed=2), tmp_path, pytest.fail)
 
 
 @pytest.mark.slow

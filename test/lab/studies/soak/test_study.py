@@ -10,24 +10,18 @@ from click.testing import CliRunner
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from trawl_ros.cli.main import trawl
-from trawl_ros.cli.progress import TimeProgress, error_console
+from trawl_ros.core.progress import ignore
 from trawl_ros.lab.studies.soak.rows import soak_rows
 from trawl_ros.lab.studies.soak.study import SoakPlan, run_soak
 
 pytestmark = pytest.mark.ros
-
-CONSOLE = error_console()
-
-
-def shown(title, total_s):
-    return TimeProgress(title, total_s, CONSOLE)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_a_quarter_of_an_hour_at_sea(coarse_gear, tmp_path):
     plan = SoakPlan(hours=0.25, gear=str(coarse_gear), real_time_s=5.0, truth_rate_hz=0.5)
-    soak = run_soak(plan, tmp_path, shown, lambda: False)
+    soak = run_soak(plan, tmp_path, ignore, lambda: False)
     rows = soak_rows(soak)
     missed = [f'{row.what}: {row.value:.3g} {row.unit}' for row in rows if not row.ok]
     assert not missed
@@ -38,7 +32,7 @@ def test_a_quarter_of_an_hour_at_sea(coarse_gear, tmp_path):
 def test_it_may_be_ended_early(coarse_gear, tmp_path):
     plan = SoakPlan(hours=5.0, gear=str(coarse_gear), real_time_s=5.0)
     asked = iter(range(10**6))
-    soak = run_soak(plan, tmp_path, shown, lambda: next(asked) > 20)
+    soak = run_soak(plan, tmp_path, ignore, lambda: next(asked) > 20)
     assert not soak.real
     assert all(glance.data_s < 3600.0 for glance in soak.fast)
     assert not soak_rows(soak)[0].ok

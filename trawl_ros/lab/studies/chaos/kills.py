@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,6 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from trawl_ros.core.errors import RosMissing
+from trawl_ros.core.progress import OnProgress, step_counter
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 from trawl_ros.lab.studies.chaos.crew import Crew, Recording, looked_into
@@ -17,8 +17,6 @@ from trawl_ros.lab.studies.chaos.plan import RECORDER, Plan, write_tow
 from trawl_ros.lab.studies.chaos.tow import LOOK_S
 from trawl_ros.lab.studies.soak.long_tow import write_coarse_gear
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
-
-Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 HOURS = 24.0
 """More than is towed."""
@@ -38,7 +36,7 @@ class Kills:
     recorded_s: float
 
 
-def run_kills(plan: Plan, folder: Path, steps: Steps, stop: Callable[[], bool]) -> Kills:
+def run_kills(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[[], bool]) -> Kills:
     """Kill the recorder as often as planned, each time at another moment.
 
     Parameters
@@ -47,8 +45,8 @@ def run_kills(plan: Plan, folder: Path, steps: Steps, stop: Callable[[], bool]) 
         How often.
     folder
         Takes what the nodes say; bags lie there for a while.
-    steps, stop
-        Shows how many are done, and is asked whether to end early.
+    on_progress, stop
+        Called after each of them; asked whether to end early.
 
     Raises
     ------
@@ -67,12 +65,12 @@ def run_kills(plan: Plan, folder: Path, steps: Steps, stop: Callable[[], bool]) 
         own_graph(logs) as environment,
         Processes(logs, environment) as processes,
         JournalMonitor(environment) as monitor,
-        steps('recorder killed', plan.kills) as done,
     ):
         scratch = Path(name)
         gear = write_coarse_gear(scratch, plan.gear)
         scenario = write_tow(scratch, gear, HOURS, MAX_TRUTH_HZ)
         crew = Crew(processes, scenario, gear, scratch, identify=False)
+        done = step_counter('recorder killed', plan.kills, on_progress)
         for _ in range(plan.kills):
             reached, patience = monitor.truth_s or 0.0, time.monotonic() + START_S
             while monitor.done_s(RECORDER) <= reached and not stop():

@@ -4,9 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from trawl_ros.lab.studies.chaos.kills import Kills, Steps, run_kills
+from trawl_ros.core.progress import OnProgress
+from trawl_ros.lab.studies.chaos.kills import Kills, run_kills
 from trawl_ros.lab.studies.chaos.plan import Plan, faults_of
-from trawl_ros.lab.studies.chaos.tow import Shown, Tow, run_tow
+from trawl_ros.lab.studies.chaos.tow import Tow, run_tow
 
 
 @dataclass(frozen=True)
@@ -19,9 +20,7 @@ class Chaos:
     kills: Kills
 
 
-def run_chaos(
-    plan: Plan, folder: Path, shown: Shown, steps: Steps, stop: Callable[[], bool]
-) -> Chaos:
+def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[[], bool]) -> Chaos:
     """Run all three, each node as a process of its own.
 
     Parameters
@@ -30,10 +29,8 @@ def run_chaos(
         How long and how often.
     folder
         Takes what the nodes say; bags lie there for a while.
-    shown
-        Makes a progress bar from a title and its length (s).
-    steps
-        Shows how many of a number of steps are done.
+    on_progress
+        Called with the data time (s) or the number of kills that is reached.
     stop
         Asked now and then whether to end early; what was seen until then counts.
 
@@ -43,7 +40,7 @@ def run_chaos(
         If there is no ROS 2, or nodes cannot be started.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    calm = run_tow(plan, [], 'undisturbed', folder, shown, stop)
-    wild = Tow() if stop() else run_tow(plan, faults_of(plan), 'chaos', folder, shown, stop)
-    kills = Kills((), 0.0) if stop() else run_kills(plan, folder, steps, stop)
+    calm = run_tow(plan, [], 'undisturbed', folder, on_progress, stop)
+    wild = Tow() if stop() else run_tow(plan, faults_of(plan), 'chaos', folder, on_progress, stop)
+    kills = Kills((), 0.0) if stop() else run_kills(plan, folder, on_progress, stop)
     return Chaos(plan, calm, wild, kills)

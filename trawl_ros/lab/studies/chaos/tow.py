@@ -2,14 +2,14 @@
 
 import time
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.core.errors import RosMissing
+from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.lab.running.chain import Glance, glance, watched_of
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
@@ -32,8 +32,6 @@ FINISH_S = 120.0
 
 DISK_S = 15.0
 """Wall time in which a recorder must notice that its disk is full."""
-
-Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]
 
 
 @dataclass
@@ -62,7 +60,7 @@ def run_tow(
     faults: list[Fault],
     title: str,
     folder: Path,
-    shown: Shown,
+    on_progress: OnProgress,
     stop: Callable[[], bool],
 ) -> Tow:
     """Tow for the hours of a plan, with its faults.
@@ -77,8 +75,8 @@ def run_tow(
         Of the tow, for progress and what the nodes say.
     folder
         Takes what the nodes say; bags lie there for a while.
-    shown, stop
-        Makes a progress bar, and is asked whether to end early.
+    on_progress, stop
+        Called with the data time (s) that is reached; asked whether to end early.
 
     Raises
     ------
@@ -97,7 +95,6 @@ def run_tow(
         own_graph(logs) as environment,
         Processes(logs, environment) as processes,
         JournalMonitor(environment) as monitor,
-        shown(title, plan.end_s) as progress,
     ):
         scratch = Path(name)
         gear = write_coarse_gear(scratch, plan.gear)
@@ -113,7 +110,7 @@ def run_tow(
             turmoil.look(before, now)
             if (data_s := monitor.truth_s) is not None and data_s > before:
                 moved, before = now, data_s
-                progress.update(data_s, turmoil.state)
+                on_progress(WorkProgress(title, data_s, plan.end_s, 's', turmoil.state))
                 if not tow.glances or data_s >= tow.glances[-1].data_s + GLANCE_S:
                     seen = glance(watched_of(processes), data_s, now - began, {})
                     tow.glances += [seen] if seen is not None else []

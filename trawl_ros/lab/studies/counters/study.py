@@ -1,8 +1,7 @@
 """Trial with measured errors of winch counters, and its diagnosis."""
 
 import csv
-from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -11,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, diagnose, values_of
 from trawl_ros.diagnosis.holdout import HoldoutErrors
 from trawl_ros.diagnosis.report.figures import gap_figure
@@ -48,8 +48,6 @@ SEED = 46
 GEAR = 'kaifuha'
 ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
 """Ranges of a scale (%) of about 3 % and an offset (m) of about 13 m."""
-
-Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 
 @dataclass(frozen=True)
@@ -102,7 +100,7 @@ def read_table(path: Path) -> CounterTable:
 
 
 def run_counters(
-    table: CounterTable, folder: Path, steps: Steps, seed: int = SEED
+    table: CounterTable, folder: Path, on_progress: OnProgress = ignore, seed: int = SEED
 ) -> list[StudyRow]:
     """Make the trial, diagnose it with and without a baseline, and write the page.
 
@@ -112,29 +110,29 @@ def run_counters(
         The measured counters.
     folder
         Takes ``counters.json``, ``.md``, ``.html`` and ``.png``.
-    steps
-        Shows progress.
+    on_progress
+        Called after each of the three parts.
     seed
         Of plant, noise and biases.
     """
-    with steps('counters', 3) as done:
-        plant = draw_plant(GEAR, FINER, seed, 0)
-        planned = tuple(
-            PlannedTow(TOWS[number % len(TOWS)], eastward=number % 2 == 0)
-            for number in range(BASELINE + EXAMINED)
-        )
-        plan = BlindTrialPlan(planned, BASELINE)
-        looks = plant.towed([(table.hidden(), 1.0)], plan)
-        chance = np.random.default_rng(seed)
-        sensors = wrong_by(WRONG_BY, chance)
-        windows, seen = windows_of(looks, chance, plan, sensors)
-        floor = floor_of(windows, seen, BASELINE)
-        done()
-        with_baseline = _diagnosed(windows, len(planned), BASELINE)
-        done()
-        alone = tuple(window for window in windows if window.tow >= BASELINE)
-        without = _diagnosed(alone, len(planned), 0)
-        done()
+    done = step_counter('counters', 3, on_progress)
+    plant = draw_plant(GEAR, FINER, seed, 0)
+    planned = tuple(
+        PlannedTow(TOWS[number % len(TOWS)], eastward=number % 2 == 0)
+        for number in range(BASELINE + EXAMINED)
+    )
+    plan = BlindTrialPlan(planned, BASELINE)
+    looks = plant.towed([(table.hidden(), 1.0)], plan)
+    chance = np.random.default_rng(seed)
+    sensors = wrong_by(WRONG_BY, chance)
+    windows, seen = windows_of(looks, chance, plan, sensors)
+    floor = floor_of(windows, seen, BASELINE)
+    done()
+    with_baseline = _diagnosed(windows, len(planned), BASELINE)
+    done()
+    alone = tuple(window for window in windows if window.tow >= BASELINE)
+    without = _diagnosed(alone, len(planned), 0)
+    done()
     rows = _rows(table, with_baseline, without, floor)
     shown = with_baseline.shown
     figure = Figure() if shown is None or shown.after is None else gap_figure(shown, 'the effect')

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from shutil import rmtree
@@ -12,6 +11,7 @@ import numpy as np
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder, write_json
+from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.lab.studies.discrepancy.diagnosing import DiagnosisTask, diagnose_case
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes, classes, named_right
@@ -23,7 +23,6 @@ from trawl_ros.lab.studies.discrepancy.trials.tows import PLANS
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
 from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows, write_windows
 
-Steps = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 Task = TypeVar('Task')
 
 FOLDERS = ('trials', 'keys', 'quiet', 'diagnoses', 'fits')
@@ -112,7 +111,7 @@ def quiet_case(trial: Blind) -> None:
 def run_blind(
     plan: BlindStudyPlan,
     folder: Path,
-    steps: Steps,
+    on_progress: OnProgress = ignore,
     *,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -126,8 +125,8 @@ def run_blind(
         How many.
     folder
         Takes `FOLDERS`, the plan and the classes.
-    steps
-        Shows progress.
+    on_progress
+        Called after each trial of each stage.
     scheduler, workers
         As in `core.parallel.run_tasks`; a cluster must see the folder under the same path.
     force
@@ -142,9 +141,9 @@ def run_blind(
     from trawl_ros.core.parallel import run_tasks
 
     def stage(title: str, act: Callable[[Task], Any], tasks: Mapping[str, Task]) -> None:
-        with steps(title, len(tasks)) as done:
-            for _ in run_tasks(act, tasks, scheduler=scheduler, workers=workers):
-                done()
+        done = step_counter(title, len(tasks), on_progress)
+        for _ in run_tasks(act, tasks, scheduler=scheduler, workers=workers):
+            done()
 
     folder = folder.resolve()
     _prepare(plan, folder, force=force)

@@ -14,6 +14,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity
 from rclpy.parameter import Parameter
 
+from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.lab.studies.hostile.attack import Attack, Stream, Tally, examples_of
 from trawl_ros.lab.studies.soak.long_tow import write_coarse_gear, write_long_tow
@@ -90,7 +91,7 @@ class Found:
 
 
 def run_hostile(
-    count: int, seed: int, step: Callable[[], None] = lambda: None, minutes: float = MINUTES
+    count: int, seed: int, on_progress: OnProgress = ignore, minutes: float = MINUTES
 ) -> Found:
     """Attack each node with its part of a number of messages.
 
@@ -100,11 +101,12 @@ def run_hostile(
         Hostile messages, over all nodes.
     seed
         Of all draws.
-    step
+    on_progress
         Called after each node.
     minutes
         Length of the sound tow of which they are made.
     """
+    step = step_counter('attacking', STEPS, on_progress)
     with TemporaryDirectory() as name, _context() as context:
         folder = Path(name)
         gear = write_coarse_gear(folder, 'kaifuha')

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,8 +16,8 @@ import psutil
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
 from trawl_ros.lab.report.row import StudyRow
@@ -109,7 +108,7 @@ class Live:
 def live(
     seconds: float,
     logs: Path,
-    shown: Callable[[str, float], AbstractContextManager[TimeProgress]],
+    on_progress: OnProgress,
     stop: Callable[[], bool] = lambda: False,
 ) -> Live:
     """Play the beginning of the sample trial in real time to the node.
@@ -120,8 +119,8 @@ def live(
         How much of it.
     logs
         Takes what the nodes say.
-    shown
-        Makes a progress bar from a title and its length (s).
+    on_progress
+        Called now and then with the wall time (s) that has passed.
     stop
         Asked now and then whether to end early.
 
@@ -141,7 +140,6 @@ def live(
         own_graph(logs) as environment,
         Processes(logs, environment) as processes,
         EstimateMonitor(environment) as monitor,
-        shown('node in real time', seconds) as progress,
     ):
         processes.start(NODE, use_sim_time=True)
         processes.start(PLAYER, bag=bag, end=seconds, publish_clock=True, wait_for=[NODE])
@@ -154,7 +152,9 @@ def live(
             now, cpu_s = time.monotonic(), times.user + times.system
             if monitor.playing:
                 began = began or (now, cpu_s)
-                progress.update(now - began[0], f'{monitor.windows} windows')
+                detail = f'{monitor.windows} windows'
+                passed_s = now - began[0]
+                on_progress(WorkProgress('node in real time', passed_s, seconds, 's', detail))
         wall_s = time.monotonic() - began[0] if began else 0.0
         share = 100.0 * (cpu_s - began[1]) / wall_s if began and wall_s else math.nan
         delays = monitor.delays_s()

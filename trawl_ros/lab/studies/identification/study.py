@@ -1,14 +1,13 @@
 """Study of the identification: plan of its trials, and their execution."""
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
-from trawl_ros.cli.progress import TimeProgress
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore, step_counter
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.row import StudyRow
@@ -97,18 +96,6 @@ class EstimationStudyPlan:
 
 
 @dataclass(frozen=True)
-class StudyProgress:
-    """Progress displays.
-
-    ``steps`` takes a title and their number, and gives what is called after each of them;
-    ``stretch`` takes a title and a time, s.
-    """
-
-    steps: Callable[[str, int], AbstractContextManager[Callable[[], None]]]
-    stretch: Callable[[str, float], AbstractContextManager[TimeProgress]]
-
-
-@dataclass(frozen=True)
 class Found:
     """Result: all rows by section, and a figure of the trials."""
 
@@ -119,7 +106,7 @@ class Found:
 def run_study(
     plan: EstimationStudyPlan,
     folder: Path,
-    shown: StudyProgress,
+    on_progress: OnProgress = ignore,
     *,
     scheduler: str | None = None,
     force: bool = False,
@@ -133,8 +120,8 @@ def run_study(
         How large it is.
     folder
         Takes the trials, and what nodes say.
-    shown
-        Shows progress.
+    on_progress
+        Called after each trial and each part of the rest.
     scheduler
         Address of a Dask cluster for the trials; what is timed runs on this machine.
     force
@@ -142,7 +129,7 @@ def run_study(
     small
         Whether to leave out all but the trials.
     """
-    kept = run_trials(plan, folder, shown, scheduler=scheduler, force=force)
+    kept = run_trials(plan, folder, on_progress, scheduler=scheduler, force=force)
     coverage, bound, mouth = (trials_of(plan, kept, series) for series in SERIES)
     prior = board_prior(load_gear(plan.gear))
     sections: list[tuple[str, tuple[StudyRow, ...]]] = [
@@ -153,20 +140,18 @@ def run_study(
         ('The trials', tuple(board_rows((*coverage, *bound, *mouth)))),
     ]  # fmt: skip
     if not small:
-        with shown.steps('model beside plant', 2) as done:
-            rows = []
-            for cut in (plan.cut(COVERAGE), DEFAULT_FINER):
-                rows += model_error_rows(plan.gear, cut)
-                done()
+        done = step_counter('model beside plant', 2, on_progress)
+        rows = []
+        for cut in (plan.cut(COVERAGE), DEFAULT_FINER):
+            rows += model_error_rows(plan.gear, cut)
+            done()
         sections.append(('Model and plant', tuple(rows)))
-        with shown.steps('planning', 1) as done:
-            sections.append(('A planned trial', tuple(planning_rows(plan.gear))))
-            done()
-        with shown.steps('replay', 1) as done:
-            costs = replay_rows(replay())
-            done()
+        on_progress(WorkProgress('planning'))
+        sections.append(('A planned trial', tuple(planning_rows(plan.gear))))
+        on_progress(WorkProgress('replay'))
+        costs = replay_rows(replay())
         if plan.live_s > 0.0:
-            costs += live_rows(live(plan.live_s, folder / 'log', shown.stretch))
+            costs += live_rows(live(plan.live_s, folder / 'log', on_progress))
         sections.append(('Cost', tuple(costs)))
     return Found(tuple(sections), trials_figure(coverage, bound, prior))
 
@@ -174,7 +159,7 @@ def run_study(
 def run_trials(
     plan: EstimationStudyPlan,
     folder: Path,
-    shown: StudyProgress,
+    on_progress: OnProgress = ignore,
     *,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -188,8 +173,8 @@ def run_trials(
         How many.
     folder
         Where they are kept, one by one.
-    shown
-        Shows how many are done.
+    on_progress
+        Called after each of them.
     scheduler, workers
         As in `trawl_ros.core.parallel.run_tasks`.
     force
@@ -205,10 +190,10 @@ def run_trials(
 
     kept = KeptTrials(folder, plan.asked(), force=force)
     tasks = {task.name: task for task in _tasks(plan) if not kept.has(task.series, task.number)}
-    with shown.steps('trials', len(tasks)) as done:
-        for _, trial in run_tasks(run_trial, tasks, scheduler=scheduler, workers=workers):
-            kept.add(trial)
-            done()
+    done = step_counter('trials', len(tasks), on_progress)
+    for _, trial in run_tasks(run_trial, tasks, scheduler=scheduler, workers=workers):
+        kept.add(trial)
+        done()
     return kept
 
 

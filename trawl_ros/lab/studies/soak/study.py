@@ -1,14 +1,13 @@
 """Soak test: the chain for a day at sea at full speed, then for a minute in real time."""
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import disk_usage
 from tempfile import TemporaryDirectory
 
-from trawl_ros.cli.progress import TimeProgress
 from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.lab.running.chain import Glance, start_chain, watch_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
@@ -23,8 +22,6 @@ SETTLE_S = 10.0
 
 MOST_BAG_MB_PER_HOUR = 250.0
 """Room that the bag of a tow may need; it is gone again afterwards."""
-
-Shown = Callable[[str, float], AbstractContextManager[TimeProgress]]
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,9 @@ class Soak:
     bag_mb: float
 
 
-def run_soak(plan: SoakPlan, folder: Path, shown: Shown, stop: Callable[[], bool]) -> Soak:
+def run_soak(
+    plan: SoakPlan, folder: Path, on_progress: OnProgress, stop: Callable[[], bool]
+) -> Soak:
     """Run the chain, each node as a process of its own.
 
     Parameters
@@ -61,8 +60,8 @@ def run_soak(plan: SoakPlan, folder: Path, shown: Shown, stop: Callable[[], bool
         How long.
     folder
         Takes what the nodes say; bags lie there for a while.
-    shown
-        Makes a progress bar from a title and its length (s).
+    on_progress
+        Called now and then with the data time (s) that is reached.
     stop
         Asked now and then whether to end early; what was seen until then counts.
 
@@ -82,7 +81,8 @@ def run_soak(plan: SoakPlan, folder: Path, shown: Shown, stop: Callable[[], bool
     with TemporaryDirectory(dir=folder) as name:
         scratch = Path(name)
         gear = write_coarse_gear(scratch, plan.gear) if plan.coarse else plan.gear
-        fast = _run(gear, plan.hours, plan.truth_rate_hz, 0.0, scratch, folder / 'log', shown, stop)
+        logs = folder / 'log'
+        fast = _run(gear, plan.hours, plan.truth_rate_hz, 0.0, scratch, logs, on_progress, stop)
         files = list((scratch / 'bag').iterdir())
         bag_mb = sum(file.stat().st_size for file in files) / 1e6
     real: list[Glance] = []
@@ -90,7 +90,7 @@ def run_soak(plan: SoakPlan, folder: Path, shown: Shown, stop: Callable[[], bool
         hours = (SETTLE_S + plan.real_time_s) / 3600.0
         with TemporaryDirectory(dir=folder) as name:
             logs = folder / 'log' / 'real_time'
-            real = _run(plan.gear, hours, MAX_TRUTH_HZ, 1.0, Path(name), logs, shown, stop)
+            real = _run(plan.gear, hours, MAX_TRUTH_HZ, 1.0, Path(name), logs, on_progress, stop)
     return Soak(plan, tuple(fast), tuple(real), bag_mb)
 
 
@@ -101,7 +101,7 @@ def _run(
     time_scale: float,
     scratch: Path,
     logs: Path,
-    shown: Shown,
+    on_progress: OnProgress,
     stop: Callable[[], bool],
 ) -> list[Glance]:
     try:
@@ -114,8 +114,8 @@ def _run(
         own_graph(logs) as environment,
         Processes(logs, environment) as processes,
         DelayMonitor(environment) as monitor,
-        shown(title, 3600.0 * hours) as progress,
     ):
         start_chain(processes, scenario, scratch / 'bag', time_scale)
         every = 1.0 if time_scale else 3600.0 * hours / GLANCES
-        return watch_chain(processes, monitor, every, progress.update, stop)
+        stage = WorkProgress(title, 0.0, 3600.0 * hours, 's')
+        return watch_chain(processes, monitor, every, stage, on_progress, stop)
