@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.resources import share_path
@@ -98,7 +98,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_json(
-    path: Path, record: Any, *, indent: int | None = None, ensure_ascii: bool = True
+    path: Path, record: object, *, indent: int | None = None, ensure_ascii: bool = True
 ) -> None:
     """Write JSON as `written` does.
 

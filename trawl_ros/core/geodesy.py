@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 SEMI_MAJOR = 6_378_137.0
 FLATTENING = 1 / 298.257_223_563
 _SEMI_MINOR = SEMI_MAJOR * (1 - FLATTENING)
@@ -25,7 +27,7 @@ class Datum:
     longitude: float
 
 
-def to_latitude_longitude(position: np.ndarray, datum: Datum) -> tuple[float, float]:
+def to_latitude_longitude(position: FloatArray, datum: Datum) -> tuple[float, float]:
     """Return latitude and longitude (degrees) of a position (3,) in ``map``, m."""
     east, north, up = (float(part) for part in position)
     lat, lon = math.radians(datum.latitude), math.radians(datum.longitude)
@@ -44,8 +46,8 @@ def to_latitude_longitude(position: np.ndarray, datum: Datum) -> tuple[float, fl
 
 
 def to_east_north(
-    latitudes: np.ndarray, longitudes: np.ndarray, datum: Datum
-) -> tuple[np.ndarray, np.ndarray]:
+    latitudes: FloatArray, longitudes: FloatArray, datum: Datum
+) -> tuple[FloatArray, FloatArray]:
     """Return east and north (n,) in ``map``, m, of places (n,) on the ellipsoid, degrees.
 
     The inverse of `to_latitude_longitude` but for the height, which a place at sea does not need.
@@ -59,7 +61,7 @@ def to_east_north(
     return outward * np.sin(lon), north
 
 
-def _in_meridian_plane(latitude: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _in_meridian_plane(latitude: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distance (m) from the Earth's axis and height above the equator, of the ellipsoid."""
     curvature = SEMI_MAJOR / np.sqrt(1 - _ECCENTRICITY_2 * np.sin(latitude) ** 2)
     return curvature * np.cos(latitude), curvature * (1 - _ECCENTRICITY_2) * np.sin(latitude)

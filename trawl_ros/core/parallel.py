@@ -10,11 +10,12 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from multiprocessing import resource_tracker
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from dask import config
-from distributed import Client, KilledWorker, LocalCluster, as_completed
+from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
 from distributed.comm.core import connect
 from distributed.security import Security
 
@@ -91,26 +92,32 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else os.cpu_count() or 1
 
 
-def _outcome(function: Callable[[Any], Any], task: Any) -> tuple[str | None, Any]:
-    """Run one task; return an error as a sentence, which can always be sent."""
+@dataclass(frozen=True)
+class _Fault:
+    """Error of a task as a sentence, which can always be sent."""
+
+    sentence: str
+
+
+def _outcome(function: Callable[[TaskT], ResultT], task: TaskT) -> ResultT | _Fault:
     try:
-        return None, function(task)
+        return function(task)
     except Exception as reason:
         # Told whole: the traceback would otherwise stay on the worker.
-        return sentence_of(reason), None
+        return _Fault(sentence_of(reason))
 
 
-def _result(name: str, future: Any) -> Any:
+def _result(name: str, future: Future[ResultT | _Fault]) -> ResultT:
     try:
-        fault, result = future.result()
+        outcome = future.result()
     except KilledWorker as reason:
         raise TrawlError(f'{name}: the process that ran it died') from reason
     except Exception as reason:
         # Not the task but what runs it, such as a worker without this package.
         raise TrawlError(f'{name}: could not be run ({reason})') from reason
-    if fault is not None:
-        raise TrawlError(f'{name}: {fault}')
-    return result
+    if isinstance(outcome, _Fault):
+        raise TrawlError(f'{name}: {outcome.sentence}')
+    return outcome
 
 
 @contextmanager

@@ -6,8 +6,9 @@ there and what was expected.
 """
 
 import re
+from collections.abc import Hashable
 from pathlib import Path
-from typing import Annotated, Any, NoReturn, TypeVar
+from typing import Annotated, NoReturn, TypeVar
 
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
@@ -39,7 +40,7 @@ class FrozenDict(dict[str, float]):
     def __reduce__(self) -> tuple[type['FrozenDict'], tuple[dict[str, float]]]:
         return FrozenDict, (dict(self),)
 
-    def _refuse(self, *_: Any, **__: Any) -> NoReturn:
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
         raise TypeError(f'found a change of {shown(dict(self))}, expected none: it is frozen')
 
     __setitem__ = __delitem__ = __ior__ = _refuse
@@ -52,7 +53,7 @@ Numbers = Annotated[dict[str, float], AfterValidator(FrozenDict)]
 RecordT = TypeVar('RecordT', bound=BaseModel)
 
 
-def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, Any]:
+def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, object]:
     """Read a YAML file whose top level is a mapping.
 
     Parameters
@@ -104,7 +105,7 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, Any]:
 
 def validated(
     cls: type[RecordT],
-    data: Any,
+    data: object,
     path: str | Path,
     error: type[TrawlError],
     *,
@@ -151,41 +152,44 @@ class _Loader(yaml.SafeLoader):
     _depth = 0
     _values = 0
 
-    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        event = self.peek_event()
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        event = self.peek_event()  # type: ignore[no-untyped-call]  # PyYAML's stubs say nothing
+        mark = event.start_mark
         if isinstance(event, yaml.AliasEvent):
             # A few lines of aliases can stand for billions of values.
-            self._refuse(event, 'an alias (*), expected the value itself')
+            self._refuse(mark, 'an alias (*), expected the value itself')
         if getattr(event, 'tag', None) is not None:
             # `!!int abc` makes constructors fail in ways of their own.
-            self._refuse(event, f'a tag ({event.tag}), expected the value itself')
+            self._refuse(mark, f'a tag ({event.tag}), expected the value itself')
         if isinstance(event, yaml.ScalarEvent) and _SURROGATE.search(event.value):
-            self._refuse(event, 'half a character (\\ud800 to \\udfff), expected text')
+            self._refuse(mark, 'half a character (\\ud800 to \\udfff), expected text')
         self._depth += 1
         self._values += 1
         if self._depth > YAML_DEPTH.value:
-            self._refuse(event, f'nesting, expected {YAML_DEPTH} at most')
+            self._refuse(mark, f'nesting, expected {YAML_DEPTH} at most')
         if self._values > YAML_VALUES.value:
-            self._refuse(event, f'one value more, expected {YAML_VALUES} at most')
+            self._refuse(mark, f'one value more, expected {YAML_VALUES} at most')
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
 
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+    def construct_mapping(
+        self, node: yaml.MappingNode, deep: bool = False
+    ) -> dict[Hashable, object]:
         seen: dict[str, int] = {}
         for key_node, _ in node.value:
             if key_node.tag != 'tag:yaml.org,2002:str':
-                self._refuse(key_node, 'a key that is not text, expected a name')
+                self._refuse(key_node.start_mark, 'a key that is not text, expected a name')
             line = key_node.start_mark.line + 1
             if key_node.value in seen:
                 first = seen[key_node.value]
                 again = f"key '{key_node.value}' again (first on line {first})"
-                self._refuse(key_node, f'{again}, expected each key once')
+                self._refuse(key_node.start_mark, f'{again}, expected each key once')
             seen[key_node.value] = line
         return super().construct_mapping(node, deep)
 
-    def _refuse(self, where: Any, found: str) -> NoReturn:
-        raise yaml.constructor.ConstructorError(None, None, f'found {found}', where.start_mark)
+    def _refuse(self, mark: yaml.error.Mark | None, found: str) -> NoReturn:
+        raise yaml.constructor.ConstructorError(None, None, f'found {found}', mark)
 
 
 # Own table: YAML 1.1 reads 1e5 as text, 12:30 as 750 and `no` as false.
@@ -214,7 +218,7 @@ def _yaml_complaint(reason: yaml.YAMLError) -> str:
     return f'{where}{problem}' + ('' if 'expected' in problem else ', expected plain YAML')
 
 
-def _with_tuples(data: Any) -> Any:
+def _with_tuples(data: object) -> object:
     if isinstance(data, dict):
         return {key: _with_tuples(value) for key, value in data.items()}
     if isinstance(data, list | tuple):

@@ -8,7 +8,7 @@ import difflib
 import math
 import re
 import types
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Union, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -71,7 +71,7 @@ _SCALARS = {
 
 
 def validation_messages(
-    cls: type[BaseModel], data: Any, errors: list[ErrorDetails], prefix: str = ''
+    cls: type[BaseModel], data: object, errors: list[ErrorDetails], prefix: str = ''
 ) -> list[str]:
     """Return the validation messages of a record, unknown keys first.
 
@@ -120,7 +120,7 @@ def validation_messages(
     return lines
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """Format a value as in a file, shortened to 60 characters."""
     if isinstance(value, bool | None):
         return {True: 'true', False: 'false', None: 'nothing'}[value]
@@ -131,7 +131,7 @@ def shown(value: Any) -> str:
 
 
 def _unknown_key(
-    cls: type[BaseModel], data: Any, loc: tuple[int | str, ...], prefix: str
+    cls: type[BaseModel], data: object, loc: tuple[int | str, ...], prefix: str
 ) -> tuple[str, str]:
     """Message on an unknown key; with the key that was probably meant, or ''."""
     unknown = str(loc[-1])
@@ -156,7 +156,7 @@ def _other_branch(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
     )
 
 
-def _key(data: Any, loc: tuple[int | str, ...], prefix: str) -> str:
+def _key(data: object, loc: tuple[int | str, ...], prefix: str) -> str:
     """Format a location as the file's own key; the branches of a union are no part of it."""
     text = prefix
     for number, step in enumerate(loc):
@@ -173,7 +173,7 @@ def _join(where: str, key: str) -> str:
     return f'{where}.{key}' if where else key
 
 
-def _annotation(cls: Any, loc: tuple[int | str, ...]) -> Any:
+def _annotation(cls: object, loc: tuple[int | str, ...]) -> object:
     """Follow a location through the record's annotations; None where it leads nowhere."""
     here = cls
     for step in loc:
@@ -190,7 +190,7 @@ def _annotation(cls: Any, loc: tuple[int | str, ...]) -> Any:
     return here
 
 
-def _parts(annotation: Any) -> list[Any]:
+def _parts(annotation: object) -> list[object]:
     """Unwrap a field, `Annotated` and unions into the plain annotations they allow."""
     if isinstance(annotation, FieldInfo):
         return _parts(annotation.annotation)
@@ -202,11 +202,11 @@ def _parts(annotation: Any) -> list[Any]:
     return [] if annotation is type(None) else [annotation]
 
 
-def _records(annotation: Any) -> list[type[BaseModel]]:
+def _records(annotation: object) -> list[type[BaseModel]]:
     return [p for p in _parts(annotation) if isinstance(p, type) and issubclass(p, BaseModel)]
 
 
-def _inside(annotation: Any, step: int | str) -> Any:
+def _inside(annotation: object, step: int | str) -> object:
     for part in _parts(annotation):
         args = [arg for arg in get_args(part) if arg is not Ellipsis]
         if get_origin(part) is dict and len(args) == 2:
@@ -216,7 +216,7 @@ def _inside(annotation: Any, step: int | str) -> Any:
     return None
 
 
-def _kind_of(annotation: Any) -> str:
+def _kind_of(annotation: object) -> str:
     for part in _parts(annotation):
         if part in (float, int):
             return 'a number' if part is float else 'a whole number'
@@ -233,7 +233,7 @@ def _kind_of(annotation: Any) -> str:
     return 'a value'
 
 
-def _expected(detail: ErrorDetails, annotation: Any) -> str:
+def _expected(detail: ErrorDetails, annotation: object) -> str:
     kind, ctx = detail['type'], detail.get('ctx', {})
     if kind == 'missing':
         return _kind_of(annotation)

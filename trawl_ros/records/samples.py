@@ -5,7 +5,7 @@ Stamps are integer nanoseconds; units are SI; a ``std`` is the sensor's *stated*
 
 from dataclasses import dataclass
 
-import numpy as np
+from trawl_ros.core.arrays import ByteArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class VelocitySample:
 
     stamp: int
     over: str
-    velocity: np.ndarray
+    velocity: FloatArray
     yaw_rate: float
 
 
@@ -93,7 +93,7 @@ class SonarImageSample:
     """
 
     stamp: int
-    image: np.ndarray
+    image: ByteArray
 
 
 @dataclass(frozen=True)
@@ -106,8 +106,8 @@ class SonarScanSample:
     """
 
     stamp: int
-    ranges: np.ndarray
-    intensities: np.ndarray
+    ranges: FloatArray
+    intensities: FloatArray
     angle_min: float
     angle_increment: float
     min_range: float
@@ -120,7 +120,7 @@ class SonarPointsSample:
     """Echoes of a sweep: ``points`` (n, 4), position in ``map`` (m) and intensity, 0 to 255."""
 
     stamp: int
-    points: np.ndarray
+    points: FloatArray
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class SchoolsSample:
     """Schools detected by the fish sonar: ``positions`` (n, 3) in frame ``vessel``, m."""
 
     stamp: int
-    positions: np.ndarray
+    positions: FloatArray
 
 
 Sample = (

@@ -11,10 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trawl_ros.core.arrays import FloatArray
+
 SIDES = ('port', 'starboard')
 
 
-def single(values: ArrayLike) -> np.ndarray:
+def single(values: ArrayLike) -> FloatArray:
     """Round values to 32-bit floats, the precision of point clouds.
 
     What is published as a point cloud is no more exact from the beginning, so that instruments
@@ -32,15 +34,15 @@ class DoorTruth:
     ``inclination`` are α, β, δ of eq. 1, 2 and 38 (rad).
     """
 
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
+    position: FloatArray
+    orientation: FloatArray
+    velocity: FloatArray
+    angular_velocity: FloatArray
     attack: float
     slip: float
     inclination: float
-    force: np.ndarray
-    moment: np.ndarray
+    force: FloatArray
+    moment: FloatArray
 
 
 @dataclass(frozen=True)
@@ -63,13 +65,13 @@ class NetTruth:
     through the sonar's plane: x and y in its frame and the diameter, m.
     """
 
-    mouth: np.ndarray
+    mouth: FloatArray
     horizontal_opening: float
     vertical_opening: float
     headrope_depth: float
-    sonar_position: np.ndarray
-    sonar_orientation: np.ndarray
-    section: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    sonar_position: FloatArray
+    sonar_orientation: FloatArray
+    section: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
 
     @property
     def section_width(self) -> float:
@@ -90,11 +92,11 @@ class VesselTruth:
     surface in frame ``vessel`` (x forward, y port, z up), m/s.
     """
 
-    position: np.ndarray
+    position: FloatArray
     heading: float
     yaw_rate: float
-    velocity_ground: np.ndarray
-    velocity_water: np.ndarray
+    velocity_ground: FloatArray
+    velocity_water: FloatArray
 
 
 @dataclass(frozen=True)
@@ -105,8 +107,8 @@ class SchoolTruth:
     ``density`` in fish per m³.
     """
 
-    position: np.ndarray
-    size: np.ndarray
+    position: FloatArray
+    size: FloatArray
     density: float
 
 
@@ -136,7 +138,7 @@ class Polyline:
     """Polyline of a rope or a row of netting: points (n, 3) in ``map``, tension (N)."""
 
     name: str
-    points: np.ndarray
+    points: FloatArray
     tension: float
 
 

@@ -2,7 +2,6 @@
 
 import re
 from functools import lru_cache
-from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
@@ -23,7 +22,7 @@ def _templates(package: str) -> Environment:
     return environment
 
 
-def page(package: str, name: str, /, **content: Any) -> str:
+def page(package: str, name: str, /, **content: object) -> str:
     """Fill in the template ``<name>.j2`` of a package, which may use those of this one.
 
     On HTML pages all that is filled in is escaped. In Markdown what others named, such as a gear,

@@ -3,6 +3,8 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from trawl_ros.core.arrays import FloatArray
+
 PORT, STARBOARD = '#d62728', '#2ca02c'
 """Red and green, as the lights of a ship."""
 
@@ -28,7 +30,7 @@ def clock(seconds: float) -> str:
     return f'{hours}:{minutes:02d}:{rest:02d}' if hours else f'{minutes}:{rest:02d}'
 
 
-def compass(yaw: np.ndarray) -> np.ndarray:
+def compass(yaw: FloatArray) -> FloatArray:
     """Convert ENU yaw (n,), rad, to compass degrees, continuous, with the mean within a turn."""
     degrees = 90.0 - np.degrees(yaw)
     return degrees - 360.0 * np.floor(np.nanmean(degrees) / 360.0) if len(degrees) else degrees
