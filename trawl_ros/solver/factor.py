@@ -8,66 +8,56 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
 from trawl_ros.model.pattern import SparsityPattern
+from trawl_ros.solver.elimination import Elimination, elimination
+from trawl_ros.solver.fronts import factorise, solve
 
 PIVOT_THRESHOLD = 0.01
-"""Least ratio of a diagonal pivot to the largest of its column with which it is kept. The
-matrices are symmetric in pattern and strong on their diagonal; keeping the order of minimum
-degree cuts the time to a fifth on a net of two thousand unknowns."""
+"""Least ratio of a diagonal pivot to the largest of its column with which SuperLU keeps it."""
+
+BACKWARD_ERROR = 1e-10
+"""Residual of the first solution, as a share of matrix times solution, from which the pivots of a
+fixed order are not trusted and SuperLU chooses its own."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Factor:
-    """LU factors of a matrix whose rows and columns were permuted first."""
+    """LU factors of a matrix on a gear's pattern."""
 
-    lu: SuperLU
-    order: np.ndarray
-    kind: np.dtype
+    pattern: SparsityPattern
+    data: np.ndarray
+    _factors: tuple[np.ndarray, ...]
+    _pivoted: SuperLU | None = None
+    _trusted: bool = False
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Solve for one right-hand side (dof,) or several (dof, k)."""
-        solution = np.empty(right.shape, self.kind)
-        solution[self.order] = self.lu.solve(right[self.order].astype(self.kind, copy=False))
-        return solution
+        """Solve for one right-hand side (dof,) or several (dof, k).
+
+        Raises
+        ------
+        RuntimeError
+            If the matrix is singular.
+        """
+        right = np.asarray(right, self.data.dtype)
+        if self._pivoted is None:
+            columns = np.ascontiguousarray(right.T).reshape(-1, len(right))
+            solution = np.empty_like(columns)
+            for given, sought in zip(columns, solution, strict=True):
+                solve(given, *self._factors, sought)
+            if self._trusted or self._holds(columns[0], solution[0]):
+                self._trusted = True
+                return solution.T.reshape(right.shape)
+            self._pivoted = factorised_part(self.pattern.matrix(self.data))
+        return self._pivoted.solve(right)
+
+    def _holds(self, right: np.ndarray, solution: np.ndarray) -> bool:
+        left = np.abs(self.pattern.matrix(self.data) @ solution - right).max()
+        scale = np.abs(self.data).max() * np.abs(solution).max() + np.abs(right).max()
+        return bool(left <= BACKWARD_ERROR * scale)
 
     @property
     def fill(self) -> int:
-        """Number of non-zeros stored in both factors."""
-        return int(self.lu.nnz)
-
-
-@dataclass(frozen=True)
-class _Elimination:
-    """Fill-reducing ordering of a pattern's unknowns, and the pattern in this order."""
-
-    order: np.ndarray
-    slots: np.ndarray
-    indices: np.ndarray
-    indptr: np.ndarray
-
-
-@lru_cache(maxsize=16)
-def _elimination(pattern: SparsityPattern) -> _Elimination:
-    """Minimum-degree ordering; it depends on the pattern alone, so it is found once for a gear."""
-    columns = np.repeat(np.arange(pattern.dof), np.diff(pattern.indptr))
-    diagonal = pattern.indices == columns
-    dominant = pattern.matrix(np.where(diagonal, 1.0, 1e-3 / pattern.dof))
-    order = np.argsort(_ordered(dominant, 'MMD_AT_PLUS_A').perm_c)
-    numbers = pattern.matrix(np.arange(1.0, len(pattern.indices) + 1))
-    moved = numbers[order][:, order].tocsc()
-    moved.sort_indices()
-    return _Elimination(order, moved.data.astype(int) - 1, moved.indices, moved.indptr)
-
-
-def _ordered(matrix: sp.csc_matrix, ordering: str) -> SuperLU:
-    # Panels of one column: the supernodes of a net are too narrow for wider ones to pay.
-    return splu(
-        matrix,
-        permc_spec=ordering,
-        diag_pivot_thresh=PIVOT_THRESHOLD,
-        relax=1,
-        panel_size=1,
-        options={'SymmetricMode': True},
-    )
+        """Number of values stored in both factors."""
+        return elimination(self.pattern).fill
 
 
 def factorised(pattern: SparsityPattern, data: np.ndarray) -> Factor:
@@ -78,22 +68,43 @@ def factorised(pattern: SparsityPattern, data: np.ndarray) -> Factor:
     RuntimeError
         If the matrix is singular.
     """
-    found = _elimination(pattern)
-    matrix = sp.csc_matrix(
-        (data[found.slots], found.indices, found.indptr), shape=(pattern.dof, pattern.dof)
+    found = elimination(pattern)
+    factors, exchanged = np.empty(found.fill, data.dtype), np.empty(pattern.dof, np.int64)
+    done = factorise(
+        data,
+        found.fronts,
+        found.slots,
+        found.places,
+        found.parents_rows,
+        factors,
+        exchanged,
+        *_workspace(found, data.dtype),
     )
-    return Factor(_ordered(matrix, 'NATURAL'), found.order, data.dtype)
+    pivoted = None if done else factorised_part(pattern.matrix(data))
+    arrays = found.order, found.fronts, found.border, factors, exchanged
+    return Factor(pattern, data, arrays, pivoted)
+
+
+@lru_cache(maxsize=8)
+def _workspace(found: Elimination, kind: np.dtype) -> tuple[np.ndarray, np.ndarray]:
+    """Borders that wait for their parents, and the front at work."""
+    return np.empty(found.waiting, kind), np.empty(found.largest**2, kind)
 
 
 def factorised_part(matrix: sp.csc_matrix) -> SuperLU:
-    """LU factors of a part of such a matrix.
+    """LU factors of a part of such a matrix, by SuperLU.
 
     Raises
     ------
     RuntimeError
         If the matrix is singular.
     """
-    return _ordered(matrix, 'MMD_AT_PLUS_A')
+    return splu(
+        matrix,
+        permc_spec='MMD_AT_PLUS_A',
+        diag_pivot_thresh=PIVOT_THRESHOLD,
+        options={'SymmetricMode': True},
+    )
 
 
 def solve_refined(pattern: SparsityPattern, data: np.ndarray, right: np.ndarray) -> np.ndarray:

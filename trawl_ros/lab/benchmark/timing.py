@@ -32,8 +32,8 @@ def median_s(work: Callable[[], object], repeats: int) -> float:
     return median(timed(work)[1] for _ in range(repeats))
 
 
-NUMBER_BYTES = 12
-"""Of one number in the factors: 8 for itself and 4 for its row."""
+NUMBER_BYTES = 8
+"""Of one number in the factors, whose places the gear has once."""
 
 
 def factor_cost(model: GearModel, state: State, tow: Tow, repeats: int) -> tuple[float, float]:

@@ -1,0 +1,201 @@
+"""Numerical factorisation front by front, and solution with the factors: compiled.
+
+Fronts are dense and row-major. Pivots are exchanged within the pivot rows of a front alone, so the
+order found for the pattern stands; `trawl_ros.solver.factor` looks whether that was good enough.
+All takes real matrices, and complex ones.
+"""
+
+import numpy as np
+
+from trawl_ros.model.compiled import compiled, fused
+
+PIVOTS, SIZE, CHILDREN, ENTRIES, BORDER, ROWS, FACTORS = range(7)
+"""Columns of `Elimination.fronts`."""
+
+PANEL = 6
+"""Pivots that are eliminated together: their rows stay in registers while the rest is updated."""
+
+EXCHANGE = 10.0
+"""A pivot is exchanged with one so many times as large."""
+
+
+@compiled
+def factorise(
+    data: np.ndarray,
+    fronts: np.ndarray,
+    slots: np.ndarray,
+    places: np.ndarray,
+    parents_rows: np.ndarray,
+    factors: np.ndarray,
+    exchanged: np.ndarray,
+    waiting: np.ndarray,
+    space: np.ndarray,
+) -> bool:
+    """Factorise the matrix of ``data`` into ``factors``; False if a pivot vanished.
+
+    ``exchanged`` (dof,) gets the pivot row with which each changed places; ``waiting`` and
+    ``space`` are for fronts at work.
+    """
+    stack = np.empty(len(fronts), np.int64)
+    held = end = entry = first = 0
+    for number in range(len(fronts)):
+        pivots, size = fronts[number, PIVOTS], fronts[number, SIZE]
+        edge = size - pivots
+        flat = space[: size * size]
+        flat[:] = 0.0
+        while entry < fronts[number, ENTRIES]:
+            flat[places[entry]] += data[slots[entry]]
+            entry += 1
+        front = flat.reshape(size, size)
+        for _ in range(fronts[number, CHILDREN]):
+            held -= 1
+            child = stack[held]
+            width = fronts[child, SIZE] - fronts[child, PIVOTS]
+            end -= width * width
+            rest = waiting[end : end + width * width].reshape(width, width)
+            at = fronts[child, ROWS]
+            _add_rest(rest, parents_rows[at : at + width // 3], front)
+        if not _eliminate(front, pivots, exchanged[first : first + pivots]):
+            return False
+        at = fronts[number, FACTORS]
+        factors[at : at + pivots * size] = flat[: pivots * size]
+        at += pivots * size
+        lower = factors[at : at + pivots * edge].reshape(pivots, edge)
+        for i in range(edge):
+            for k in range(pivots):
+                lower[k, i] = front[pivots + i, k]
+        waiting[end : end + edge * edge].reshape(edge, edge)[:] = front[pivots:, pivots:]
+        end += edge * edge
+        stack[held] = number
+        held += 1
+        first += pivots
+    return True
+
+
+@compiled
+def _add_rest(rest: np.ndarray, rows: np.ndarray, front: np.ndarray) -> None:
+    """Add what is left of a child's border into its parent's front, block by block."""
+    for i in range(len(rest)):
+        source, target = rest[i], front[rows[i // 3] + i % 3]
+        for j in range(len(rows)):
+            at = rows[j]
+            target[at] += source[3 * j]
+            target[at + 1] += source[3 * j + 1]
+            target[at + 2] += source[3 * j + 2]
+
+
+@fused
+def _eliminate(front: np.ndarray, pivots: int, exchanged: np.ndarray) -> bool:
+    """Eliminate the pivots of a front in place: L below its diagonal, U above, 1 / U on it."""
+    size = len(front)
+    first = 0
+    while first < pivots:
+        last = min(first + PANEL, pivots)
+        for k in range(first, last):
+            best, chosen = EXCHANGE * abs(front[k, k]), k
+            for i in range(k + 1, pivots):
+                if abs(front[i, k]) > best:
+                    best, chosen = abs(front[i, k]), i
+            exchanged[k] = chosen
+            if chosen != k:
+                for j in range(size):
+                    front[k, j], front[chosen, j] = front[chosen, j], front[k, j]
+            if front[k, k] == 0.0:
+                return False
+            inverse = 1.0 / front[k, k]
+            front[k, k] = inverse
+            for i in range(k + 1, size):
+                share = front[i, k] * inverse
+                front[i, k] = share
+                for j in range(k + 1, last):
+                    front[i, j] -= share * front[k, j]
+        for k in range(first + 1, last):
+            for i in range(first, k):
+                share = front[k, i]
+                for j in range(last, size):
+                    front[k, j] -= share * front[i, j]
+        if last - first == PANEL:
+            _update_by_six(front, first)
+        else:
+            _update_by_three(front, first)
+        first = last
+    return True
+
+
+@fused
+def _update_by_six(front: np.ndarray, k: int) -> None:
+    """Subtract the product of six columns of L and six rows of U from all behind them."""
+    size, end = len(front), k + 6
+    u0, u1, u2 = front[k, end:], front[k + 1, end:], front[k + 2, end:]
+    u3, u4, u5 = front[k + 3, end:], front[k + 4, end:], front[k + 5, end:]
+    for i in range(end, size):
+        a0, a1, a2 = front[i, k], front[i, k + 1], front[i, k + 2]
+        a3, a4, a5 = front[i, k + 3], front[i, k + 4], front[i, k + 5]
+        row = front[i, end:]
+        for j in range(size - end):
+            row[j] -= a0 * u0[j] + a1 * u1[j] + a2 * u2[j] + a3 * u3[j] + a4 * u4[j] + a5 * u5[j]
+
+
+@fused
+def _update_by_three(front: np.ndarray, k: int) -> None:
+    """Subtract the product of three columns of L and three rows of U from all behind them."""
+    size, end = len(front), k + 3
+    u0, u1, u2 = front[k, end:], front[k + 1, end:], front[k + 2, end:]
+    for i in range(end, size):
+        a0, a1, a2 = front[i, k], front[i, k + 1], front[i, k + 2]
+        row = front[i, end:]
+        for j in range(size - end):
+            row[j] -= a0 * u0[j] + a1 * u1[j] + a2 * u2[j]
+
+
+@fused
+def solve(
+    right: np.ndarray,
+    order: np.ndarray,
+    fronts: np.ndarray,
+    border: np.ndarray,
+    factors: np.ndarray,
+    exchanged: np.ndarray,
+    solution: np.ndarray,
+) -> None:
+    """Solve for one right-hand side (dof,) with the factors."""
+    x, beyond = right[order], np.empty(fronts[:, SIZE].max(), right.dtype)
+    first = 0
+    for number in range(len(fronts)):
+        pivots, size, edge_at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, BORDER]
+        edge, at = size - pivots, fronts[number, FACTORS]
+        upper = factors[at : at + pivots * size].reshape(pivots, size)
+        at += pivots * size
+        lower = factors[at : at + pivots * edge].reshape(pivots, edge)
+        y, rest = x[first : first + pivots], beyond[:edge]
+        rest[:] = 0.0
+        for k in range(pivots):
+            other = exchanged[first + k]
+            y[k], y[other] = y[other], y[k]
+        for k in range(pivots):
+            value = y[k]
+            for j in range(k):
+                value -= upper[k, j] * y[j]
+            y[k] = value
+            for i in range(edge):
+                rest[i] += lower[k, i] * value
+        for i in range(edge):
+            x[border[edge_at + i]] -= rest[i]
+        first += pivots
+    for number in range(len(fronts) - 1, -1, -1):
+        pivots, size, edge_at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, BORDER]
+        edge, at = size - pivots, fronts[number, FACTORS]
+        upper = factors[at : at + pivots * size].reshape(pivots, size)
+        first -= pivots
+        y, rest = x[first : first + pivots], beyond[:edge]
+        for i in range(edge):
+            rest[i] = x[border[edge_at + i]]
+        for k in range(pivots - 1, -1, -1):
+            value = y[k]
+            for j in range(k + 1, pivots):
+                value -= upper[k, j] * y[j]
+            for i in range(edge):
+                value -= upper[k, pivots + i] * rest[i]
+            y[k] = value * upper[k, k]
+    for k in range(len(x)):
+        solution[order[k]] = x[k]
