@@ -20,7 +20,7 @@ from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
-from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.qos import recorded
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.runtime.stamping import stamp_in
 from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, TRUTH, absolute
@@ -99,9 +99,8 @@ class BagRecorder(TrawlNode):
         for name, topic in project.items():
             if name in self._choice:
                 # Of latched topics, too, all that comes is wanted, and not the last alone.
-                self._record(
-                    name, topic.type, matching((), CONSUMER) if topic.latched else CONSUMER
-                )
+                profile = recorded(topic.type)
+                self._record(name, topic.type, matching((), profile) if topic.latched else profile)
         self.every(FLUSH_S, self._look_after)
 
     def statuses(self) -> list[Status]:
@@ -202,7 +201,7 @@ class BagRecorder(TrawlNode):
             try:
                 if len(types) != 1 or types[0] not in STORE.types:
                     raise TrawlError(f'{topic}: types {", ".join(types)}')
-                self._record(topic, types[0], matching(publishers, CONSUMER))
+                self._record(topic, types[0], matching(publishers, recorded(types[0])))
             except TrawlError:
                 self._unknown.add(topic)
             else:
@@ -210,7 +209,8 @@ class BagRecorder(TrawlNode):
 
     def _match(self, topic: str, publishers: Sequence[TopicEndpointInfo]) -> None:
         """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
-        asked, heard = self._profiles[topic], matching(publishers, CONSUMER)
+        asked = self._profiles[topic]
+        heard = matching(publishers, recorded(self._types[topic]))
         reliable = asked.reliability == ReliabilityPolicy.RELIABLE
         latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
         if (reliable and heard.reliability != asked.reliability) or (

@@ -27,6 +27,18 @@ LATCHED = _profile(1, DurabilityPolicy.TRANSIENT_LOCAL)
 CONSUMER = _profile(5000, DurabilityPolicy.VOLATILE)
 """QoS of recorder and estimators: not one message is to be dropped."""
 
+LARGE_TYPES = ('sensor_msgs/msg/Image', 'sensor_msgs/msg/PointCloud2')
+LARGE_DEPTH = 60
+"""Of messages that may be tens of megabytes, a minute at the rate of the sonar waits: what waits
+is held in memory."""
+
+
+def recorded(type_name: str) -> QoSProfile:
+    """Return the profile of a recorder of messages of a type."""
+    if type_name in LARGE_TYPES:
+        return _profile(LARGE_DEPTH, DurabilityPolicy.VOLATILE)
+    return CONSUMER
+
 
 def offered(topic: Topic | None) -> QoSProfile:
     """Return the profile of a publisher; None stands for a topic of somebody else."""
