@@ -159,6 +159,8 @@ def test_a_wrong_value_is_named_with_key_and_expectation(
         ('a: "\\ud800"', 'found half a character'),
         ('a: "\\U00110000"', 'expected a sound file'),
         (f'a: [{"1," * 300_000}]', 'found one value more, expected 20000 values at most'),
+        ('a: -2.5e+300', 'found -2.5e+300, expected a number of magnitude 1e+18 at most'),
+        (f'a: 1{"0" * 30}', 'expected a number of magnitude 1e+18 at most'),
         ('a: 1\n---\nb: 2', 'another document'),
         (b'a: \xff', 'byte 3 is not UTF-8'),
         ('#' * 1_000_001, 'larger than 1000000 bytes'),

@@ -19,7 +19,6 @@ def tallies(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Tally]:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize('name', TARGETS)
 def test_hostile_input_ends_in_a_sentence(name: str, tallies: Mapping[str, Tally]) -> None:

@@ -5,6 +5,7 @@ same mistakes in the same words: every complaint names the file, the key, what w
 there and what was expected.
 """
 
+import math
 import re
 from collections.abc import Hashable
 from pathlib import Path
@@ -15,7 +16,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import reading
-from trawl_ros.core.limits import YAML_BYTES, YAML_DEPTH, YAML_VALUES
+from trawl_ros.core.limits import YAML_BYTES, YAML_DEPTH, YAML_NUMBER, YAML_VALUES
 from trawl_ros.core.validation_messages import shown, validation_messages
 
 MAX_COMPLAINTS = 10
@@ -188,6 +189,14 @@ class _Loader(yaml.SafeLoader):
             seen[key_node.value] = line
         return super().construct_mapping(node, deep)
 
+    def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
+        value = super().construct_yaml_float(node)
+        if YAML_NUMBER.value < abs(value) < math.inf:
+            # Its powers and products would leave the range of what can be computed with.
+            found = f'{node.value}, expected a number of magnitude {YAML_NUMBER.value:.0e} at most'
+            self._refuse(node.start_mark, found)
+        return value
+
     def _refuse(self, mark: yaml.error.Mark | None, found: str) -> NoReturn:
         raise yaml.constructor.ConstructorError(None, None, f'found {found}', mark)
 
@@ -209,6 +218,7 @@ for _tag, _pattern, _first in (
     )
 # SafeLoader would read 010 as eight.
 _Loader.add_constructor('tag:yaml.org,2002:int', lambda _, node: int(node.value))
+_Loader.add_constructor('tag:yaml.org,2002:float', _Loader.construct_yaml_float)
 
 
 def _yaml_complaint(reason: yaml.YAMLError) -> str:

@@ -153,6 +153,7 @@ TARGETS = (
         known={
             'netting-of-600-km': _gear_with(length_m='600000.0'),
             'netting-of-a-millimetre': _gear_with(length_m='0.001'),
+            'knots-beyond-all-numbers': _gear_with(knot_diameters='2.5e+300'),
             'no-circumference': _gear_with(front_circumference_m='1.0e-300'),
         },
     ),
