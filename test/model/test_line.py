@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.model import line
-from trawl_ros.model.line import SLACK_WIDTH, BarMotion, BarProperties
+from trawl_ros.model.bar import SLACK_WIDTH
+from trawl_ros.model.line import BarMotion, BarProperties
 from trawl_ros.model.water import Water
 
 WATER = Water(density=1025.0)

@@ -13,9 +13,11 @@ import numpy as np
 from trawl_ros.model import board as board_physics
 from trawl_ros.model import kite as kite_physics
 from trawl_ros.model import line
+from trawl_ros.model.bar import STILL, between
+from trawl_ros.model.bar_pass import add_bar_blocks, add_bar_forces, add_bar_masses, water_of
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.line import STILL, BarMotion
+from trawl_ros.model.line import BarMotion
 from trawl_ros.model.numerics import STEP, cross, length, outer, rotation, skew
 from trawl_ros.model.state import State, Tow
 
@@ -82,23 +84,7 @@ def _motion(
     height: np.ndarray,
 ) -> None:
     for n in range(len(ends)):
-        a, b = ends[n, 0], ends[n, 1]
-        for i in range(3):
-            vector[n, i] = x[b, i] - x[a, i]
-            stretching[n, i] = v[b, i] - v[a, i]
-            velocity[n, i] = 0.5 * (v[a, i] + v[b, i])
-        height[n] = 0.5 * (x[a, 2] + x[b, 2])
-
-
-@compiled
-def _gathered(
-    ends: np.ndarray, at_start: np.ndarray, at_end: np.ndarray, total: np.ndarray
-) -> None:
-    """Add the forces at both ends of the bars to the points there."""
-    for n in range(len(ends)):
-        for i in range(3):
-            total[ends[n, 0], i] += at_start[n, i]
-            total[ends[n, 1], i] += at_end[n, i]
+        height[n] = between(x, v, ends[n, 0], ends[n, 1], vector[n], stretching[n], velocity[n])
 
 
 def lump_forces(model: GearModel, state: State) -> np.ndarray:
@@ -153,10 +139,9 @@ def bar_end_forces(
 def forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     """Generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
     points = points_of(model, state, tow)
-    at_start, at_end = bar_end_forces(model, points, tow)
-    n, size = model.nodes, len(points.positions)
-    total = np.zeros((size, 3), dtype=at_start.dtype)
-    _gathered(model.ends, at_start, at_end, total)
+    x, v, rest, rate = alike(points.positions, points.velocities, *rest_lengths(model, tow))
+    n, total = model.nodes, np.zeros_like(x)
+    add_bar_forces(model.ends, x, v, rest, rate, model.bars.columns, water_of(model.water), total)
     total[:n] += lump_forces(model, state)
     held = model.layout.kite
     np.add.at(total, held.nodes, outer(held.shares, kite_load(model, state)))
@@ -192,67 +177,40 @@ class LinearisedForces:
 
 def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
     """Forces with their exact derivatives at one state."""
-    points = points_of(model, state, tow)
-    motion = motion_of(model, points, tow)
-    slopes = line.linearised(model.bars, motion, model.water)
-    k, c = np.empty((2, len(motion.rest), 6, 6))
-    _bar_blocks(
-        slopes.pull_by_vector,
-        slopes.pull_by_stretching,
-        slopes.load_by_vector,
-        slopes.load_by_velocity,
-        slopes.load_by_height,
+    pattern, points = model.pattern, points_of(model, state, tow)
+    n, hung = model.nodes, len(model.pattern.hung)
+    stiffness, damping = np.zeros((2, len(pattern.indices)))
+    k, c = np.empty((2, hung + len(pattern.rigged), 6, 6))
+    start_force, total = np.empty((len(k), 3)), np.zeros_like(points.positions)
+    add_bar_blocks(
+        model.ends,
+        pattern.order,
+        points.positions,
+        points.velocities,
+        *rest_lengths(model, tow),
+        model.bars.columns,
+        water_of(model.water),
+        pattern.slot,
+        total,
+        stiffness,
+        damping,
         k,
         c,
+        start_force,
     )
-    rig_k, rig_c = _rigged_blocks(model, state, points, slopes, k, c)
+    rig_k, rig_c = _rigged_blocks(model, state, points, start_force[hung:], k[hung:], c[hung:])
     body_k, body_c, body_force = _board_blocks(model, state)
     kite_k, kite_c, kite_force = _kite_blocks(model, state)
     node_k, node_c = _lump_blocks(model, state)
-    hung = model.pattern.hung
-    stiffness = model.pattern.gather(
-        [k[model.pattern.plain], k[hung][:, 3:, 3:], rig_k, body_k, node_k, kite_k]
-    )
-    damping = model.pattern.gather(
-        [c[model.pattern.plain], c[hung][:, 3:, 3:], rig_c, body_c, node_c, kite_c]
-    )
+    pattern.add([k[:hung, 3:, 3:], rig_k, body_k, node_k, kite_k], stiffness)
+    pattern.add([c[:hung, 3:, 3:], rig_c, body_c, node_c, kite_c], damping)
 
-    n = model.nodes
-    total = np.zeros((len(points.positions), 3))
-    half = 0.5 * slopes.load
-    _gathered(model.ends, slopes.pull + half, half - slopes.pull, total)
     total[:n] += lump_forces(model, state)
     held = model.layout.kite
     np.add.at(total, held.nodes, outer(held.shares, kite_force))
     ropes = total[n : n + 6].reshape(2, 3, 3)
     boards = body_force + np.concatenate([ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1)
     return LinearisedForces(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
-
-
-@compiled
-def _bar_blocks(
-    pull_by_vector: np.ndarray,
-    pull_by_stretching: np.ndarray,
-    load_by_vector: np.ndarray,
-    load_by_velocity: np.ndarray,
-    load_by_height: np.ndarray,
-    k: np.ndarray,
-    c: np.ndarray,
-) -> None:
-    """K and C (m, 6, 6) of bars between their two ends, of which each takes half the load."""
-    for n in range(len(k)):
-        for i in range(3):
-            for j in range(3):
-                pull, load = pull_by_vector[n, i, j], 0.5 * load_by_vector[n, i, j]
-                # Either end makes half of the bar's mean height and velocity.
-                height = 0.25 * load_by_height[n, i] if j == 2 else 0.0
-                k[n, i, j] = pull + load - height
-                k[n, i, 3 + j] = -pull - load - height
-                k[n, 3 + i, j] = -pull + load - height
-                k[n, 3 + i, 3 + j] = pull - load - height
-                damp, flow = pull_by_stretching[n, i, j], 0.25 * load_by_velocity[n, i, j]
-                c[n, i, j] = c[n, 3 + i, 3 + j] = damp - flow
-                c[n, i, 3 + j] = c[n, 3 + i, j] = -damp - flow
 
 
 def _lift(model: GearModel, points: Points) -> np.ndarray:
@@ -268,25 +226,22 @@ def _rigged_blocks(
     model: GearModel,
     state: State,
     points: Points,
-    slopes: line.BarSlopes,
+    forces: np.ndarray,
     k: np.ndarray,
     c: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Bars that start at a fastening point p = X + a: δp = B (δX, δθ), B = [I, -S(a)]."""
-    count = len(model.pattern.rigged)
     arm = skew(points.arms[model.pattern.rig_board, model.pattern.rig_point])
     spin = skew(state.board_rates[model.pattern.rig_board])
-    force = skew((slopes.pull + 0.5 * slopes.load)[model.pattern.rigged])
     lift = _lift(model, points)
     # The velocity of the point, v + ω × a, turns with the board as well.
-    turning = np.zeros((count, 6, 9))
+    turning = np.zeros((len(k), 6, 9))
     turning[:, :3, 3:6] = -spin @ arm
     back = np.swapaxes(lift, 1, 2)
-    own_k, own_c = k[model.pattern.rigged], c[model.pattern.rigged]
-    rig_k = back @ (own_k @ lift + own_c @ turning)
+    rig_k = back @ (k @ lift + c @ turning)
     # The moment a × f changes with a even where f does not.
-    rig_k[:, 3:6, 3:6] -= force @ arm
-    return rig_k, back @ own_c @ lift
+    rig_k[:, 3:6, 3:6] -= skew(forces) @ arm
+    return rig_k, back @ c @ lift
 
 
 def _board_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -356,13 +311,24 @@ def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     Bars give half of their mass to either end, boards their inertia in fixed axes, and
     their added mass where the gear file switches it on.
     """
-    points = points_of(model, state, tow)
-    motion = motion_of(model, points, tow)
-    half = 0.5 * line.mass(model.bars, motion, model.water)
-    bars = np.zeros((len(half), 6, 6))
-    bars[:, :3, :3] = bars[:, 3:, 3:] = half
+    pattern, points = model.pattern, points_of(model, state, tow)
+    hung, rigged = len(pattern.hung), len(pattern.rigged)
+    data, half = np.zeros(len(pattern.indices)), np.empty((hung + rigged, 3, 3))
+    add_bar_masses(
+        model.ends,
+        pattern.order,
+        points.positions,
+        rest_lengths(model, tow)[0],
+        model.bars.columns,
+        water_of(model.water),
+        pattern.slot,
+        data,
+        half,
+    )
+    bars = np.zeros((rigged, 6, 6))
+    bars[:, :3, :3] = bars[:, 3:, 3:] = half[hung:]
     lift = _lift(model, points)
-    rigged = np.swapaxes(lift, 1, 2) @ bars[model.pattern.rigged] @ lift
+    rigged_mass = np.swapaxes(lift, 1, 2) @ bars @ lift
     body = np.zeros((2, 6, 6))
     turn = state.board_rotations
     added = turn * model.board.added_mass @ np.swapaxes(turn, 1, 2)
@@ -371,7 +337,5 @@ def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     density = model.water.density_at(state.nodes[:, 2])
     lumps = (model.lump_mass + density * model.lump_added)[:, None, None] * np.eye(3)
     canvas = model.kite.mass * np.diag(np.repeat(model.layout.kite.shares, 3))[None]
-    hung = model.pattern.hung
-    return model.pattern.gather(
-        [bars[model.pattern.plain], half[hung], rigged, body, lumps, canvas]
-    )
+    pattern.add([half[:hung], rigged_mass, body, lumps, canvas], data)
+    return data

@@ -1,25 +1,24 @@
-"""Forces on a straight bar of rope, warp or netting (eq. 20-24, 26, 28).
+"""Forces on straight bars of rope, warp or netting (eq. 20-24, 26, 28), and their slopes.
 
 A numerical bar may stand for many real ones side by side; its stiffness, projected and
 wetted area and volume are their sums. All properties are per metre of unstretched length,
 so that a warp may change its length.
-
-The loops over bars are compiled. They take real numbers, and complex ones for a complex step.
 """
 
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.model.bar import (
+    drag_at,
+    load_slopes_at,
+    mass_at,
+    pull_slopes_at,
+    taut_at,
+    tension_at,
+)
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.water import Water
-
-SLACK_WIDTH = 1e-4
-"""Half the range of strain over which slack passes smoothly into taut; eq. 20 has a kink."""
-
-STILL = 1e-6
-"""Speed (m/s) below which quadratic drag is rounded off, so that its derivative exists."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +41,20 @@ class BarProperties:
     added_normal: np.ndarray
     added_tangential: np.ndarray
 
+    def __post_init__(self) -> None:
+        for name, values in zip(vars(self), alike(*self.columns), strict=True):
+            object.__setattr__(self, name, values)
+
+    @property
+    def columns(self) -> tuple[np.ndarray, ...]:
+        """All properties in the order above."""
+        return tuple(vars(self).values())
+
     def chosen(self, bars: np.ndarray | slice) -> 'BarProperties':
         """The properties of some of the bars."""
         if isinstance(bars, slice) and bars == slice(None):
             return self
-        return BarProperties(*(getattr(self, field.name)[bars] for field in fields(self)))
+        return BarProperties(*(values[bars] for values in self.columns))
 
 
 @dataclass(frozen=True)
@@ -62,17 +70,6 @@ class BarMotion:
     height: np.ndarray
     rest: np.ndarray
     rest_rate: np.ndarray
-
-
-@compiled
-def taut_at(strain: Any) -> Any:
-    """Positive part of one strain with a rounded corner, and its first two derivatives."""
-    w = SLACK_WIDTH
-    if strain.real >= w:
-        return strain, 0 * strain + 1.0, 0.0
-    if strain.real > -w:
-        return (strain + w) ** 2 / (4 * w), (strain + w) / (2 * w), 1 / (2 * w)
-    return 0 * strain, 0 * strain, 0.0
 
 
 def taut(strain: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -121,13 +118,9 @@ def _tension(
     along: np.ndarray,
 ) -> None:
     for n in range(len(rest)):
-        span = np.sqrt(vector[n, 0] ** 2 + vector[n, 1] ** 2 + vector[n, 2] ** 2)
-        closing = -rest_rate[n] * span / rest[n]
-        for i in range(3):
-            along[n, i] = vector[n, i] / span
-            closing += along[n, i] * stretching[n, i]
-        value, slope, _ = taut_at(span / rest[n] - 1.0)
-        force[n] = stiffness[n] * (value + damping_time[n] * slope * closing / rest[n])
+        force[n] = tension_at(
+            stiffness[n], damping_time[n], vector[n], stretching[n], rest[n], rest_rate[n], along[n]
+        )
 
 
 def drag(bars: BarProperties, motion: BarMotion, along: np.ndarray, water: Water) -> np.ndarray:
@@ -156,19 +149,7 @@ def _drag(
     force: np.ndarray,
 ) -> None:
     for n in range(len(rest)):
-        tangential = 0 * rest[n]
-        for i in range(3):
-            tangential += flow[n, i] * along[n, i]
-        square = STILL**2 + 0 * rest[n]
-        for i in range(3):
-            square += (flow[n, i] - tangential * along[n, i]) ** 2
-        half = 0.5 * density[n] * rest[n]
-        across = half * normal_area[n] * np.sqrt(square)
-        sliding = np.sqrt(tangential**2 + STILL**2)
-        lengthwise = half * sliding_area[n] * sliding * tangential
-        for i in range(3):
-            normal = flow[n, i] - tangential * along[n, i]
-            force[n, i] = across * normal + lengthwise * along[n, i]
+        drag_at(normal_area[n], sliding_area[n], rest[n], density[n], flow[n], along[n], force[n])
 
 
 def weight(bars: BarProperties, motion: BarMotion, water: Water) -> np.ndarray:
@@ -207,7 +188,7 @@ def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlope
     density = water.density_at(motion.height)
     _load_slopes(
         *alike(bars.normal_drag * bars.normal_area, bars.friction * bars.wet_area, motion.rest),
-        *alike(density, water.current(motion.height) - motion.velocity, motion.vector),
+        *alike(density, water.current(motion.height) - motion.velocity, motion.vector, along),
         load_by_vector,
         load_by_velocity,
     )
@@ -240,25 +221,19 @@ def _pull_slopes(
     by_vector: np.ndarray,
     by_stretching: np.ndarray,
 ) -> None:
-    """Slopes of `_tension` times the unit vector."""
     for n in range(len(rest)):
-        span = np.sqrt(vector[n, 0] ** 2 + vector[n, 1] ** 2 + vector[n, 2] ** 2)
-        closing = 0.0
-        for i in range(3):
-            closing += along[n, i] * stretching[n, i]
-        rate = (closing - rest_rate[n] * span / rest[n]) / rest[n]
-        _, slope, curve = taut_at(span / rest[n] - 1.0)
-        elastic = (slope + damping_time[n] * curve * rate) / rest[n]
-        viscous = stiffness[n] * damping_time[n] * slope / rest[n]
-        for j in range(3):
-            # How force changes as the far end moves along axis j.
-            turning = (stretching[n, j] - closing * along[n, j]) / span
-            rate_j = (turning - rest_rate[n] / rest[n] * along[n, j]) / rest[n]
-            force_j = stiffness[n] * (elastic * along[n, j] + damping_time[n] * slope * rate_j)
-            for i in range(3):
-                across = ((i == j) - along[n, i] * along[n, j]) / span
-                by_vector[n, i, j] = along[n, i] * force_j + force[n] * across
-                by_stretching[n, i, j] = viscous * along[n, i] * along[n, j]
+        pull_slopes_at(
+            stiffness[n],
+            damping_time[n],
+            vector[n],
+            stretching[n],
+            rest[n],
+            rest_rate[n],
+            force[n],
+            along[n],
+            by_vector[n],
+            by_stretching[n],
+        )
 
 
 @compiled
@@ -269,46 +244,22 @@ def _load_slopes(
     density: np.ndarray,
     flow: np.ndarray,
     vector: np.ndarray,
+    along: np.ndarray,
     by_vector: np.ndarray,
     by_velocity: np.ndarray,
 ) -> None:
-    """Slopes of `_drag` by the bar's vector and by its velocity, which is minus the flow's."""
-    along, normal = np.empty(3), np.empty(3)
-    by_along = np.empty((3, 3))
     for n in range(len(rest)):
-        span = np.sqrt(vector[n, 0] ** 2 + vector[n, 1] ** 2 + vector[n, 2] ** 2)
-        tangential = 0.0
-        for i in range(3):
-            along[i] = vector[n, i] / span
-            tangential += flow[n, i] * along[i]
-        square = STILL**2
-        for i in range(3):
-            normal[i] = flow[n, i] - tangential * along[i]
-            square += normal[i] ** 2
-        speed = np.sqrt(square)
-        sliding = np.sqrt(tangential**2 + STILL**2)
-        across = 0.5 * density[n] * rest[n] * normal_area[n]
-        lengthwise = 0.5 * density[n] * rest[n] * sliding_area[n]
-        by_sliding = lengthwise * (sliding + tangential**2 / sliding)
-        for i in range(3):
-            for j in range(3):
-                # normal · (I - t tᵀ) is normal itself, for it has no part along the bar.
-                plane = (i == j) - along[i] * along[j]
-                by_flow = across * (speed * plane + normal[i] * normal[j] / speed)
-                by_velocity[n, i, j] = -by_flow - by_sliding * along[i] * along[j]
-                # δ normal = -(along · flow + t · flow along) as the bar turns.
-                by_along[i, j] = -across * (
-                    speed * along[i] * flow[n, j]
-                    + tangential * (speed * (i == j) + normal[i] * normal[j] / speed)
-                )
-                by_along[i, j] += by_sliding * along[i] * flow[n, j]
-                by_along[i, j] += lengthwise * sliding * tangential * (i == j)
-        for i in range(3):
-            for j in range(3):
-                total = 0.0
-                for k in range(3):
-                    total += by_along[i, k] * ((k == j) - along[k] * along[j]) / span
-                by_vector[n, i, j] = total
+        load_slopes_at(
+            normal_area[n],
+            sliding_area[n],
+            rest[n],
+            density[n],
+            flow[n],
+            vector[n],
+            along[n],
+            by_vector[n],
+            by_velocity[n],
+        )
 
 
 def mass(bars: BarProperties, motion: BarMotion, water: Water) -> np.ndarray:
@@ -336,9 +287,4 @@ def _mass(
     matrices: np.ndarray,
 ) -> None:
     for n in range(len(own)):
-        square = vector[n, 0] ** 2 + vector[n, 1] ** 2 + vector[n, 2] ** 2
-        for i in range(3):
-            for j in range(3):
-                along = vector[n, i] * vector[n, j] / square
-                matrices[n, i, j] = (tangential[n] - normal[n]) * along
-            matrices[n, i, i] += own[n] + normal[n]
+        mass_at(own[n], normal[n], tangential[n], vector[n], matrices[n])

@@ -1,6 +1,7 @@
 """The sparsity pattern of a gear's matrices, found once when its model is built."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -37,17 +38,39 @@ class SparsityPattern:
         kept = np.where(free[self.indices] & free[columns], data, 0.0)
         return np.where((self.indices == columns) & ~free[columns], 1.0, kept)
 
-    def gather(self, blocks: list[np.ndarray]) -> np.ndarray:
-        """Assemble the blocks of plain, hung and rigged bars, boards, nodes and kite, in this
-        order, into data on the pattern.
+    @cached_property
+    def order(self) -> np.ndarray:
+        """Numbers of all bars that have a block: the plain ones first, then hung and rigged."""
+        return np.concatenate([self.plain, self.hung, self.rigged])
+
+    def times(self, data: np.ndarray, vector: np.ndarray) -> np.ndarray:
+        """Product of the matrix of ``data`` with a vector (dof,)."""
+        product = np.zeros(self.dof, np.result_type(data, vector))
+        _multiply(self.indices, self.indptr, data, vector, product)
+        return product
+
+    def add(self, blocks: list[np.ndarray], data: np.ndarray) -> None:
+        """Add the blocks of hung and rigged bars, boards, nodes and kite, in this order, to data
+        on the pattern that has those of plain bars.
         """
-        data = np.zeros(len(self.indices))
-        first = 0
+        first = 36 * len(self.plain)
         for block in blocks:
             values = block.ravel()
             _add(values, self.slot[first : first + len(values)], data)
             first += len(values)
-        return data
+
+
+@compiled
+def _multiply(
+    indices: np.ndarray,
+    indptr: np.ndarray,
+    data: np.ndarray,
+    vector: np.ndarray,
+    product: np.ndarray,
+) -> None:
+    for column in range(len(vector)):
+        for k in range(indptr[column], indptr[column + 1]):
+            product[indices[k]] += data[k] * vector[column]
 
 
 @compiled
@@ -88,7 +111,7 @@ def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> SparsityPat
         rigged=rigged,
         rig_board=board,
         rig_point=point,
-        slot=slot.ravel(),
+        slot=slot.ravel().astype(np.int32),
         indices=(slots % dof).astype(np.int32),
         indptr=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
     )

@@ -1,12 +1,41 @@
 """The sea: density and current as functions of depth."""
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from trawl_ros.model.compiled import alike, compiled
+
 ATMOSPHERE = 101_325.0
 """Pressure at the surface, Pa."""
+
+
+@compiled
+def current_at(
+    knots: np.ndarray, cubics: np.ndarray, z: Any, flow: np.ndarray, slope: np.ndarray
+) -> None:
+    """Current (3,) at one height and its derivative by height, from `Water.profile`."""
+    depth, place = -z.real, 0
+    inside = knots[0] < depth < knots[-1]
+    while place + 1 < len(knots) and knots[place + 1] <= depth:
+        place += 1
+    along = depth - knots[place] if inside else 0.0
+    for axis in range(2):
+        c3, c2 = cubics[place, axis, 0], cubics[place, axis, 1]
+        c1, c0 = cubics[place, axis, 2], cubics[place, axis, 3]
+        slope[axis] = -((3.0 * c3 * along + 2.0 * c2) * along + c1) if inside else 0.0
+        flow[axis] = ((c3 * along + c2) * along + c1) * along + c0 + slope[axis] * (z - z.real)
+    flow[2] = slope[2] = 0.0
+
+
+@compiled
+def _currents(
+    knots: np.ndarray, cubics: np.ndarray, z: np.ndarray, flow: np.ndarray, slope: np.ndarray
+) -> None:
+    for n in range(len(z)):
+        current_at(knots, cubics, z[n], flow[n], slope[n])
 
 
 @dataclass(frozen=True)
@@ -26,6 +55,9 @@ class Water:
     currents : (n, 2) array
         Current to the east and north at these depths, m/s. Between them it follows a
         monotone cubic, outside it stays constant.
+    profile : tuple
+        The same for compiled loops: depths (k,) and, from each on down, the cubics
+        (k, 2, 4) of both currents in the depth below it, highest power first.
     """
 
     density: float = 1025.0
@@ -33,14 +65,15 @@ class Water:
     gravity: float = 9.80665
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
     currents: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
-    _profile: tuple[PchipInterpolator, ...] = field(
-        init=False, repr=False, compare=False, default=()
-    )
+    profile: tuple[np.ndarray, np.ndarray] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        knots = np.zeros(1) if len(self.depths) == 0 else np.array(self.depths, float)
+        cubics = np.zeros((len(knots), 2, 4))
+        cubics[: len(self.currents), :, 3] = self.currents
         if len(self.depths) > 1:
-            profile = PchipInterpolator(self.depths, self.currents)
-            object.__setattr__(self, '_profile', (profile, profile.derivative()))
+            cubics[:-1] = PchipInterpolator(self.depths, self.currents).c.transpose(1, 2, 0)
+        object.__setattr__(self, 'profile', (knots, cubics))
 
     def with_more_current(self, depths: np.ndarray, currents: np.ndarray) -> 'Water':
         """Return the same sea with another current added to its own.
@@ -73,23 +106,14 @@ class Water:
 
     def current(self, z: np.ndarray) -> np.ndarray:
         """Velocity of the water at heights ``z``, shape (..., 3), m/s in ``map``."""
-        z = np.asarray(z)
-        flow = np.zeros(z.shape + (3,), dtype=z.dtype if np.iscomplexobj(z) else float)
-        if len(self.depths) == 1:
-            flow[..., :2] = self.currents[0]
-        elif len(self.depths) > 1:
-            depth = np.clip(-np.real(z), self.depths[0], self.depths[-1])
-            flow[..., :2] = self._profile[0](depth)
-            if np.iscomplexobj(z):
-                flow += 1j * np.imag(z)[..., None] * self.current_slope(np.real(z))
-        return flow
+        return self._currents_at(z)[0]
 
     def current_slope(self, z: np.ndarray) -> np.ndarray:
         """Derivative of the current by height, shape (..., 3), 1/s."""
-        z = np.asarray(z)
-        slope = np.zeros(z.shape + (3,))
-        if len(self.depths) > 1:
-            depth = np.clip(-z, self.depths[0], self.depths[-1])
-            inside = (-z > self.depths[0]) & (-z < self.depths[-1])
-            slope[..., :2] = -self._profile[1](depth) * inside[..., None]
-        return slope
+        return self._currents_at(z)[1]
+
+    def _currents_at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        (flat,) = alike(np.ravel(z))
+        flow, slope = np.empty((len(flat), 3), flat.dtype), np.empty((len(flat), 3))
+        _currents(*self.profile, flat, flow, slope)
+        return flow.reshape(*np.shape(z), 3), slope.reshape(*np.shape(z), 3)

@@ -13,8 +13,9 @@ from trawl_ros.lab.validation.closed_forms.board_law import compare
 from trawl_ros.lab.validation.closed_forms.catenary import END, START, elastic_catenary
 from trawl_ros.lab.validation.closed_forms.energy_budget import WireHaul
 from trawl_ros.lab.validation.closed_forms.power import WORKS, Ledger, strain_energy
+from trawl_ros.model.bar import SLACK_WIDTH
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.line import SLACK_WIDTH, taut
+from trawl_ros.model.line import taut
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.stepper import at_rest
 

@@ -10,7 +10,7 @@ from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, 
 from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
 from trawl_ros.model.assembly import block_forces
-from trawl_ros.model.line import SLACK_WIDTH
+from trawl_ros.model.bar import SLACK_WIDTH
 
 WEIGHT, STIFFNESS = WIRE['weight_in_water_n_m'], WIRE['stiffness_n']
 

@@ -28,9 +28,9 @@ from trawl_ros.model.assembly import (
     motion_of,
     points_of,
 )
+from trawl_ros.model.bar import SLACK_WIDTH
 from trawl_ros.model.board import world_inertia
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.line import SLACK_WIDTH
 from trawl_ros.model.numerics import dot, length
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.stepper import Motion

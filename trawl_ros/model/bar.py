@@ -1,0 +1,184 @@
+"""One straight bar: pull, drag, added mass and their slopes (eq. 20-24, 26), compiled.
+
+`trawl_ros.model.line` has the same for arrays of bars, `trawl_ros.model.bar_pass` sums it up over a
+gear. Vectors are arrays (3,), some of them to be filled in; numbers are real, or complex for a
+complex step where no slopes are asked for.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.model.compiled import compiled
+
+SLACK_WIDTH = 1e-4
+"""Half the range of strain over which slack passes smoothly into taut; eq. 20 has a kink."""
+
+STILL = 1e-6
+"""Speed (m/s) below which quadratic drag is rounded off, so that its derivative exists."""
+
+
+@compiled
+def between(
+    x: np.ndarray,
+    v: np.ndarray,
+    start: int,
+    end: int,
+    vector: np.ndarray,
+    stretching: np.ndarray,
+    velocity: np.ndarray,
+) -> Any:
+    """Fill in the motion of a bar between two points, and return its mean height."""
+    for i in range(3):
+        vector[i] = x[end, i] - x[start, i]
+        stretching[i] = v[end, i] - v[start, i]
+        velocity[i] = 0.5 * (v[start, i] + v[end, i])
+    return 0.5 * (x[start, 2] + x[end, 2])
+
+
+@compiled
+def taut_at(strain: Any) -> Any:
+    """Positive part of one strain with a rounded corner, and its first two derivatives."""
+    w = SLACK_WIDTH
+    if strain.real >= w:
+        return strain, 0 * strain + 1.0, 0.0
+    if strain.real > -w:
+        return (strain + w) ** 2 / (4 * w), (strain + w) / (2 * w), 1 / (2 * w)
+    return 0 * strain, 0 * strain, 0.0
+
+
+@compiled
+def tension_at(
+    stiffness: float,
+    damping_time: float,
+    vector: np.ndarray,
+    stretching: np.ndarray,
+    rest: Any,
+    rest_rate: Any,
+    along: np.ndarray,
+) -> Any:
+    """Tension of a bar (eq. 20, 21); ``along`` gets its unit vector."""
+    span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    closing = -rest_rate * span / rest
+    for i in range(3):
+        along[i] = vector[i] / span
+        closing += along[i] * stretching[i]
+    value, slope, _ = taut_at(span / rest - 1.0)
+    return stiffness * (value + damping_time * slope * closing / rest)
+
+
+@compiled
+def drag_at(
+    normal_area: float,
+    sliding_area: float,
+    rest: Any,
+    density: Any,
+    flow: np.ndarray,
+    along: np.ndarray,
+    force: np.ndarray,
+) -> None:
+    """Fill in the drag on a bar (eq. 23, 24); the areas include their coefficients."""
+    tangential = 0 * rest
+    for i in range(3):
+        tangential += flow[i] * along[i]
+    square = STILL**2 + 0 * rest
+    for i in range(3):
+        square += (flow[i] - tangential * along[i]) ** 2
+    half = 0.5 * density * rest
+    across = half * normal_area * np.sqrt(square)
+    sliding = np.sqrt(tangential**2 + STILL**2)
+    lengthwise = half * sliding_area * sliding * tangential
+    for i in range(3):
+        normal = flow[i] - tangential * along[i]
+        force[i] = across * normal + lengthwise * along[i]
+
+
+@compiled
+def pull_slopes_at(
+    stiffness: float,
+    damping_time: float,
+    vector: np.ndarray,
+    stretching: np.ndarray,
+    rest: float,
+    rest_rate: float,
+    force: float,
+    along: np.ndarray,
+    by_vector: np.ndarray,
+    by_stretching: np.ndarray,
+) -> None:
+    """Fill in the slopes (3, 3) of a bar's tension times its unit vector."""
+    span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    closing = 0.0
+    for i in range(3):
+        closing += along[i] * stretching[i]
+    rate = (closing - rest_rate * span / rest) / rest
+    _, slope, curve = taut_at(span / rest - 1.0)
+    elastic = (slope + damping_time * curve * rate) / rest
+    viscous = stiffness * damping_time * slope / rest
+    for j in range(3):
+        # How force changes as the far end moves along axis j.
+        turning = (stretching[j] - closing * along[j]) / span
+        rate_j = (turning - rest_rate / rest * along[j]) / rest
+        force_j = stiffness * (elastic * along[j] + damping_time * slope * rate_j)
+        for i in range(3):
+            across = ((i == j) - along[i] * along[j]) / span
+            by_vector[i, j] = along[i] * force_j + force * across
+            by_stretching[i, j] = viscous * along[i] * along[j]
+
+
+@compiled
+def load_slopes_at(
+    normal_area: float,
+    sliding_area: float,
+    rest: float,
+    density: float,
+    flow: np.ndarray,
+    vector: np.ndarray,
+    along: np.ndarray,
+    by_vector: np.ndarray,
+    by_velocity: np.ndarray,
+) -> None:
+    """Fill in the slopes (3, 3) of `drag_at` by the bar's vector and by its velocity, which is
+    minus the flow's.
+    """
+    span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    tangential = 0.0
+    for i in range(3):
+        tangential += flow[i] * along[i]
+    square = STILL**2
+    for i in range(3):
+        square += (flow[i] - tangential * along[i]) ** 2
+    speed = np.sqrt(square)
+    sliding = np.sqrt(tangential**2 + STILL**2)
+    across = 0.5 * density * rest * normal_area
+    lengthwise = 0.5 * density * rest * sliding_area
+    by_sliding = lengthwise * (sliding + tangential**2 / sliding)
+    for i in range(3):
+        normal_i = flow[i] - tangential * along[i]
+        turned = 0.0
+        for j in range(3):
+            normal_j = flow[j] - tangential * along[j]
+            bent = speed * (i == j) + normal_i * normal_j / speed
+            # normal · (I - t tᵀ) is normal itself, for it has no part along the bar.
+            by_flow = across * (bent - speed * along[i] * along[j])
+            by_velocity[i, j] = -by_flow - by_sliding * along[i] * along[j]
+            # δ normal = -(along · flow + t · flow along) as the bar turns.
+            by_along = -across * (speed * along[i] * flow[j] + tangential * bent)
+            by_along += by_sliding * along[i] * flow[j]
+            by_along += lengthwise * sliding * tangential * (i == j)
+            by_vector[i, j] = by_along / span
+            turned += by_along * along[j]
+        for j in range(3):
+            by_vector[i, j] -= turned * along[j] / span
+
+
+@compiled
+def mass_at(
+    own: float, normal: float, tangential: float, vector: np.ndarray, matrix: np.ndarray
+) -> None:
+    """Fill in the mass and added mass (3, 3) of a bar (eq. 25, 26)."""
+    square = vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2
+    for i in range(3):
+        for j in range(3):
+            matrix[i, j] = (tangential - normal) * vector[i] * vector[j] / square
+        matrix[i, i] += own + normal

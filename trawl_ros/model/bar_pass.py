@@ -1,0 +1,205 @@
+"""One pass over the bars of a gear: their forces, slopes and masses, summed up where they act.
+
+Ends of bars are numbered as in `trawl_ros.model.gear_model`; properties of bars are
+`BarProperties.columns`, those of the water `water_of`. Slots are those of the pattern, 36 for each
+plain bar; the 6 × 6 blocks of the other bars are left to be turned and placed by the caller.
+"""
+
+from typing import TypeAlias
+
+import numpy as np
+
+from trawl_ros.model.bar import (
+    between,
+    drag_at,
+    load_slopes_at,
+    mass_at,
+    pull_slopes_at,
+    tension_at,
+)
+from trawl_ros.model.compiled import compiled
+from trawl_ros.model.water import Water, current_at
+
+WaterTable: TypeAlias = tuple[float, float, float, np.ndarray, np.ndarray]
+
+
+def water_of(water: Water) -> WaterTable:
+    """The water as compiled loops take it."""
+    return (
+        float(water.density),
+        float(water.density_gradient),
+        float(water.gravity),
+        *water.profile,
+    )
+
+
+@compiled
+def add_bar_forces(
+    ends: np.ndarray,
+    x: np.ndarray,
+    v: np.ndarray,
+    rest: np.ndarray,
+    rest_rate: np.ndarray,
+    bars: tuple[np.ndarray, ...],
+    water: WaterTable,
+    total: np.ndarray,
+) -> None:
+    """Add to the points (p, 3) at both ends of the bars their pull and half of their load each."""
+    stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction, _, _ = bars
+    density, gradient, gravity, knots, cubics = water
+    vector, stretching, velocity = np.empty((3, 3), x.dtype)
+    along, flow, load = np.empty((3, 3), x.dtype)
+    shear = np.empty(3)
+    for n in range(len(ends)):
+        start, end = ends[n, 0], ends[n, 1]
+        height = between(x, v, start, end, vector, stretching, velocity)
+        force = tension_at(
+            stiffness[n], damping_time[n], vector, stretching, rest[n], rest_rate[n], along
+        )
+        here = density - gradient * height
+        current_at(knots, cubics, height, flow, shear)
+        for i in range(3):
+            flow[i] -= velocity[i]
+        areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
+        drag_at(areas[0], areas[1], rest[n], here, flow, along, load)
+        load[2] -= gravity * (mass[n] - here * volume[n]) * rest[n]
+        for i in range(3):
+            total[start, i] += force * along[i] + 0.5 * load[i]
+            total[end, i] += 0.5 * load[i] - force * along[i]
+
+
+@compiled
+def add_bar_blocks(
+    ends: np.ndarray,
+    order: np.ndarray,
+    x: np.ndarray,
+    v: np.ndarray,
+    rest: np.ndarray,
+    rest_rate: np.ndarray,
+    bars: tuple[np.ndarray, ...],
+    water: WaterTable,
+    slots: np.ndarray,
+    total: np.ndarray,
+    stiffness_data: np.ndarray,
+    damping_data: np.ndarray,
+    k_others: np.ndarray,
+    c_others: np.ndarray,
+    start_force: np.ndarray,
+) -> None:
+    """The same, with K = -∂F/∂q and C = -∂F/∂v of the bars.
+
+    ``order`` has the plain bars first, whose blocks are added into the data of both matrices; of
+    the others come the blocks (r, 6, 6), and the forces (r, 3) at their starts.
+    """
+    stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction, _, _ = bars
+    density, gradient, gravity, knots, cubics = water
+    plain = len(order) - len(k_others)
+    vector, stretching, velocity = np.empty((3, 3))
+    along, flow, load = np.empty((3, 3))
+    shear, by_height = np.empty((2, 3))
+    by_vector, by_stretching, load_by_vector, load_by_velocity = np.empty((4, 3, 3))
+    k, c = np.empty((2, 6, 6))
+    for number in range(len(order)):
+        n = order[number]
+        start, end = ends[n, 0], ends[n, 1]
+        height = between(x, v, start, end, vector, stretching, velocity)
+        force = tension_at(
+            stiffness[n], damping_time[n], vector, stretching, rest[n], rest_rate[n], along
+        )
+        here = density - gradient * height
+        current_at(knots, cubics, height, flow, shear)
+        for i in range(3):
+            flow[i] -= velocity[i]
+        areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
+        drag_at(areas[0], areas[1], rest[n], here, flow, along, load)
+        pull_slopes_at(
+            stiffness[n],
+            damping_time[n],
+            vector,
+            stretching,
+            rest[n],
+            rest_rate[n],
+            force,
+            along,
+            by_vector,
+            by_stretching,
+        )
+        load_slopes_at(
+            areas[0],
+            areas[1],
+            rest[n],
+            here,
+            flow,
+            vector,
+            along,
+            load_by_vector,
+            load_by_velocity,
+        )
+        for i in range(3):
+            by_height[i] = -gradient / here * load[i]
+            for j in range(3):
+                by_height[i] -= load_by_velocity[i, j] * shear[j]
+        by_height[2] -= gravity * gradient * volume[n] * rest[n]
+        load[2] -= gravity * (mass[n] - here * volume[n]) * rest[n]
+        for i in range(3):
+            total[start, i] += force * along[i] + 0.5 * load[i]
+            total[end, i] += 0.5 * load[i] - force * along[i]
+            for j in range(3):
+                pull, turned = by_vector[i, j], 0.5 * load_by_vector[i, j]
+                # Either end makes half of the bar's mean height and velocity.
+                sunk = 0.25 * by_height[i] if j == 2 else 0.0
+                k[i, j] = pull + turned - sunk
+                k[i, 3 + j] = -pull - turned - sunk
+                k[3 + i, j] = -pull + turned - sunk
+                k[3 + i, 3 + j] = pull - turned - sunk
+                damp, slowed = by_stretching[i, j], 0.25 * load_by_velocity[i, j]
+                c[i, j] = c[3 + i, 3 + j] = damp - slowed
+                c[i, 3 + j] = c[3 + i, j] = -damp - slowed
+        if number < plain:
+            at = 36 * number
+            for i in range(6):
+                for j in range(6):
+                    stiffness_data[slots[at]] += k[i, j]
+                    damping_data[slots[at]] += c[i, j]
+                    at += 1
+        else:
+            k_others[number - plain] = k
+            c_others[number - plain] = c
+            for i in range(3):
+                start_force[number - plain, i] = force * along[i] + 0.5 * load[i]
+
+
+@compiled
+def add_bar_masses(
+    ends: np.ndarray,
+    order: np.ndarray,
+    x: np.ndarray,
+    rest: np.ndarray,
+    bars: tuple[np.ndarray, ...],
+    water: WaterTable,
+    slots: np.ndarray,
+    data: np.ndarray,
+    others: np.ndarray,
+) -> None:
+    """Add half of the mass of the bars at either end, as `add_bar_blocks` does; of those that are
+    not plain comes one half (r, 3, 3).
+    """
+    _, _, mass, volume, _, _, _, _, added_normal, added_tangential = bars
+    plain = len(order) - len(others)
+    vector, matrix = np.empty(3), np.empty((3, 3))
+    for number in range(len(order)):
+        n = order[number]
+        start, end = ends[n, 0], ends[n, 1]
+        for i in range(3):
+            vector[i] = x[end, i] - x[start, i]
+        height = 0.5 * (x[start, 2] + x[end, 2])
+        displaced = 0.5 * (water[0] - water[1] * height) * volume[n] * rest[n]
+        normal, tangential = displaced * added_normal[n], displaced * added_tangential[n]
+        mass_at(0.5 * mass[n] * rest[n], normal, tangential, vector, matrix)
+        if number < plain:
+            for i in range(3):
+                for j in range(3):
+                    data[slots[36 * number + 6 * i + j]] += matrix[i, j]
+                    data[slots[36 * number + 6 * (3 + i) + 3 + j]] += matrix[i, j]
+        else:
+            others[number - plain] = matrix
