@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.board import (
-    LAW_RANGE,
     Board,
     coefficients_at,
     flow_at,
@@ -16,6 +15,7 @@ from trawl_ros.model.board import (
     own_load,
     pitch_and_roll,
 )
+from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_board
 from trawl_ros.model.numerics import STEP, about_axis, rotation
 from trawl_ros.model.water import Water

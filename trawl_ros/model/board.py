@@ -10,28 +10,19 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.model.board_law import (
+    fill_coefficients,
+    fill_flow,
+    fill_loads,
+    fill_total,
+)
+from trawl_ros.model.compiled import alike
 from trawl_ros.model.hooks import CoefficientModifier
-from trawl_ros.model.numerics import about_axis, angle, cross, dot, length, transpose
+from trawl_ros.model.numerics import about_axis, angle, transpose
 from trawl_ros.model.water import Water
 
 COEFFICIENTS = ('a1', 'c1', 'a2', 'c2', 'b3', 'c3', 'a4', 'c4', 'b5', 'c5', 'a6', 'c6')
 """Names of the twelve coefficients in the order of eq. 36."""
-
-LAW_RANGE = (0.0, np.radians(40.0))
-"""Attack angles (rad) for which eq. 14 holds as it stands."""
-
-LAW_END = (np.radians(-40.0), np.radians(90.0))
-"""Attack angles (rad) at which, outside that range, lift and moments have faded to nothing."""
-
-SLIP_LIMIT = np.radians(40.0)
-"""Slip angle (rad) beyond which its part of eq. 14 stays constant."""
-
-LEAST_ACROSS = np.cos(SLIP_LIMIT) ** 2
-"""Part of the squared flow that lies in the board's x-y plane below which, the flow then running
-along the span, the law's forces and moments fade with that part."""
-
-ROUNDING = np.radians(4.0)
-"""Width (rad) over which an angle comes to rest outside its range."""
 
 
 @dataclass(frozen=True)
@@ -101,47 +92,6 @@ class Board:
         return np.array([self.span, np.hypot(self.span, self.chord), self.chord])
 
 
-def _settled(value: np.ndarray, low: float, high: float) -> np.ndarray:
-    """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
-    over = np.real(value) - high
-    under = low - np.real(value)
-    if (over <= 0).all() and (under <= 0).all():
-        return value
-    above = np.where(
-        over < ROUNDING, value - (value - high) ** 2 / (2 * ROUNDING), high + ROUNDING / 2
-    )
-    below = np.where(
-        under < ROUNDING, value + (value - low) ** 2 / (2 * ROUNDING), low - ROUNDING / 2
-    )
-    return np.where(over > 0, above, np.where(under > 0, below, value))
-
-
-def _fading(attack: np.ndarray) -> np.ndarray:
-    """Fade factor of the law: 1 inside its range, falling smoothly to 0 at `LAW_END`."""
-    if ((np.real(attack) >= LAW_RANGE[0]) & (np.real(attack) <= LAW_RANGE[1])).all():
-        return np.ones_like(attack)
-    up = (attack - LAW_RANGE[1]) / (LAW_END[1] - LAW_RANGE[1])
-    down = (attack - LAW_RANGE[0]) / (LAW_END[0] - LAW_RANGE[0])
-    share = np.where(np.real(up) > 0, up, np.where(np.real(down) > 0, down, 0.0))
-    share = np.where(np.real(share) > 1, 1.0, share)
-    return 1.0 - share**2 * (3.0 - 2.0 * share)
-
-
-def _folded(attack: np.ndarray) -> np.ndarray:
-    """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
-    if (np.real(attack) >= 0).all():
-        return attack
-    dip = attack * (1.0 + attack / ROUNDING)
-    inner = np.where(np.real(attack) > -ROUNDING, dip, -attack - ROUNDING)
-    return np.where(np.real(attack) < 0, inner, attack)
-
-
-def _across(flow: np.ndarray) -> np.ndarray:
-    """Fade factor of α: 1, but smoothly 0 where the flow runs along the span and α is undefined."""
-    part = dot(flow[..., :2], flow[..., :2]) / (dot(flow, flow) + 1e-18) / LEAST_ACROSS
-    return np.where(np.real(part) < 1.0, part * (2.0 - part), 1.0)
-
-
 def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) -> np.ndarray:
     """The six force and moment coefficients at given angles (eq. 14).
 
@@ -159,21 +109,13 @@ def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) ->
         the slip's part fade, drag stays and never becomes thrust; outside ±40° of slip its
         part stays.
     """
-    a1, c1, a2, c2, b3, c3, a4, c4, b5, c5, a6, c6 = values
-    fade = _fading(attack)
-    alpha = _settled(attack, *LAW_RANGE)
-    beta = _settled(slip, -SLIP_LIMIT, SLIP_LIMIT)
-    resistance = a1 * _settled(_folded(attack), *LAW_RANGE) + c1
-    resistance = np.where(np.real(resistance) > 0, resistance, 0.0)
-    parts = [
-        resistance,
-        (a2 * alpha + c2) * fade,
-        b3 * beta * fade + c3,
-        (a4 * alpha + c4) * fade,
-        b5 * beta * fade + c5,
-        (a6 * alpha + c6) * fade,
-    ]
-    return np.stack(parts, -1)
+    shape = np.broadcast_shapes(np.shape(attack), np.shape(slip))
+    values, *angles = alike(
+        values, *(np.broadcast_to(given, shape).ravel() for given in (attack, slip))
+    )
+    coefficients = np.empty((*angles[0].shape, 6), values.dtype)
+    fill_coefficients(values, *angles, coefficients)
+    return coefficients.reshape(*shape, 6)
 
 
 def mirrored_axes(outward: np.ndarray) -> np.ndarray:
@@ -210,39 +152,44 @@ def flow_at(
     The board's velocity is the mean of its three fastening points' (eq. 4). Angles come from
     ``arctan2``, which equals eq. 1 and 2 within ±90° and does not fold beyond.
     """
-    mirror = mirrored_axes(outward)
-    middle = mirror * board.fastening_points.mean(0)
-    arm = np.einsum('...ij,...j->...i', rotation, middle)
-    water_velocity = water.current(position[..., 2])
-    relative = water_velocity - velocity - cross(rate, arm)
-    flow = mirror * np.einsum('...ji,...j->...i', rotation, relative)
-    ahead = -flow[..., 0]
+    shape = np.broadcast_shapes(
+        np.shape(outward), position.shape[:-1], rotation.shape[:-2], velocity.shape[:-1]
+    )
+    outward = np.broadcast_to(outward, shape)
+    relative = np.broadcast_to(water.current(position[..., 2]) - velocity, (*shape, 3))
+    middle, side, *moving = alike(
+        board.fastening_points.sum(0) / 3,
+        outward.ravel(),
+        np.broadcast_to(rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
+        relative.reshape(-1, 3),
+        np.broadcast_to(rate, (*shape, 3)).reshape(-1, 3),
+    )
+    flow = np.empty_like(moving[1])
+    attack, slip = np.empty((2, len(flow)), flow.dtype)
+    fill_flow(middle, side, *moving, flow, attack, slip)
     return BoardFlow(
-        attack=angle(flow[..., 1], ahead),
-        slip=angle(flow[..., 2], ahead),
-        flow=flow,
-        density=water.density_at(position[..., 2]),
+        attack=attack.reshape(shape),
+        slip=slip.reshape(shape),
+        flow=flow.reshape(*shape, 3),
+        density=np.broadcast_to(water.density_at(position[..., 2]), shape),
         lean=outward * rotation[..., 2, 1],
     )
 
 
-def hydrodynamics(board: Board, values: np.ndarray, flow: BoardFlow) -> tuple:
+def hydrodynamics(
+    board: Board, values: np.ndarray, flow: BoardFlow
+) -> tuple[np.ndarray, np.ndarray]:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
     coefficients = coefficients_at(values, flow.attack, board.slip_sign * flow.slip)
     if board.bend is not None:
         coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
-    coefficients = coefficients * _across(flow.flow)[..., None]
-    pressure = 0.5 * flow.density * board.area * dot(flow.flow, flow.flow)
-    if board.flow_axes:
-        plane = length(flow.flow[..., :2], 1e-9)
-        along = flow.flow[..., 0] / plane, flow.flow[..., 1] / plane
-        cx, cy = coefficients[..., 0], coefficients[..., 1]
-        ahead, across = cx * along[0] + cy * along[1], cx * along[1] - cy * along[0]
-        force = np.stack([ahead, across, coefficients[..., 2]], -1)
-    else:
-        force = coefficients[..., :3]
-    moment = coefficients[..., 3:] * board.levers * np.asarray(board.moment_signs)
-    return pressure[..., None] * force, pressure[..., None] * moment
+    density, along, c = alike(
+        flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
+    )
+    force, moment = np.empty((2, *along.shape), along.dtype)
+    levers = board.levers * np.asarray(board.moment_signs)
+    fill_loads(board.area, levers, board.flow_axes, density, along, c, force, moment)
+    return force.reshape(flow.flow.shape), moment.reshape(flow.flow.shape)
 
 
 def world_inertia(board: Board, outward: np.ndarray, rotation: np.ndarray) -> np.ndarray:
@@ -267,21 +214,21 @@ def own_load(
     Hydrodynamics (eq. 12-14), weight and buoyancy (eq. 19) and the gyroscopic moment
     -ω × Iω, which eq. 15 drops and which a spinning board needs to keep its angular momentum.
     """
-    mirror = mirrored_axes(outward)
     flow = flow_at(board, outward, position, rotation, velocity, rate, water)
-    force, moment = hydrodynamics(board, values, flow)
-    force = np.einsum('...ij,...j->...i', rotation, mirror * force)
-    # A moment is an axial vector: its mirror image carries the reflection's determinant too.
-    moment = np.einsum('...ij,...j->...i', rotation, outward[..., None] * mirror * moment)
-    # Each strip of a turning board meets the flow at an attack angle of its own: ω r / u.
-    turning = np.einsum('...ji,...j->...i', rotation, rate)
-    resistance = 0.5 * flow.density * length(flow.flow, 1e-9) * board.rotary_slope
-    slowing = -resistance[..., None] * board.rotary_areas * turning
-    moment = moment + np.einsum('...ij,...j->...i', rotation, slowing)
+    shape = flow.attack.shape
     heavy = (board.mass - flow.density * board.volume) * water.gravity
-    force = force - heavy[..., None] * np.array([0.0, 0.0, 1.0])
-    spin = np.einsum('...ij,...j->...i', world_inertia(board, outward, rotation), rate)
-    return np.concatenate([force, moment - cross(rate, spin)], -1)
+    given = alike(
+        heavy.ravel(),
+        np.broadcast_to(outward, shape).ravel(),
+        np.broadcast_to(rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
+        np.broadcast_to(rate, (*shape, 3)).reshape(-1, 3),
+        flow.density.ravel(),
+        flow.flow.reshape(-1, 3),
+        *(part.reshape(-1, 3) for part in hydrodynamics(board, values, flow)),
+    )
+    total = np.empty((len(given[0]), 6), given[0].dtype)
+    fill_total(board.inertia, board.rotary_slope * board.rotary_areas, *given, total)
+    return total.reshape(*shape, 6)
 
 
 def inclination(rotation: np.ndarray) -> np.ndarray:

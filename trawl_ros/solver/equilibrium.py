@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.effects.base.effect import Situation, sense
 from trawl_ros.effects.effect_set import effects_of
-from trawl_ros.model.board import LAW_RANGE
+from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import Observables, highest_point, observe, outward_normal_lift
 from trawl_ros.model.state import State, Tow

@@ -1,0 +1,204 @@
+"""The law of the otter board (eq. 1-4, 12-14, 19), compiled, one board after another.
+
+Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards; numbers are real, or complex
+for a complex step.
+"""
+
+from math import atan2
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.model.compiled import compiled
+
+LAW_RANGE = (0.0, np.radians(40.0))
+"""Attack angles (rad) for which eq. 14 holds as it stands."""
+
+LAW_END = (np.radians(-40.0), np.radians(90.0))
+"""Attack angles (rad) at which, outside that range, lift and moments have faded to nothing."""
+
+SLIP_LIMIT = np.radians(40.0)
+"""Slip angle (rad) beyond which its part of eq. 14 stays constant."""
+
+LEAST_ACROSS = np.cos(SLIP_LIMIT) ** 2
+"""Part of the squared flow that lies in the board's x-y plane below which, the flow then running
+along the span, the law's forces and moments fade with that part."""
+
+ROUNDING = np.radians(4.0)
+"""Width (rad) over which an angle comes to rest outside its range."""
+
+
+@compiled
+def angle_at(y: Any, x: Any) -> Any:
+    """``arctan2`` that carries an infinitesimal imaginary part along."""
+    square = x.real**2 + y.real**2
+    inverse = 1.0 / square if square > 0.0 else 0.0
+    slope = x.real * (y - y.real) - y.real * (x - x.real)
+    return atan2(y.real, x.real) + slope * inverse
+
+
+@compiled
+def _settled(value: Any, low: float, high: float) -> Any:
+    """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
+    if value.real > high:
+        if value.real - high < ROUNDING:
+            return value - (value - high) ** 2 / (2 * ROUNDING)
+        return 0 * value + high + ROUNDING / 2
+    if value.real < low:
+        if low - value.real < ROUNDING:
+            return value + (value - low) ** 2 / (2 * ROUNDING)
+        return 0 * value + low - ROUNDING / 2
+    return value
+
+
+@compiled
+def _fading(attack: Any) -> Any:
+    """Fade factor of the law: 1 inside its range, falling smoothly to 0 at `LAW_END`."""
+    share = 0 * attack
+    if attack.real > LAW_RANGE[1]:
+        share = (attack - LAW_RANGE[1]) / (LAW_END[1] - LAW_RANGE[1])
+    elif attack.real < LAW_RANGE[0]:
+        share = (attack - LAW_RANGE[0]) / (LAW_END[0] - LAW_RANGE[0])
+    if share.real > 1.0:
+        share = 0 * attack + 1.0
+    return 1.0 - share**2 * (3.0 - 2.0 * share)
+
+
+@compiled
+def _folded(attack: Any) -> Any:
+    """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
+    if attack.real >= 0.0:
+        return attack
+    if attack.real > -ROUNDING:
+        return attack * (1.0 + attack / ROUNDING)
+    return -attack - ROUNDING
+
+
+@compiled
+def _across(flow: np.ndarray) -> Any:
+    """Fade factor of α: 1, but smoothly 0 where the flow runs along the span and α is undefined."""
+    plane = flow[0] ** 2 + flow[1] ** 2
+    part = plane / (plane + flow[2] ** 2 + 1e-18) / LEAST_ACROSS
+    return part * (2.0 - part) if part.real < 1.0 else 0 * part + 1.0
+
+
+@compiled
+def fill_coefficients(
+    values: np.ndarray, attack: np.ndarray, slip: np.ndarray, coefficients: np.ndarray
+) -> None:
+    """Fill in the coefficients (n, 6) of eq. 14."""
+    a1, c1, a2, c2, b3, c3 = values[0], values[1], values[2], values[3], values[4], values[5]
+    a4, c4, b5, c5, a6, c6 = values[6], values[7], values[8], values[9], values[10], values[11]
+    for n in range(len(attack)):
+        fade = _fading(attack[n])
+        alpha = _settled(attack[n], LAW_RANGE[0], LAW_RANGE[1])
+        beta = _settled(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
+        resistance = a1 * _settled(_folded(attack[n]), LAW_RANGE[0], LAW_RANGE[1]) + c1
+        coefficients[n, 0] = resistance if resistance.real > 0.0 else 0 * resistance
+        coefficients[n, 1] = (a2 * alpha + c2) * fade
+        coefficients[n, 2] = b3 * beta * fade + c3
+        coefficients[n, 3] = (a4 * alpha + c4) * fade
+        coefficients[n, 4] = b5 * beta * fade + c5
+        coefficients[n, 5] = (a6 * alpha + c6) * fade
+
+
+@compiled
+def fill_flow(
+    middle: np.ndarray,
+    outward: np.ndarray,
+    rotation: np.ndarray,
+    water_less_velocity: np.ndarray,
+    rate: np.ndarray,
+    flow: np.ndarray,
+    attack: np.ndarray,
+    slip: np.ndarray,
+) -> None:
+    """Fill in the flow (n, 3) in the outward frame and its angles (n,), eq. 1-4."""
+    arm, relative = np.empty((2, 3), flow.dtype)
+    for n in range(len(flow)):
+        turn, spin = rotation[n], rate[n]
+        for i in range(3):
+            arm[i] = turn[i, 0] * middle[0] + turn[i, 2] * middle[2]
+            arm[i] += outward[n] * turn[i, 1] * middle[1]
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            relative[i] = water_less_velocity[n, i] - (spin[j] * arm[k] - spin[k] * arm[j])
+        for i in range(3):
+            sign = outward[n] if i == 1 else 0 * outward[n] + 1.0
+            flow[n, i] = sign * (
+                turn[0, i] * relative[0] + turn[1, i] * relative[1] + turn[2, i] * relative[2]
+            )
+        attack[n] = angle_at(flow[n, 1], -flow[n, 0])
+        slip[n] = angle_at(flow[n, 2], -flow[n, 0])
+
+
+@compiled
+def fill_loads(
+    area: float,
+    levers: np.ndarray,
+    flow_axes: bool,
+    density: np.ndarray,
+    flow: np.ndarray,
+    coefficients: np.ndarray,
+    force: np.ndarray,
+    moment: np.ndarray,
+) -> None:
+    """Fill in force and moment (n, 3) in the outward frame (eq. 12); levers have their signs."""
+    for n in range(len(flow)):
+        across, down = flow[n, 0] ** 2 + flow[n, 1] ** 2, flow[n, 2] ** 2
+        pressure = 0.5 * density[n] * area * (across + down) * _across(flow[n])
+        c, plane = coefficients[n], np.sqrt(across + 1e-18)
+        force[n, 0], force[n, 1] = pressure * c[0], pressure * c[1]
+        if flow_axes:
+            ahead, aside = flow[n, 0] / plane, flow[n, 1] / plane
+            force[n, 0] = pressure * (c[0] * ahead + c[1] * aside)
+            force[n, 1] = pressure * (c[0] * aside - c[1] * ahead)
+        force[n, 2] = pressure * c[2]
+        for i in range(3):
+            moment[n, i] = pressure * c[3 + i] * levers[i]
+
+
+@compiled
+def fill_total(
+    inertia: np.ndarray,
+    slowing: np.ndarray,
+    heavy: np.ndarray,
+    outward: np.ndarray,
+    rotation: np.ndarray,
+    rate: np.ndarray,
+    density: np.ndarray,
+    flow: np.ndarray,
+    force: np.ndarray,
+    moment: np.ndarray,
+    total: np.ndarray,
+) -> None:
+    """Fill in the whole load (n, 6) in fixed axes: weight, and moments of a turning board, too.
+
+    ``slowing`` (3,) are rotary slope times rotary areas, ``heavy`` (n,) weights in water.
+    """
+    turning, twist, spin = np.empty((3, 3), total.dtype)
+    for n in range(len(total)):
+        turn, side = rotation[n], outward[n]
+        speed = np.sqrt(flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2 + 1e-18)
+        for i in range(3):
+            # In the outward frame; a rate is an axial vector, as a moment is.
+            along = turn[0, i] * rate[n, 0] + turn[1, i] * rate[n, 1] + turn[2, i] * rate[n, 2]
+            turning[i] = along if i == 1 else side * along
+        for i in range(3):
+            # Each strip of a turning board meets the flow at an attack angle of its own: ω r / u.
+            twist[i] = moment[n, i] - 0.5 * density[n] * speed * slowing[i] * turning[i]
+        for i in range(3):
+            total[n, i] = turn[i, 0] * force[n, 0] + turn[i, 2] * force[n, 2]
+            total[n, i] += side * turn[i, 1] * force[n, 1]
+            # A moment's mirror image carries the reflection's determinant too.
+            total[n, 3 + i] = side * (turn[i, 0] * twist[0] + turn[i, 2] * twist[2])
+            total[n, 3 + i] += turn[i, 1] * twist[1]
+            spin[i] = 0 * speed
+            for j in range(3):
+                lever = turn[i, j] if j == 1 else side * turn[i, j]
+                for k in range(3):
+                    spin[i] += lever * inertia[j, k] * turning[k]
+        total[n, 2] -= heavy[n]
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            total[n, 3 + i] -= rate[n, j] * spin[k] - rate[n, k] * spin[j]
