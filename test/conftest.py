@@ -16,7 +16,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import Observables
+from trawl_ros.records.observables import Observables
 from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,

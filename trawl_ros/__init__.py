@@ -33,11 +33,12 @@ if TYPE_CHECKING:
     from trawl_ros.instruments.parameters import load_instruments
     from trawl_ros.instruments.suite import InstrumentSuite
     from trawl_ros.model.gear_model import GearModel, build_model
-    from trawl_ros.model.observables import Observables
     from trawl_ros.plots.album import plot
+    from trawl_ros.records.observables import Observables
     from trawl_ros.records.truth import Truth
     from trawl_ros.scenario.scenario import Scenario, load_scenario
-    from trawl_ros.simulation.simulation import Command, Simulation
+    from trawl_ros.simulation.command import Command
+    from trawl_ros.simulation.simulation import Simulation
     from trawl_ros.solver.equilibrium import SteadyState, steady_state
     from trawl_ros.solver.trim import trim
 
@@ -63,11 +64,12 @@ _MODULES = {
     'trawl_ros.instruments.parameters': ('load_instruments',),
     'trawl_ros.instruments.suite': ('InstrumentSuite',),
     'trawl_ros.model.gear_model': ('GearModel', 'build_model'),
-    'trawl_ros.model.observables': ('Observables',),
+    'trawl_ros.records.observables': ('Observables',),
     'trawl_ros.plots.album': ('plot',),
     'trawl_ros.core.progress': ('WorkProgress',),
     'trawl_ros.scenario.scenario': ('Scenario', 'load_scenario'),
-    'trawl_ros.simulation.simulation': ('Command', 'Simulation'),
+    'trawl_ros.simulation.command': ('Command',),
+    'trawl_ros.simulation.simulation': ('Simulation',),
     'trawl_ros.records.truth': ('Truth',),
     'trawl_ros.solver.equilibrium': ('SteadyState', 'steady_state'),
     'trawl_ros.solver.trim': ('trim',),

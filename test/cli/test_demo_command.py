@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from trawl_ros.bags.reader import summarise
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.topics import TRUTH, absolute
 
 pytestmark = pytest.mark.ros

@@ -11,7 +11,7 @@ from trawl_ros.estimation.bag_windows import BagTask, read_tow, read_tows
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.gear.load import load_gear
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import RangeSample
 from trawl_ros.records.topics import NAMESPACE
 

@@ -9,9 +9,10 @@ import pytest
 from trawl_ros.control.autotrawl import Autotrawl
 from trawl_ros.control.autotrawl_records import AutotrawlSettings
 from trawl_ros.records.samples import WinchSample
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.heave import regular_heave
 from trawl_ros.simulation.sea import Sea
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.simulation import Simulation
 
 SECOND = 1_000_000_000
 NOISE_M, NOISE_N = 0.05, 1600.0

@@ -15,7 +15,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.identification.plant import Look
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities

@@ -9,7 +9,8 @@ from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.equilibrium import steady_state
 
 

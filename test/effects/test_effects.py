@@ -10,7 +10,7 @@ from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 INPUTS = np.array([451.0, 449.0, 2.2])

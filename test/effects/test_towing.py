@@ -9,8 +9,9 @@ from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.sensor_effects import SensorEffects
 from trawl_ros.estimation.from_gear import board_prior, predictor_for
 from trawl_ros.gear.records import EffectRecord
-from trawl_ros.model.gear_model import build_model, build_water
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.water import build_water
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
@@ -18,7 +19,8 @@ from trawl_ros.records.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 
 EFFECTS = (
     EffectRecord(name='counter_scale', values={'scale': 0.03}),

@@ -18,8 +18,8 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES as GEAR_OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, INPUTS
+from trawl_ros.records.observables import OBSERVABLES as GEAR_OBSERVABLES
 from trawl_ros.records.samples import (
     AttitudeSample,
     HeadingSample,

@@ -13,7 +13,7 @@ import pytest
 
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.records import WindowOptions
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import (
     AttitudeSample,
     HeadingSample,

@@ -9,8 +9,8 @@ from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.report.report import report
 from trawl_ros.estimation.report.result import result
 from trawl_ros.gear.load import load_gear
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.topics import NAMESPACE
 from trawl_ros.scenario.scenario import load_scenario, true_coefficients
 

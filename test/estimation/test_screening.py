@@ -11,8 +11,8 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.estimation.windows.unit_errors import unit_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 LENGTH, SPEED = 500.0, 2.0

@@ -30,7 +30,8 @@ from trawl_ros.records.samples import (
 )
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import NetTruth, SchoolTruth, SeabedTruth, Truth
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 
 SEA = Surroundings(Water().pressure)
 DEPTH = 100.0

@@ -16,9 +16,10 @@ from trawl_ros.nodes.runtime.partial_truth import partial_truth
 from trawl_ros.records.samples import RangeSample
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import SchoolTruth, SeabedTruth, Truth, VesselTruth
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.sea import School, Sea
 from trawl_ros.simulation.seabed import Seabed
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.simulation import Simulation
 
 DRAUGHT = 6.5
 SEA = Surroundings(Water().pressure)

@@ -7,9 +7,10 @@ import pytest
 
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.observables import observe
 from trawl_ros.model.state import Tow, mirrored
 from trawl_ros.model.water import Water
+from trawl_ros.records.observables import OBSERVABLES
 
 FLIP = np.array([1.0, -1.0, 1.0])
 

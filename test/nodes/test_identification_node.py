@@ -19,13 +19,14 @@ from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
 from trawl_ros.instruments.suite import InstrumentSuite  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.diagnostics import ERROR, WARN  # noqa: E402
-from trawl_ros.messages.estimates import COEFFICIENTS  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.records.coefficients import COEFFICIENTS  # noqa: E402
 from trawl_ros.records.surroundings import Surroundings  # noqa: E402
 from trawl_ros.records.topics import absolute  # noqa: E402
-from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
+from trawl_ros.simulation.command import Command  # noqa: E402
+from trawl_ros.simulation.simulation import Simulation  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -25,7 +25,8 @@ from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.records.truth import SchoolTruth, SeabedTruth, Truth  # noqa: E402
 from trawl_ros.scenario.sea import build_surroundings  # noqa: E402
-from trawl_ros.simulation.simulation import Command, Simulation  # noqa: E402
+from trawl_ros.simulation.command import Command  # noqa: E402
+from trawl_ros.simulation.simulation import Simulation  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

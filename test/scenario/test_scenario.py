@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.core.errors import ScenarioError
 from trawl_ros.core.resources import share_path
 from trawl_ros.scenario.scenario import load_scenario
-from trawl_ros.simulation.simulation import Command
+from trawl_ros.simulation.command import Command
 
 TRIAL = """\
 description: two lengths and a turn

@@ -8,9 +8,10 @@ import pytest
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.truth import Truth
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.heave import Heave, irregular_heave, regular_heave
 from trawl_ros.simulation.sea import Sea
-from trawl_ros.simulation.simulation import Command, Simulation, tow_of
+from trawl_ros.simulation.simulation import Simulation, tow_of
 
 START = Command(500.0, 500.0, 2.1)
 

@@ -6,7 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.simulation.simulation import Command, Simulation, tow_of
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation, tow_of
 
 
 @pytest.fixture(scope='module')

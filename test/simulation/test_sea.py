@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.sea import School, Sea
 from trawl_ros.simulation.seabed import Seabed, SeabedTouched
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.simulation import Simulation
 
 START = Command(500.0, 500.0, 2.1)
 

@@ -8,7 +8,8 @@ import pytest
 from trawl_ros.core.errors import NoSteadyState, ScenarioError
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.truth import Truth
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.equilibrium import steady_state
 
 START = Command(500.0, 500.0, 2.1)

@@ -11,8 +11,9 @@ import pytest
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import forces
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import OBSERVABLES, Observables, outward_normal_lift
+from trawl_ros.model.observables import outward_normal_lift
 from trawl_ros.model.water import Water
+from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.observables import observe
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.first_guess import at_velocity
 from trawl_ros.solver.operating_point import steady_tow

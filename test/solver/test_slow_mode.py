@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.slow_mode import NET, PORT, STARBOARD, slow_mode

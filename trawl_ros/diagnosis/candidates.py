@@ -12,8 +12,8 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 WIDE = 5.0

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from trawl_ros.diagnosis.evidence import BLIND, evidence
 from trawl_ros.diagnosis.locating import Where
@@ -40,7 +40,7 @@ def changes(seen: ScoreTest) -> tuple[Where, ...]:
     found = evidence(seen.fit, columns, np.ones(len(jumps)), weights=seen.weights)
     information = np.diag(found.information)
     z = found.score / np.sqrt(np.where(information > BLIND, information, np.inf))
-    least = float(norm.isf(0.5 * CHANCE / len(jumps)))
+    least = float(-ndtri(0.5 * CHANCE / len(jumps)))
     usual = evidence(seen.fit, seen.shapes, np.ones(len(seen.patterns)), weights=seen.weights)
     together = {name: usual.chi2(block) for name, block in blocks_of(seen.patterns, 0).items()}
     told = []

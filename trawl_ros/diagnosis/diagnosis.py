@@ -23,8 +23,8 @@ from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
 
 PLACEBO_STEPS = 3

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.special import chdtrc, ndtri
 
 from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, spread
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance, triangular
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 BLIND = 1e-9
 """Information below this part of what an effect has without coefficients is none."""
@@ -145,7 +145,14 @@ def evidence(
 
 def tail(value: float, freedom: int) -> float:
     """-log₁₀ of the probability that χ² of so many degrees of freedom exceeds a value."""
-    return float(-chi2.logsf(value, freedom) / np.log(10.0))
+    return float(_tails(np.array(value), freedom))
+
+
+def _tails(values: np.ndarray, freedom: int) -> np.ndarray:
+    # Beyond the smallest number it is infinite.
+    with np.errstate(divide='ignore'):
+        tails: np.ndarray = -np.log(chdtrc(freedom, values)) / np.log(10.0)
+    return tails
 
 
 def threshold(
@@ -162,7 +169,7 @@ def threshold(
             continue
         chosen = draws[:, list(block)]
         sizes = np.einsum('ni,ij,nj->n', chosen, inverse, chosen)
-        largest = np.maximum(largest, -chi2.logsf(sizes, freedom) / np.log(10.0))
+        largest = np.maximum(largest, _tails(sizes, freedom))
     return float(np.quantile(largest, 1.0 - false_alarms))
 
 
@@ -170,5 +177,5 @@ def detectable(
     found: Evidence, block: Sequence[int], limit: float, doubt: float = 1.0
 ) -> np.ndarray:
     """Detectable sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
-    sigmas = doubt * float(norm.isf(0.5 * 10.0**-limit)) + POWER
+    sigmas = doubt * float(-ndtri(0.5 * 10.0**-limit)) + POWER
     return sigmas * found.std(block)

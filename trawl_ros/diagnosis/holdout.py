@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.report.residuals import residuals
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 FEWEST_TOWS = 3

@@ -6,7 +6,7 @@ from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.screening import Screening
 from trawl_ros.estimation.windows.over_ground import OverGround
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 UNIT = 'wrong unit'

@@ -13,9 +13,9 @@ from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 STATES = 3

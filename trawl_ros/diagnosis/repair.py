@@ -18,7 +18,7 @@ from trawl_ros.gear.records import (
     ProvenanceRecord,
     SourceRecord,
 )
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 RECORDINGS = ('.mcap', '.db3', '.csv')
 PIECE = 1 << 20

@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
 from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 DRAWS = 100
 """Number of bootstrap draws of the tows."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from trawl_ros.effects.base.effect import Effect, Readings, Situation
 from trawl_ros.effects.empirical.library import dictionary
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.records import EffectRecord, GearRecord
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class EffectSet:
             inputs = active.effect.apply_to_inputs(active.values, inputs, at)
         return inputs
 
-    def gear(self, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with all effects applied."""
         for active in self.effects:
             model = active.effect.gear(active.values, model, at)

@@ -10,8 +10,8 @@ import numpy as np
 
 from trawl_ros.effects.base.effect import Readings, Situation
 from trawl_ros.effects.effect_set import EffectSet
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.model.water import Water
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,

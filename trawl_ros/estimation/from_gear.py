@@ -9,8 +9,9 @@ from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.gear_model import build_model, build_water
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.water import build_water
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 NET_STD = 0.2

@@ -3,9 +3,12 @@
 from itertools import pairwise
 from typing import Annotated, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
@@ -136,6 +139,10 @@ class CoefficientsRecord(Record):
     c5: float
     a6: float
     c6: float
+
+    def array(self) -> NDArray[np.float64]:
+        """Values (12,), in the order of `COEFFICIENTS`."""
+        return np.array([getattr(self, name) for name in COEFFICIENTS])
 
 
 class InertiaRecord(Record):

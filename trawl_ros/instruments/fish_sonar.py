@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.special import expit
 
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.errors.random_streams import generator
@@ -108,7 +107,8 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         ):
             return None
         excess = self.echo_level(school, distance, depth) - record.half_seen_db
-        if lucky > expit(excess / record.fading_db):
+        # The logistic function, in a form that does not overflow.
+        if lucky > 0.5 * (1.0 + math.tanh(0.5 * excess / record.fading_db)):
             return None
         ahead = shown_range * math.cos(shown_tilt)
         return sonar + np.array(

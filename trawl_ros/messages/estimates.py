@@ -11,9 +11,7 @@ from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import joint_column
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import header
-
-COEFFICIENTS = ('a1', 'c1', 'a2', 'c2', 'b3', 'c3', 'a4', 'c4', 'b5', 'c5', 'a6', 'c6')
-"""The board's coefficients in the order of eq. 36, which is the order in messages."""
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 LABEL = ','.join(COEFFICIENTS)
 

@@ -18,7 +18,8 @@ from trawl_ros.model.bar import (
     tension_at,
 )
 from trawl_ros.model.compiled import compiled
-from trawl_ros.model.water import Water, current_at
+from trawl_ros.model.current import current_at
+from trawl_ros.model.water import Water
 
 WaterTable: TypeAlias = tuple[float, float, float, np.ndarray, np.ndarray]
 

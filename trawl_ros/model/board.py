@@ -21,9 +21,6 @@ from trawl_ros.model.hooks import CoefficientModifier
 from trawl_ros.model.numerics import about_axis, angle, transpose
 from trawl_ros.model.water import Water
 
-COEFFICIENTS = ('a1', 'c1', 'a2', 'c2', 'b3', 'c3', 'a4', 'c4', 'b5', 'c5', 'a6', 'c6')
-"""Names of the twelve coefficients in the order of eq. 36."""
-
 
 @dataclass(frozen=True)
 class Board:

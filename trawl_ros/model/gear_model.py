@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.gear.records import BridleRecord, FrameRopeRecord, GearRecord, RopeRecord
-from trawl_ros.model.board import COEFFICIENTS, Board
+from trawl_ros.model.board import Board
 from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import Kite, KiteNodes
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.netting import NetMesh, build_net
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
-from trawl_ros.model.water import Water
+from trawl_ros.model.water import Water, build_water
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 OUTWARD = np.array([1.0, -1.0])
 """Sign of y that points away from the net's middle: port, starboard."""
@@ -178,18 +179,6 @@ def _rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:
         rope.tangential_drag,
         rope.added_mass_normal,
         rope.added_mass_tangential,
-    )
-
-
-def build_water(gear: GearRecord) -> Water:
-    """The water of a gear file."""
-    levels = gear.water.current
-    return Water(
-        density=gear.water.density_kg_m3,
-        density_gradient=gear.water.density_gradient_kg_m4,
-        gravity=gear.water.gravity_m_s2,
-        depths=np.array([level.depth_m for level in levels]),
-        currents=np.array([[level.east_m_s, level.north_m_s] for level in levels]).reshape(-1, 2),
     )
 
 

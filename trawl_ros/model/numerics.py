@@ -7,7 +7,6 @@ every operation to be analytic, which numpy's ``abs``, ``norm`` and ``arctan2`` 
 from typing import cast
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 STEP = 1e-30
 """Size of the imaginary step; no difference is taken, so it may be this small."""
@@ -73,11 +72,6 @@ def rotation(vector: np.ndarray) -> np.ndarray:
     turned = sine[..., None, None] * skew(vector) + versine[..., None, None] * outer(vector, vector)
     turned += (1 - versine * square)[..., None, None] * np.eye(3)
     return turned
-
-
-def rotation_vector(matrix: np.ndarray) -> np.ndarray:
-    """Rotation vector (..., 3) of a rotation matrix, by way of scipy."""
-    return Rotation.from_matrix(matrix).as_rotvec()
 
 
 def about_axis(axis: int, radians: float) -> np.ndarray:

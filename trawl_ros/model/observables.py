@@ -1,6 +1,4 @@
-"""Observables of a gear: depths, spreads, openings, warp tensions and board angles."""
-
-from dataclasses import dataclass, fields
+"""Observation: the observables of a state of the gear."""
 
 import numpy as np
 
@@ -9,59 +7,7 @@ from trawl_ros.model.board import flow_at, inclination, pitch_and_roll
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.numerics import angle, distance, length
 from trawl_ros.model.state import State, Tow
-
-
-@dataclass(frozen=True)
-class Observables:
-    """Observables of one state; lengths in m, tensions in N, angles in rad.
-
-    ``net_depth`` is that of the headrope's centre; ``vertical_opening`` is headrope above
-    footrope at the centre, ``horizontal_opening`` the distance between the upper wing tips.
-    Tension, ``divergence`` (outward positive, against the ship's course) and ``declination``
-    (down positive) belong to the warp at its block. ``pitch`` is nose down and ``roll`` top to
-    starboard positive in the door frame; ``attack``, ``slip``, ``inclination`` are α, β, δ.
-    """
-
-    door_spread: float
-    port_door_depth: float
-    starboard_door_depth: float
-    port_tension: float
-    starboard_tension: float
-    net_depth: float
-    vertical_opening: float
-    horizontal_opening: float
-    port_pitch: float
-    starboard_pitch: float
-    port_roll: float
-    starboard_roll: float
-    port_divergence: float
-    starboard_divergence: float
-    port_declination: float
-    starboard_declination: float
-    port_attack: float
-    starboard_attack: float
-    port_slip: float
-    starboard_slip: float
-    port_inclination: float
-    starboard_inclination: float
-
-    def array(self) -> np.ndarray:
-        """All observables (n_observables,) in the order of `OBSERVABLES`."""
-        return np.array([getattr(self, name) for name in OBSERVABLES])
-
-    @property
-    def door_depth(self) -> float:
-        """Mean depth of both doors, m."""
-        return 0.5 * (self.port_door_depth + self.starboard_door_depth)
-
-    @property
-    def warp_tension(self) -> float:
-        """Mean tension of both warps at the block, N."""
-        return 0.5 * (self.port_tension + self.starboard_tension)
-
-
-OBSERVABLES = tuple(field.name for field in fields(Observables))
-"""Names of the observables, in order."""
+from trawl_ros.records.observables import Observables
 
 
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:

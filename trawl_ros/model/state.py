@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from trawl_ros.model.numerics import rotation, rotation_vector
+from trawl_ros.model.numerics import rotation
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ def halfway(first: State, last: State, h: float) -> State:
         last.board_velocities,
     )
     turn = last.board_rotations @ np.swapaxes(first.board_rotations, 1, 2)
-    turns = rotation_vector(turn), first.board_rates, last.board_rates
+    turns = Rotation.from_matrix(turn).as_rotvec(), first.board_rates, last.board_rates
     return State(
         nodes=first.nodes + place(*nodes),
         board_positions=first.board_positions + place(*boards),

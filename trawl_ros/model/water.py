@@ -1,41 +1,14 @@
 """The sea: density and current as functions of depth."""
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
-from trawl_ros.model.compiled import alike, compiled
+from trawl_ros.gear.records import GearRecord
 
 ATMOSPHERE = 101_325.0
 """Pressure at the surface, Pa."""
-
-
-@compiled
-def current_at(
-    knots: np.ndarray, cubics: np.ndarray, z: Any, flow: np.ndarray, slope: np.ndarray
-) -> None:
-    """Current (3,) at one height and its derivative by height, from `Water.profile`."""
-    depth, place = -z.real, 0
-    inside = knots[0] < depth < knots[-1]
-    while place + 1 < len(knots) and knots[place + 1] <= depth:
-        place += 1
-    along = depth - knots[place] if inside else 0.0
-    for axis in range(2):
-        c3, c2 = cubics[place, axis, 0], cubics[place, axis, 1]
-        c1, c0 = cubics[place, axis, 2], cubics[place, axis, 3]
-        slope[axis] = -((3.0 * c3 * along + 2.0 * c2) * along + c1) if inside else 0.0
-        flow[axis] = ((c3 * along + c2) * along + c1) * along + c0 + slope[axis] * (z - z.real)
-    flow[2] = slope[2] = 0.0
-
-
-@compiled
-def _currents(
-    knots: np.ndarray, cubics: np.ndarray, z: np.ndarray, flow: np.ndarray, slope: np.ndarray
-) -> None:
-    for n in range(len(z)):
-        current_at(knots, cubics, z[n], flow[n], slope[n])
 
 
 @dataclass(frozen=True)
@@ -55,9 +28,6 @@ class Water:
     currents : (n, 2) array
         Current to the east and north at these depths, m/s. Between them it follows a
         monotone cubic, outside it stays constant.
-    profile : tuple
-        The same for compiled loops: depths (k,) and, from each on down, the cubics
-        (k, 2, 4) of both currents in the depth below it, highest power first.
     """
 
     density: float = 1025.0
@@ -65,15 +35,21 @@ class Water:
     gravity: float = 9.80665
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
     currents: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
-    profile: tuple[np.ndarray, np.ndarray] = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def profile(self) -> tuple[np.ndarray, np.ndarray]:
+        """The current for compiled loops: depths (k,) and, from each on down, the cubics
+        (k, 2, 4) of both currents in the depth below it, highest power first.
+        """
+        # Instruments ask for pressures and depths only, and have no use for scipy.
+        from scipy.interpolate import PchipInterpolator
+
         knots = np.zeros(1) if len(self.depths) == 0 else np.array(self.depths, float)
         cubics = np.zeros((len(knots), 2, 4))
         cubics[: len(self.currents), :, 3] = self.currents
         if len(self.depths) > 1:
             cubics[:-1] = PchipInterpolator(self.depths, self.currents).c.transpose(1, 2, 0)
-        object.__setattr__(self, 'profile', (knots, cubics))
+        return knots, cubics
 
     def with_more_current(self, depths: np.ndarray, currents: np.ndarray) -> 'Water':
         """Return the same sea with another current added to its own.
@@ -113,7 +89,23 @@ class Water:
         return self._currents_at(z)[1]
 
     def _currents_at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        # As above, for the compiler.
+        from trawl_ros.model.compiled import alike
+        from trawl_ros.model.current import fill_currents
+
         (flat,) = alike(np.ravel(z))
         flow, slope = np.empty((len(flat), 3), flat.dtype), np.empty((len(flat), 3))
-        _currents(*self.profile, flat, flow, slope)
+        fill_currents(*self.profile, flat, flow, slope)
         return flow.reshape(*np.shape(z), 3), slope.reshape(*np.shape(z), 3)
+
+
+def build_water(gear: GearRecord) -> Water:
+    """The water of a gear file."""
+    levels = gear.water.current
+    return Water(
+        density=gear.water.density_kg_m3,
+        density_gradient=gear.water.density_gradient_kg_m4,
+        gravity=gear.water.gravity_m_s2,
+        depths=np.array([level.depth_m for level in levels]),
+        currents=np.array([[level.east_m_s, level.north_m_s] for level in levels]).reshape(-1, 2),
+    )

@@ -11,7 +11,6 @@ from std_srvs.srv import Trigger
 from trawl_ros.core.files import empty_folder
 from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, unread
 from trawl_ros.diagnosis.report.sentences import headline
-from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.estimation.from_gear import finder_for
 from trawl_ros.estimation.windows.records import RejectedWindow, SteadyWindow
 from trawl_ros.gear.load import load_gear
@@ -132,6 +131,9 @@ class DiscrepancyNode(TrawlNode):
             found = unread(self._gear, (), trouble or 'no steady window has been heard')
         said = f'{found.verdict}: {headline(found)}'
         if self._folder is not None:
+            # Figures bring matplotlib, which the node needs at its end only.
+            from trawl_ros.diagnosis.report.writing import write_diagnosis
+
             write_diagnosis(found, (), self._folder)
             said = f'{self._folder}: {said}'
         if trouble:

@@ -16,7 +16,6 @@ from trawl_ros.estimation.from_gear import estimator_options, identification_for
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.planning.next_manoeuvre import Advice, Adviser
 from trawl_ros.estimation.report.report import report
-from trawl_ros.estimation.report.writing import write_report
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
@@ -201,6 +200,9 @@ class IdentificationNode(TrawlNode):
             raise TrawlError(identification.why_not() or 'nothing is estimated')
         if self._folder is None:
             return f'{found.windows} windows used; {found.reason}'
+        # Figures bring matplotlib, which the node needs at its end only.
+        from trawl_ros.estimation.report.writing import write_report
+
         write_report(report(identification, self._truth, gear=self._gear), self._folder)
         return f'{self._folder}: identification.json of {found.windows} windows'
 

@@ -21,7 +21,7 @@ from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.model.gear_model import build_water
+from trawl_ros.model.water import build_water
 from trawl_ros.nodes.runtime.credit import ConsumerProgress, Consumers
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text

@@ -10,7 +10,8 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
-from trawl_ros.simulation.simulation import NANOSECONDS, Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import NANOSECONDS, Simulation
 from trawl_ros.solver.stepper import StepFailed
 
 DEFAULT_START = (500.0, 2.0)

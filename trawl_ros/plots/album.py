@@ -11,7 +11,7 @@ from trawl_ros.core.files import empty_folder, made_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.gear_model import build_water
+from trawl_ros.model.water import build_water
 from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure, left_out

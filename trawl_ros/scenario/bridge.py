@@ -20,7 +20,7 @@ from trawl_ros.records.samples import (
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.scenario import Scenario
-from trawl_ros.simulation.simulation import Command
+from trawl_ros.simulation.command import Command
 
 
 class Bridge:

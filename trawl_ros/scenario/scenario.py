@@ -22,14 +22,12 @@ from trawl_ros.instruments.parameters import (
     default_instruments_with,
     load_instruments,
 )
-from trawl_ros.instruments.suite import InstrumentSuite
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.gear_model import build_water
+from trawl_ros.model.water import build_water
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.scenario.driving import NOBODY, AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.records import ScenarioRecord, SteadyStartRecord, StepRecord
 from trawl_ros.scenario.sea import build_surroundings
-from trawl_ros.simulation.simulation import Command
+from trawl_ros.simulation.command import Command
 
 
 @dataclass(frozen=True)
@@ -184,6 +182,11 @@ def load_scenario(path: str | Path) -> Scenario:
 
 def _check_faults(scenario: Scenario) -> None:
     """Check with the instruments that each fault is possible at its place."""
+    if not scenario.faults:
+        return
+    # All instruments, of which a node needs one group only.
+    from trawl_ros.instruments.suite import InstrumentSuite
+
     panel = InstrumentSuite(
         scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
     ).panel
@@ -243,5 +246,4 @@ def _lengths(record: SteadyStartRecord | StepRecord) -> tuple[float | None, floa
 
 def true_coefficients(path: str | Path) -> np.ndarray:
     """Read the coefficients (12,) that a scenario's plant has, in the order of eq. 36."""
-    values = load_scenario(path).plant.board.coefficients
-    return np.array([getattr(values, name) for name in COEFFICIENTS])
+    return load_scenario(path).plant.board.coefficients.array()

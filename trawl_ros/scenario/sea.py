@@ -10,8 +10,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.gear_model import build_water
-from trawl_ros.model.water import Water
+from trawl_ros.model.water import Water, build_water
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.simulation.heave import Heave, irregular_heave, regular_heave
 from trawl_ros.simulation.sea import School, Sea

@@ -13,7 +13,7 @@ from trawl_ros.core.geodesy import Datum
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.scenario.driving import SteerRecord
 from trawl_ros.scenario.scenario import Scenario
-from trawl_ros.simulation.simulation import Command
+from trawl_ros.simulation.command import Command
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 
 Found = dict[tuple[Command, float], SteadyState]

@@ -2,13 +2,16 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.core.errors import ScenarioError
-from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.state import State
 from trawl_ros.records.truth import SIDES
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
+    from trawl_ros.model.state import State
 
 
 class SeabedTouched(ScenarioError):
@@ -33,7 +36,7 @@ class Seabed:
         return np.interp(places[..., :2] @ along, self.distances, self.depths)
 
 
-def require_clear(seabed: Seabed, model: GearModel, state: State) -> None:
+def require_clear(seabed: Seabed, model: 'GearModel', state: 'State') -> None:
     """Check that no node and no door of the gear has reached the bottom.
 
     Raises

@@ -10,6 +10,7 @@ from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import Tow, halfway
 from trawl_ros.records.truth import GearPicture, Truth
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.reading import read_picture, read_truth
 from trawl_ros.simulation.sea import Sea
 from trawl_ros.simulation.seabed import require_clear
@@ -22,18 +23,6 @@ NANOSECONDS = 1_000_000_000
 CALM = Sea()
 HALVINGS = 6
 """Number of halvings of a time step that fails before the tow is given up."""
-
-
-@dataclass(frozen=True)
-class Command:
-    """Command to ship and winches: warp lengths (m), speed through the water (m/s),
-    rate of turn (rad/s, to port positive).
-    """
-
-    port_length: float
-    starboard_length: float
-    speed: float
-    turn_rate: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
-from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.observables import observe
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
 

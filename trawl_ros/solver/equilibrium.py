@@ -9,8 +9,9 @@ from trawl_ros.effects.base.effect import Situation, sense
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import Observables, highest_point, observe, outward_normal_lift
+from trawl_ros.model.observables import highest_point, observe, outward_normal_lift
 from trawl_ros.model.state import State, Tow
+from trawl_ros.records.observables import Observables
 from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow

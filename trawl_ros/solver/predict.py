@@ -11,8 +11,8 @@ import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.effect_sensitivity import by_effects, chained, sensor_slopes, shown_values
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint

@@ -10,11 +10,12 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.model.assembly import board_loads, forces, linearised
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
-from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
 

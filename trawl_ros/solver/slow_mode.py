@@ -13,7 +13,8 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
-from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.observables import observe
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import factorised
 

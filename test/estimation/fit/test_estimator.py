@@ -12,7 +12,7 @@ from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import linearise
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def estimated(sea, model, prior, windows, **options):

@@ -13,8 +13,9 @@ from trawl_ros.estimation.fit.laws import (
     law_spans,
     working_angles,
 )
-from trawl_ros.model.board import COEFFICIENTS, coefficients_at
-from trawl_ros.model.observables import OBSERVABLES, Observables
+from trawl_ros.model.board import coefficients_at
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES, Observables
 
 ANGLES = WorkingAngles(attack=np.radians(19.0), slip=np.radians(-4.0))
 

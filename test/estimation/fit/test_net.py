@@ -10,8 +10,8 @@ from trawl_ros.estimation.from_gear import board_prior, estimator_options
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.predict import Predictor

@@ -20,7 +20,7 @@ from trawl_ros.estimation.planning.states import Explorer, Limits, Manoeuvre
 from trawl_ros.estimation.planning.windows import imagined_windows
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 FEW = Limits(lengths=(200.0,), speeds=(2.1, 2.5), shorter=(5.0,))

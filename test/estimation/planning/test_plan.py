@@ -25,7 +25,7 @@ from trawl_ros.estimation.planning.information import (
     information_of,
 )
 from trawl_ros.estimation.planning.limits import limits_of
-from trawl_ros.estimation.planning.plan import TrialPlan, filed_coefficients, plan_trial
+from trawl_ros.estimation.planning.plan import TrialPlan, plan_trial
 from trawl_ros.estimation.planning.search import MOST_VISITS, Designer, shortfall
 from trawl_ros.estimation.planning.states import Explorer, Limits, Manoeuvre
 from trawl_ros.estimation.planning.windows import imagined_windows
@@ -60,7 +60,7 @@ def test_the_time_is_used_and_not_overdrawn(plan):
 def test_every_leg_can_be_towed_with_the_board_as_believed_and_as_filed(plan, record):
     model = build_model(record)
     known = {one.manoeuvre: one.part.state for one in plan.choice.candidates}
-    for coefficients in (board_prior(record).start, filed_coefficients(record)):
+    for coefficients in (board_prior(record).start, record.board.coefficients.array()):
         board = model.with_coefficients(coefficients)
         for one in (plan.trial.manoeuvres[0], plan.trial.manoeuvres[-1]):
             lengths = (one.port_length, one.starboard_length)

@@ -9,7 +9,7 @@ import pytest
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.over_ground import OverGround, ground_track
 from trawl_ros.estimation.windows.records import WindowOptions
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import HeadingSample, VelocitySample
 
 SECOND = 1_000_000_000

@@ -20,7 +20,7 @@ from trawl_ros.lab.studies.chaos.report import write_chaos
 from trawl_ros.lab.studies.chaos.rows import chaos_rows
 from trawl_ros.lab.studies.chaos.study import Chaos, run_chaos
 from trawl_ros.lab.studies.chaos.tow import Tow
-from trawl_ros.messages.estimates import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 NODES = ('sim_node', 'bag_recorder', 'winch_node', 'door_sensor_node', 'trawl_sonar_node',
          'vessel_node', 'identification_node')  # fmt: skip

@@ -7,7 +7,7 @@ from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison
 from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.diagnosis.score_test import ScoreTest
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 

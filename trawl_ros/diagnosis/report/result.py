@@ -10,8 +10,8 @@ from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import SourceBag
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import Weighed
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, Any]:

@@ -8,10 +8,13 @@ values, so that one implementation serves prediction, sensitivities and simulati
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trawl_ros.model.gear_model import GearModel
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
+
 
 Readings = dict[str, float]
 """Readings by the name of the observable, SI."""
@@ -129,7 +132,7 @@ class Effect:
         """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         return inputs
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the effect applied."""
         return model
 

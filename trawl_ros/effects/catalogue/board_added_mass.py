@@ -1,15 +1,19 @@
 """Added mass of the boards."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 class BoardAddedMass(Effect):
     """Added mass across the board's face, as a share of the water in a cylinder around it."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the boards' added mass."""
         board = model.board
         cylinder = 0.25 * np.pi * model.water.density * board.chord**2 * board.span

@@ -1,12 +1,15 @@
 """Board stall: loss of lift at high angles of attack."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.hooks import LIFT
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 ONSET = np.radians(15.0)
 """Angle of attack (rad) from which lift is lost, with the square of what is above it."""
@@ -31,7 +34,7 @@ class Stalled:
 class BoardStall(Effect):
     """Less lift above 15° of attack."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with boards that stall."""
         return model.with_board(bend=Stalled(float(values[0])))
 

@@ -1,12 +1,15 @@
 """Bottom contact of the lower wing tips."""
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import length
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 SOFT = 4.0
 """Over this depth (m) the ground takes hold of a weight."""
@@ -38,7 +41,7 @@ class BottomContact(Effect):
         """Start values: the ground may lie anywhere between the net's depths."""
         return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, (0.5, 0.75, 0.9)))
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with ground under the wing tips."""
         friction, depth = map(float, values)
         foot = model.layout.footrope

@@ -1,24 +1,27 @@
 """Catch build-up: drag of the codend that grows during a tow."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 class CatchBuildUp(Effect):
     """Drag of the codend's end that grows with the time in the tow."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the catch of the situation's hours."""
         area = model.lump_drag_area.copy()
         area[_codend(model)] += values[0] * at.hours
         return replace(model, lump_drag_area=area)
 
 
-def _codend(model: GearModel) -> int:
+def _codend(model: 'GearModel') -> int:
     """Number of the last node of the codend."""
     ends = [points[-1] for name, points, _ in model.layout.lines if name == 'codend']
     return int(ends[-1])

@@ -1,11 +1,14 @@
 """Cross-current below the surface layer."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 ABOVE, BELOW = 20.0, 60.0
 """The surface layer ends between these depths, m."""
@@ -14,7 +17,7 @@ ABOVE, BELOW = 20.0, 60.0
 class CrossCurrent(Effect):
     """A current across the track, the same below the surface layer and nothing in it."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model in a current to the left of the track."""
         across = values[0] * at.across
         water = model.water.with_more_current(

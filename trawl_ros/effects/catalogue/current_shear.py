@@ -1,11 +1,14 @@
 """Current shear along the ship's track."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 PER = 100.0
 """Depth (m) over which a shear is stated."""
@@ -17,7 +20,7 @@ DEEP = 2000.0
 class CurrentShear(Effect):
     """Current linear in depth, zero at the surface."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model in a sheared current along the track."""
         bottom = values[0] * DEEP / PER * at.along
         water = model.water.with_more_current(

@@ -1,17 +1,20 @@
 """Weight of boards and clumps beside the stated one."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 class GearWeight(Effect):
     """Additional weight in water at each board and at each lower wing tip."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with heavier boards and clumps; their volume stays."""
         board, clump = values / model.water.gravity
         mass = model.lump_mass.copy()

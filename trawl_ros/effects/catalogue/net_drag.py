@@ -1,9 +1,13 @@
 """Net drag: factor and exponent of speed."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 USUAL_SPEED = 2.0
 """Speed (m/s) at which the factor is what it says."""
@@ -15,7 +19,7 @@ SLOWEST = 0.1
 class NetDrag(Effect):
     """Factor on the drag of netting and its ropes, and an exponent of speed beside the square."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with scaled drag of the net."""
         factor, exponent = values
         return model.with_net(factor * (max(at.speed, SLOWEST) / USUAL_SPEED) ** exponent, 1.0)

@@ -1,12 +1,15 @@
 """Lift of the boards by their tilt."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.hooks import LIFT
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class Tilted:
 class TiltLift(Effect):
     """Lift by the boards' tilt."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with boards whose lift depends on their tilt."""
         return model.with_board(bend=Tilted(float(values[0])))
 

@@ -1,17 +1,20 @@
 """Warp strumming: vortex-induced vibration that raises the drag of the warps."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import GearModel
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 class WarpStrumming(Effect):
     """Additional normal drag of the warps."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with scaled normal drag of the warps."""
         factor = np.where(model.warp_side >= 0, values[0], 1.0)
         bars = replace(model.bars, normal_drag=factor * model.bars.normal_drag)

@@ -5,13 +5,16 @@ What is alike on both boards and does not change is theirs already: the twelve c
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.base.term import EmpiricalTerm, size
-from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.hooks import CoefficientModifier
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 DIRECTIONS = ('ahead', 'outward', 'up')
 SIDES = np.array([0.5, -0.5])
@@ -45,7 +48,7 @@ class BoardForce(EmpiricalTerm):
     place: int = 0
     by_hours: bool = False
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the force on its boards."""
         sizes = values[0] * (at.hours * BOTH if self.by_hours else SIDES)
         return model.with_board(bend=More(self.place, sizes, model.board.bend))

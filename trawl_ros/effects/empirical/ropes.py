@@ -2,13 +2,16 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.base.term import EmpiricalTerm, size
-from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import dot
+
+if TYPE_CHECKING:
+    from trawl_ros.model.gear_model import GearModel
 
 
 @dataclass(frozen=True)
@@ -17,7 +20,7 @@ class BridleDrag(EmpiricalTerm):
 
     difference: bool = False
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed drag of the bridles."""
         port, starboard = (
             np.isin(model.ends, np.concatenate(pair)).any(axis=1)
@@ -34,7 +37,7 @@ class BridleDrag(EmpiricalTerm):
 class WarpFriction(EmpiricalTerm):
     """Tangential drag of the warps."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed friction of the warps."""
         factor = np.where(model.warp_side >= 0, 1.0 + values[0], 1.0)
         bars = replace(model.bars, friction=factor * model.bars.friction)
@@ -45,7 +48,7 @@ class WarpFriction(EmpiricalTerm):
 class NetWeight(EmpiricalTerm):
     """Weight of the net in water."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed weight of the net."""
         return model.with_net(1.0, 1.0 + values[0])
 
@@ -67,7 +70,7 @@ class Lifted:
 class HeadropeLift(EmpiricalTerm):
     """Lift on the middle of the headrope."""
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed lift of the headrope."""
         head = model.layout.headrope
         factor = 0.5 * model.water.density * values[0]

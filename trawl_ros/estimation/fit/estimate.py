@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 DETERMINED_FRACTION = 0.2
 DETERMINED_SHRINK = 0.5
@@ -268,5 +268,5 @@ def interval(
     values: np.ndarray, std: np.ndarray, freedom: float, confidence: float, prior: BoardPrior
 ) -> tuple[np.ndarray, np.ndarray]:
     """Student's interval (12,), (12,) around the values, cut at the bounds."""
-    half = float(student.ppf(0.5 + 0.5 * confidence, freedom)) * std
+    half = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) * std
     return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

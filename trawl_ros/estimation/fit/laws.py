@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.observables import Observables
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import Observables
 
 RANGE = np.radians(15.0)
 """Width (rad) of the working range, from 15 to 30° of attack; slip is given the same."""

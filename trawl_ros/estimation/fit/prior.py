@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 @dataclass(frozen=True)

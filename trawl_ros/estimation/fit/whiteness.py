@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 FEWEST = 10
 """With fewer residuals than this the statistic is far from χ² and nothing is said."""
@@ -67,4 +67,4 @@ def ljung_box(series: Sequence[np.ndarray], lags: int | None = None) -> Whitenes
         product = sum(float(part[lag:] @ part[:-lag]) for part in parts if len(part) > lag)
         statistic += (product / power) ** 2 / (number - lag)
     statistic *= number * (number + 2)
-    return Whiteness(statistic, lags, float(chi2.sf(statistic, lags)))
+    return Whiteness(statistic, lags, float(chdtrc(lags, statistic)))

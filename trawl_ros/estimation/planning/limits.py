@@ -9,7 +9,7 @@ from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES, LawQuantities, law_r
 from trawl_ros.estimation.planning.information import SHARED, covariance_from
 from trawl_ros.estimation.planning.search import Designer
 from trawl_ros.estimation.planning.states import Manoeuvre
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 WITHOUT_END = 1e4
 """Each leg so many times over: what noise is left hides nothing any more."""

@@ -33,7 +33,6 @@ from trawl_ros.estimation.planning.sweep import SweepTrial, best_sweep, paper_no
 from trawl_ros.estimation.planning.windows import TABLE_NOISE
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.board import COEFFICIENTS
 
 LEAST_LEGS = 2
 """One steady state cannot tell a law's slope from its value."""
@@ -132,7 +131,7 @@ def plan_trial(
         ability=ability_of(gear, [one.manoeuvre for one in choice.candidates]),
         minutes=60.0 * hours,
     )
-    filed = Explorer(predictor, filed_coefficients(gear), limits)
+    filed = Explorer(predictor, gear.board.coefficients.array(), limits)
     seen: dict[Manoeuvre, TowableManoeuvre] = {}
     while True:
         designer = Designer(question, choice.candidates)
@@ -176,11 +175,6 @@ def plan_trial(
         before=question.quantities(np.diag(prior.std**2)),
         sweeps=tuple(trials[1:]),
     )
-
-
-def filed_coefficients(gear: GearRecord) -> np.ndarray:
-    """Coefficients (12,) of the board in a gear file, in the order of eq. 36."""
-    return np.array([getattr(gear.board.coefficients, name) for name in COEFFICIENTS])
 
 
 def _angles(candidates: Sequence[TowableManoeuvre], gear: GearRecord) -> WorkingAngles:
@@ -233,7 +227,7 @@ def _as_filed(
     question: Question, candidates: Sequence[TowableManoeuvre], gear: GearRecord
 ) -> Question:
     """The same design question with the board that the gear file describes."""
-    coefficients = filed_coefficients(gear)
+    coefficients = gear.board.coefficients.array()
     return replace(
         question,
         coefficients=coefficients,

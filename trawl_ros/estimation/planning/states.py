@@ -15,8 +15,8 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import INPUTS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, require_usable
 from trawl_ros.solver.predict import Predictor
 

@@ -3,14 +3,14 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from trawl_ros.estimation.report.report import Report
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.style import FAINT, MEASURED, MEASURED_TRUTH, PORT, quiet
 
 ATTACK_DEG = np.linspace(0.0, 40.0, 81)
-SHADED = float(norm.ppf(0.975))
+SHADED = float(ndtri(0.975))
 LEAST_SHOWN = 1e-3
 """A direction that the data know less than this of is drawn here."""
 

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.estimation.fit.objective import objective
 from trawl_ros.estimation.report.report import Report
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.style import FAINT, MEASURED, MEASURED_TRUTH, PORT, SECOND, quiet
 
 

@@ -11,7 +11,7 @@ from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.report.verdict import BEYOND, verdict
 from trawl_ros.estimation.windows.records import REASONS
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.pictures import Picture, by_section
 from trawl_ros.report.rendering import page as filled
 

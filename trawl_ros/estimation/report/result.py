@@ -8,7 +8,7 @@ from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def result(report: Report) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.estimation.fit.estimate import NAMED_SHARE
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.page import percent
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.verdict import verdict
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def coefficient_table(report: Report) -> Table:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtr
 
 MAD_TO_STD = 1.4826
 
@@ -92,7 +92,7 @@ def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
     error = math.sqrt(variance * n / number / float(time @ time))
     if error <= 1e-12 * (abs(slope) + 1e-300):
         return Trend(slope * span, 0.0 if slope else 1.0)
-    p_value = float(2.0 * student.sf(abs(slope) / error, freedom))
+    p_value = float(2.0 * stdtr(freedom, -abs(slope) / error))
     return Trend(slope * span, p_value, error * span)
 
 

@@ -1,9 +1,9 @@
 """Detection of echoes in an image."""
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
+from trawl_ros.instruments.sonar.running import running_mean
 
 CLEAR = 12.0
 """An echo is clear where the image is this much (dB) brighter than usual at its range: of the
@@ -27,8 +27,8 @@ def contrast(image: np.ndarray, grid: Grid) -> np.ndarray:
         Shape (beams, cells), dB: means over three cells above the median of all beams; zero so
         near to the sonar that its own pulse is heard.
     """
-    level = uniform_filter1d(image.astype(float), _ALONG, axis=1) * (grid.span / BRIGHTEST)
-    usual = uniform_filter1d(np.median(level, axis=0), _NOISE_ALONG)
+    level = running_mean(image.astype(float), _ALONG) * (grid.span / BRIGHTEST)
+    usual = running_mean(np.median(level, axis=0), _NOISE_ALONG)
     level -= usual
     level[:, grid.ranges < 2 * grid.min_range] = 0.0
     return level

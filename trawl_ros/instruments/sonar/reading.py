@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter, minimum_filter1d
 
 from trawl_ros.instruments.sonar.detection import CLEAR, contrast
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
+from trawl_ros.instruments.sonar.running import running_least, running_median
 from trawl_ros.instruments.sonar.seam import follow
 
 LOW_SECTOR = math.radians(30.0)
@@ -117,7 +117,7 @@ def _half_width(level: np.ndarray, angles: np.ndarray, grid: Grid) -> float:
         return math.nan
     at = angles[seen]
     out = np.array([_middle(level[k], line[k], grid) for k in beams[seen]]) * np.sin(at)
-    smooth = median_filter(out, 3, mode='nearest')
+    smooth = running_median(out, 3)
     widest = int(np.argmax(smooth))
     near = slice(max(widest - _AROUND, 0), widest + _AROUND + 1)
     fits = np.abs(out[near] - smooth[near]) < 1.5
@@ -169,4 +169,4 @@ def _seabed(image: np.ndarray, level: np.ndarray, grid: Grid) -> np.ndarray:
     fall = np.cos(grid.angles) - slope * np.sin(grid.angles)
     along = np.where(fall > 0.05, depth / np.maximum(fall, 0.05), math.inf)
     # A beam hears what its neighbours look at, too.
-    return minimum_filter1d(along, 7, mode='nearest') - 1.0
+    return running_least(along, 7) - 1.0

@@ -21,7 +21,7 @@ from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import timed
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 
 AROUND = 24
 """Meshes around the net of the model: fewer than the default, for the rivals' sake."""

@@ -10,8 +10,8 @@ from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import INPUTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.predict import Prediction, Predictor

@@ -6,10 +6,12 @@ import numpy as np
 
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES, observe
+from trawl_ros.model.observables import observe
 from trawl_ros.model.state import Tow
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.ship import Ship, Winch
-from trawl_ros.simulation.simulation import Command, tow_of
+from trawl_ros.simulation.simulation import tow_of
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest

@@ -20,14 +20,14 @@ from trawl_ros.lab.demo.hidden import hidden_effect
 from trawl_ros.lab.demo.report import load_result, print_result
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.gear_model import build_water
+from trawl_ros.model.water import build_water
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure
 from trawl_ros.plots.moments import GEAR, read_moments
 from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
 from trawl_ros.report.style import DPI
 from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients

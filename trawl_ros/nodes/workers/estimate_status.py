@@ -6,8 +6,8 @@ from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.planning.next_manoeuvre import Advice
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.estimates import ChannelInnovation
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def innovations_of(found: Innovations) -> list[ChannelInnovation]:

@@ -20,8 +20,8 @@ from trawl_ros.lab.studies.discrepancy.trials.towing import hidden_effect_set, t
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, POOR, PlannedTow
 from trawl_ros.lab.studies.discrepancy.trials.trial import Spec
 from trawl_ros.lab.studies.identification.readings import AS_STATED
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 
 GEAR, SEED = 'kaifuha', 5
 

@@ -31,8 +31,8 @@ from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
 from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows, write_windows
-from trawl_ros.model.board import COEFFICIENTS
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES
 
 SEED = 5
 ALONE = {name: (name,) for name in INSIDE} | {'heave': ('heave', 'speed_log')}

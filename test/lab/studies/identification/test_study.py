@@ -25,8 +25,8 @@ from trawl_ros.lab.studies.identification.readings import (
 from trawl_ros.lab.studies.identification.report import REPORT
 from trawl_ros.lab.studies.identification.rows import coverage_rows, held_out_rows, spread_rows
 from trawl_ros.lab.studies.identification.trial import EstimationTrial, Task, run_trial
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 
 PRIOR = board_prior(load_gear('kaifuha'))
 

@@ -5,7 +5,7 @@ import pytest
 
 from trawl_ros.lab.validation.convergence.gears import differences
 from trawl_ros.lab.validation.convergence.refinement import CASE
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 
 
 def test_differences_are_shares_of_the_value_and_of_30_degrees_around_zero() -> None:

@@ -11,7 +11,7 @@ from trawl_ros.lab.studies.chaos.kills import Kills
 from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION
 from trawl_ros.lab.studies.chaos.study import Chaos
 from trawl_ros.lab.studies.chaos.tow import Tow
-from trawl_ros.messages.estimates import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 MOST_LOST_S = 1.0
 MOST_GROWTH = 10.0

@@ -7,8 +7,8 @@ from scipy.linalg import block_diag
 
 from trawl_ros.lab.studies.identification.plant import Look
 from trawl_ros.lab.studies.identification.readings import Sensors
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 
 ROWS = [OBSERVABLES.index(name) for name in MEASURED]
 

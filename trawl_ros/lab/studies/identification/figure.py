@@ -18,7 +18,7 @@ from trawl_ros.lab.studies.identification.rows import (
     spread_rows,
 )
 from trawl_ros.lab.studies.identification.trial import EstimationTrial
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report import style
 
 WITHIN = '#dfeee3'

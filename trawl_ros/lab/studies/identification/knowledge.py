@@ -10,8 +10,8 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.identification.plant import Cut, State
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 

@@ -10,7 +10,7 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.identification.trial import EstimationTrial
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 COVERAGE = (90.0, 98.0)
 """Allowed coverage of 95 % intervals, %."""

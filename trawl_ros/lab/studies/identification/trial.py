@@ -15,8 +15,8 @@ from trawl_ros.lab.studies.identification.bound import information
 from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, Cut, TowedBoard, draw_board
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows, wrong_by
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import INPUTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 WRONG_BY = 0.3

@@ -17,7 +17,8 @@ from trawl_ros.records.samples import RangeSample, Sample, SonarImageSample, Son
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import NetTruth, SchoolTruth, SeabedTruth, Truth
 from trawl_ros.scenario.sea import build_surroundings
-from trawl_ros.simulation.simulation import Command, Simulation
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 
 TRUTH_HZ = 4.0
 HAUL_S = 260.0

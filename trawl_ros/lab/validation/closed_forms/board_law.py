@@ -12,7 +12,7 @@ from trawl_ros.gear.records import BoardRecord, GearRecord
 from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.closed_forms.paper_board import PaperBoard, coefficients
 from trawl_ros.model.assembly import board_loads, points_of
-from trawl_ros.model.board import COEFFICIENTS, coefficients_at
+from trawl_ros.model.board import coefficients_at
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import State
 from trawl_ros.model.water import Water
@@ -191,16 +191,12 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _values(record: BoardRecord) -> np.ndarray:
-    return np.array([getattr(record.coefficients, name) for name in COEFFICIENTS])
-
-
 def _continuation_checks(record: BoardRecord) -> list[Check]:
     """Check the continuation of the law outside its range."""
     attack = np.radians(np.linspace(-180.0, 180.0, 3601))
-    seen = coefficients_at(_values(record), attack, np.zeros_like(attack))
+    seen = coefficients_at(record.coefficients.array(), attack, np.zeros_like(attack))
     ends = np.radians([-40.0, 90.0])
-    gone = coefficients_at(_values(record), ends, np.zeros(2))
+    gone = coefficients_at(record.coefficients.array(), ends, np.zeros(2))
     jumps = np.abs(np.diff(seen, axis=0)).max()
     return [
         Check(
@@ -223,7 +219,7 @@ def _continuation_checks(record: BoardRecord) -> list[Check]:
             'no_jump',
             'largest change of a coefficient over 0.1° of attack',
             float(jumps),
-            2.0 * np.abs(_values(record)).max() * np.radians(0.1),
+            2.0 * np.abs(record.coefficients.array()).max() * np.radians(0.1),
             rule='at_most',
             note='At most twice that of the steepest line of eq. 14: the law has no step.',
         ),
@@ -233,7 +229,7 @@ def _continuation_checks(record: BoardRecord) -> list[Check]:
 def _drawn(record: BoardRecord) -> Figure:
     figure = Figure(figsize=(8.4, 4.2), layout='constrained')
     fine, dots = np.linspace(-90.0, 120.0, 421), np.linspace(-90.0, 120.0, 43)
-    curves = coefficients_at(_values(record), np.radians(fine), np.zeros_like(fine))
+    curves = coefficients_at(record.coefficients.array(), np.radians(fine), np.zeros_like(fine))
     points = np.array([coefficients(record, np.radians(alpha), 0.0) for alpha in dots])
     names = ('$C_x^F$', '$C_y^F$', '$C_z^F$', '$C_x^M$', '$C_y^M$', '$C_z^M$')
     for axes, group, title in zip(

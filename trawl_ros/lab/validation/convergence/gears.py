@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 

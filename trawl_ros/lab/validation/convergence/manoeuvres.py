@@ -7,7 +7,8 @@ import numpy as np
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
-from trawl_ros.simulation.simulation import Command, Simulation, tow_of
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation, tow_of
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.stepper import Stepper, at_rest
 

@@ -17,7 +17,7 @@ from trawl_ros.lab.validation.convergence.gears import (
     differences,
     row,
 )
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 
 ALLOWED = 2.0
 """Largest difference from the finer gear, %."""

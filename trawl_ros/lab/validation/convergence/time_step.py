@@ -17,7 +17,7 @@ from trawl_ros.lab.validation.convergence.manoeuvres import (
 )
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 

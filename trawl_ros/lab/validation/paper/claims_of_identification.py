@@ -4,7 +4,7 @@ import numpy as np
 
 from trawl_ros.lab.validation.paper.claim import Claim, claim, part
 from trawl_ros.lab.validation.paper.refit import PaperRefit
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 WORKING = np.radians(np.linspace(0.0, 30.0, 121))
 """Attack angles of Fig. 5 that the paper speaks of."""

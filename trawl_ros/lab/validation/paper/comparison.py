@@ -19,9 +19,9 @@ from trawl_ros.lab.validation.paper.sweeps import (
     warp_sweep,
 )
 from trawl_ros.lab.validation.paper.trial import measured, trial_windows, warp_length, widest_speed
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES, Observables
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 

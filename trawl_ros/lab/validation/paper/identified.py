@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
 from trawl_ros.lab.validation.paper.refit import PaperRefit, refit_trial
 from trawl_ros.lab.validation.paper.trial import trial_windows
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 ATTACK = np.radians(np.linspace(0.0, 40.0, 81))
 

@@ -17,7 +17,7 @@ from trawl_ros.lab.validation.paper.sweeps import (
     installation_sweep,
     paper_model,
 )
-from trawl_ros.model.observables import Observables
+from trawl_ros.records.observables import Observables
 
 SYMBOLS = {'epsilon': 'ε', 'zeta': 'ζ', 'eta': 'η'}
 

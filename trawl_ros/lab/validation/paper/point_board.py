@@ -10,9 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.model.board import COEFFICIENTS, coefficients_at
+from trawl_ros.model.board import coefficients_at
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import Observables, observe
+from trawl_ros.model.observables import observe
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.relax import TOLERANCE, relax, without_attitude
 from trawl_ros.solver.trim import attitudes

@@ -17,9 +17,9 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.validation.paper.sweeps import gear
 from trawl_ros.lab.validation.paper.trial import SCENARIO, trial_windows
-from trawl_ros.model.board import COEFFICIENTS
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.scenario.scenario import true_coefficients
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction, Predictor

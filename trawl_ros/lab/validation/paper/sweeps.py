@@ -14,7 +14,8 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import board_loads
 from trawl_ros.model.board import coefficients_at
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import Observables, outward_normal_lift
+from trawl_ros.model.observables import outward_normal_lift
+from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 
 SPEED = 2.1

@@ -12,7 +12,7 @@ from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
-from trawl_ros.model.gear_model import build_water
+from trawl_ros.model.water import build_water
 from trawl_ros.records.topics import NAMESPACE
 
 BAG = ('bags', 'sea_trial')

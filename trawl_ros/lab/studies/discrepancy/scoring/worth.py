@@ -15,7 +15,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     said_of,
 )
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
-from trawl_ros.model.board import COEFFICIENTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:

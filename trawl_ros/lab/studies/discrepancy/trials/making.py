@@ -26,8 +26,8 @@ from trawl_ros.lab.studies.identification.readings import (
     steady_windows,
     wrong_by,
 )
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 
 WRONG_BY = 0.3
 """Noise and biases of each kind of sensor are larger or smaller than stated by this part."""

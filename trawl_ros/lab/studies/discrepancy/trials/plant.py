@@ -18,7 +18,7 @@ from trawl_ros.lab.studies.discrepancy.trials.tows import (
 )
 from trawl_ros.lab.studies.identification.plant import Cut, Look
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.observables import OBSERVABLES
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities

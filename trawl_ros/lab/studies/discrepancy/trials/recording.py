@@ -12,9 +12,9 @@ from trawl_ros.lab.studies.discrepancy.trials.course import Course
 from trawl_ros.lab.studies.identification.readings import KINDS, NAMES, Sensors, tow_errors
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.model.water import Water
 from trawl_ros.records.channels import CHANNELS, INPUTS
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import (
     AttitudeSample,
     HeadingSample,

@@ -25,8 +25,8 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, BlindTrialPlan
 from trawl_ros.lab.studies.identification.plant import Look
-from trawl_ros.model.observables import OBSERVABLES
 from trawl_ros.records.channels import MEASURED
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 ALARM = 0.01 / 30.0

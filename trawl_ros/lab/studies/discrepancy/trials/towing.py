@@ -11,8 +11,10 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.course import EARLY_S, HOLD_S, Course, settling
 from trawl_ros.lab.studies.discrepancy.trials.tows import PlannedTow
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import OBSERVABLES, observe
-from trawl_ros.simulation.simulation import Command, Instant, Simulation, tow_of
+from trawl_ros.model.observables import observe
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Instant, Simulation, tow_of
 
 HAULING_SPEED = 2.4
 """Warps are hauled and paid out at this speed (m/s): at less, boards lose their lift meanwhile."""
