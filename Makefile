@@ -5,11 +5,12 @@ SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help demo check test test-slow promises fuzz lint lock clean
+.PHONY: help demo check quick test tests test-slow coverage docs promises fuzz lint lock clean
 
 # Any of these may be given on the command line: make PYTHON=python3.12 test
 PYTHON ?=
 DEMO := out/demo
+SITE := out/site
 MINUTES := 60
 WORKERS := 2
 
@@ -44,6 +45,7 @@ help:
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
 	@echo 'make lint       style, types and layers only'
+	@echo 'make docs       build the site of guides and reference: $(SITE)/'
 	@echo 'make promises   run every command of the documents and write docs/promises.md'
 	@echo 'make lock       choose the newest allowed versions anew and write requirements.lock'
 	@echo 'make clean      remove .venv, out/ and what builds and tools leave behind'
@@ -51,10 +53,14 @@ help:
 demo: $(VENV)/ready
 	@$(BIN)/trawl demo --out $(DEMO)
 
-check: lint
+check: lint quick
+
+quick: $(VENV)/ready
 	@$(PYTEST) -m 'not slow and not ros' $(QUICK)
 
-test: lint
+test: lint tests
+
+tests: $(VENV)/ready
 	@$(PYTEST) -m 'not slow'
 
 test-slow: $(VENV)/ready
@@ -65,6 +71,10 @@ promises: $(VENV)/ready
 
 fuzz: $(VENV)/ready
 	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json
+
+docs: $(VENV)/ready
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir $(SITE)
+	@echo '$(SITE)/index.html is written'
 
 lint: $(VENV)/ready
 	@$(BIN)/ruff check .
@@ -79,7 +89,7 @@ lock: $(VENV)/ready
 	@echo 'requirements.lock is written; the next make installs it'
 
 clean:
-	@rm -rf $(VENV) out build install log dist *.egg-info .pytest_cache .ruff_cache .mypy_cache
+	@rm -rf $(VENV) .nox out build install log dist *.egg-info .pytest_cache .ruff_cache .mypy_cache
 	@find trawl_ros test -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The folder of data and the metadata are read from this checkout (an editable install), so

@@ -53,7 +53,9 @@ TEST = [
     'markdown-it-py>=3,<5',
     'import-linter>=2.6,<3',
     'mypy>=1.13,<3',
+    'nox>=2024.10.9,<2027',
     'pytest>=7.4,<10',
+    'pytest-cov>=6,<8',
     'pytest-timeout>=2.3,<3',
     'pytest-xdist>=3.6,<4',
     'ruff>=0.8,<1',
@@ -61,6 +63,13 @@ TEST = [
     'setuptools>=64,<80',
     'types-PyYAML>=6,<7',
     'uv>=0.5,<1',
+]
+
+# The site of `make docs`; tests build it, since a warning fails it.
+DOCS = [
+    'mkdocs>=1.6,<2',
+    'mkdocs-material>=9.6,<10',
+    'mkdocstrings-python>=1.16,<3',
 ]
 
 # Other programs that `trawl validate` and `trawl benchmark` are held against.
@@ -118,7 +127,7 @@ setup(
         'scipy>=1.11,<2',
         'zstandard>=0.22,<1',
     ],
-    extras_require={'ros': ROS, 'test': [*TEST, *PEERS], 'peers': PEERS},
+    extras_require={'ros': ROS, 'test': [*TEST, *DOCS, *PEERS], 'docs': DOCS, 'peers': PEERS},
     entry_points={
         'console_scripts': [
             *(f'{node} = {PACKAGE}.nodes.{node}:main' for node in NODES),

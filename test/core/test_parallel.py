@@ -8,9 +8,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
+from dask import config
 from distributed import LocalCluster
+from distributed.security import Security
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.parallel import LOCALHOST, run_tasks
@@ -64,10 +67,52 @@ def test_an_address_without_a_scheduler_is_refused(monkeypatch: pytest.MonkeyPat
         list(run_tasks(abs, {'first': 1}, scheduler='tcp://127.0.0.1:9'))
 
 
-@pytest.mark.parametrize('address', ['foo', 'file:///etc/passwd', 'tls://127.0.0.1:9'])
+@pytest.mark.parametrize('address', ['foo', 'file:///etc/passwd'])
 def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
     with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
         list(run_tasks(abs, {'first': 1}, scheduler=address))
+
+
+def test_tls_without_keys_says_which_are_missing() -> None:
+    with pytest.raises(TrawlError, match=r'^tls://127\.0\.0\.1:9: no keys for tls are configured'):
+        list(run_tasks(abs, {'first': 1}, scheduler='tls://127.0.0.1:9'))
+
+
+@pytest.mark.parametrize('content', [None, '', 'no key'])
+def test_keys_that_cannot_be_read_are_named(content: str | None, tmp_path: Path) -> None:
+    file = tmp_path / 'key.pem'
+    if content is not None:
+        file.write_text(content)
+    names = ('ca-file', 'client.cert', 'client.key')
+    with (
+        config.set({f'distributed.comm.tls.{name}': str(file) for name in names}),
+        pytest.raises(TrawlError, match=r'keys of .* cannot be read .*key\.pem'),
+    ):
+        list(run_tasks(abs, {'first': 1}, scheduler='tls://127.0.0.1:9'))
+
+
+def test_a_cluster_with_keys_is_joined_by_those_who_have_them() -> None:
+    security = Security.temporary()
+    with LocalCluster(
+        n_workers=1,
+        threads_per_worker=1,
+        host=LOCALHOST,
+        protocol='tls://',
+        security=security,
+        dashboard_address=f'{LOCALHOST}:0',
+        silence_logs=50,
+    ) as running:
+        keys = {
+            'ca-file': security.tls_ca_file,
+            'client.cert': security.tls_client_cert,
+            'client.key': security.tls_client_key,
+        }
+        with config.set({f'distributed.comm.tls.{name}': key for name, key in keys.items()}):
+            given = dict(run_tasks(math.sqrt, TASKS, scheduler=running.scheduler_address))
+        assert given == ROOTS
+        plain = running.scheduler_address.replace('tls', 'tcp')
+        with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+            list(run_tasks(abs, {'first': 1}, scheduler=plain))
 
 
 def test_one_that_listens_and_says_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

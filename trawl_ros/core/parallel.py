@@ -28,6 +28,8 @@ LOCALHOST = '127.0.0.1'
 PATIENCE_S = 5.0
 """Timeout of a scheduler's answer."""
 
+TLS_KEYS = "ca-file, client.cert and client.key of Dask's distributed.comm.tls"
+
 QUIET = {
     # A worker that dies takes its task along; the same task would kill the next one too.
     'distributed.scheduler.allowed-failures': 0,
@@ -146,12 +148,13 @@ def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
 
 
 def _connected(address: str) -> Client:
+    keys = _keys(address)
     log = logging.getLogger('distributed')
     before = log.level
     try:
         log.setLevel(logging.CRITICAL + 1)
         # Dask's client tries for much longer, and waits for ever for one that says nothing.
-        asyncio.run(asyncio.wait_for(_shake_hands(address), PATIENCE_S + 1.0))
+        asyncio.run(asyncio.wait_for(_shake_hands(address, keys), PATIENCE_S + 1.0))
         return Client(address, timeout=PATIENCE_S, set_as_default=False)
     except Exception as reason:
         # What Dask raises here is of many kinds; none of them is this program's fault.
@@ -164,8 +167,23 @@ def _connected(address: str) -> Client:
         log.setLevel(before)
 
 
-async def _shake_hands(address: str) -> None:
-    keys = Security().get_connection_args('client')
+def _keys(address: str) -> dict[str, Any]:
+    """Arguments of a connection with the keys of Dask's configuration, if there are any."""
+    security = Security()
+    try:
+        keys = security.get_connection_args('client')
+    except (OSError, ValueError) as reason:
+        files = [security.tls_ca_file, security.tls_client_cert, security.tls_client_key]
+        raise TrawlError(
+            f"{address}: the keys of Dask's configuration cannot be read ({reason}), found "
+            f'{", ".join(map(str, files))}, expected PEM files under {TLS_KEYS}'
+        ) from reason
+    if address.startswith('tls://') and keys.get('ssl_context') is None:
+        raise TrawlError(f'{address}: no keys for tls are configured, expected {TLS_KEYS}')
+    return keys
+
+
+async def _shake_hands(address: str, keys: dict[str, Any]) -> None:
     (await connect(address, timeout=PATIENCE_S, **keys)).abort()
 
 

@@ -45,13 +45,14 @@ class Promise:
     def makes(self) -> set[str]:
         """Files and folders that it leaves, by their names in the command."""
         copies = re.findall(r'^cp (?:-r )?\S+ (\S+)$', self.title)
-        return set(re.findall(r'(?:--out |>> ?|> |output:=)(\S+)', self.title)) | set(copies)
+        return set(re.findall(r'(?:--out |--target |>> ?|> |output:=)(\S+)', self.title)) | set(
+            copies
+        )
 
     @property
     def names(self) -> set[str]:
         """All names of files in it, and of the folders that they are in."""
-        words = re.split(r'[\s\'"=,()]+', self.text)
-        return {str(part) for word in words for part in (Path(word), *Path(word).parents)}
+        return names_in(self.text)
 
 
 @dataclass(frozen=True)
@@ -69,11 +70,22 @@ class Document:
         direct = [
             other
             for other in self.promises
-            if other != promise and other.makes & (promise.names - promise.makes)
+            if other != promise and other.makes & (self._needs(promise) - promise.makes)
         ]
         return list(
             dict.fromkeys(step for other in direct for step in (*self.before(other), other))
         )
+
+    def _needs(self, promise: Promise) -> set[str]:
+        """Names in a command, and in the files of this document that it names."""
+        texts = (text for file, text in self.files.items() if file in promise.names)
+        return promise.names.union(*map(names_in, texts))
+
+
+def names_in(text: str) -> set[str]:
+    """Words that may be names of files, and the folders that these are in."""
+    words = re.split(r'[\s\'"=,()\[\]]+', text)
+    return {str(part) for word in words for part in (Path(word), *Path(word).parents)}
 
 
 def logical_lines(text: str) -> Iterator[tuple[int, str]]:

@@ -40,6 +40,7 @@ ENDS = {
     'trawl bag check cut.mcap': 3,
     'trawl bag repair cut.mcap': 3,
     'trawl diagnose': 10,
+    'trawl trim broken.yaml': 1,
 }
 """Exit codes that documents state, by the beginning of the command; 0 else."""
 
@@ -68,7 +69,10 @@ class Story:
             elif entry.name not in ('.git', 'out', 'build', 'install', 'log'):
                 (folder / entry.name).symlink_to(entry)
         for name, text in document.files.items():
-            (folder / name).write_text(text)
+            file = folder / name
+            assert not file.is_symlink(), f'{document.name}: {name} is a file of the checkout'
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
         (folder / 'programs').mkdir()
         (folder / 'programs/ros2').symlink_to(Path(__file__).parents[1] / 'ros2')
         path = (str(folder / 'programs'), str(Path(sys.executable).parent), os.environ['PATH'])
