@@ -167,7 +167,7 @@ def _connected(address: str) -> Client:
         log.setLevel(before)
 
 
-def _keys(address: str) -> dict[str, Any]:
+def _keys(address: str) -> dict[str, object]:
     """Arguments of a connection with the keys of Dask's configuration, if there are any."""
     security = Security()
     try:
@@ -183,7 +183,7 @@ def _keys(address: str) -> dict[str, Any]:
     return keys
 
 
-async def _shake_hands(address: str, keys: dict[str, Any]) -> None:
+async def _shake_hands(address: str, keys: dict[str, object]) -> None:
     (await connect(address, timeout=PATIENCE_S, **keys)).abort()
 
 
