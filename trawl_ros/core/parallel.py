@@ -169,11 +169,11 @@ def _connected(address: str) -> Client:
 
 def _keys(address: str) -> dict[str, object]:
     """Arguments of a connection with the keys of Dask's configuration, if there are any."""
-    security = Security()
     try:
-        keys = security.get_connection_args('client')
+        keys: dict[str, object] = Security().get_connection_args('client')
     except (OSError, ValueError) as reason:
-        files = [security.tls_ca_file, security.tls_client_cert, security.tls_client_key]
+        names = ('ca-file', 'client.cert', 'client.key')
+        files = [config.get(f'distributed.comm.tls.{name}') for name in names]
         raise TrawlError(
             f"{address}: the keys of Dask's configuration cannot be read ({reason}), found "
             f'{", ".join(map(str, files))}, expected PEM files under {TLS_KEYS}'
