@@ -7,10 +7,10 @@ from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.lab.benchmark import findings, modules
-from trawl_ros.lab.benchmark.findings import Findings
+from trawl_ros.lab.benchmark import modules
 from trawl_ros.lab.benchmark.modules import NAMES
 from trawl_ros.lab.report.machine import cpu_model, software
+from trawl_ros.lab.report.page import Findings
 
 KEYS = {'what', 'value', 'unit', 'target', 'ok', 'note'}
 
@@ -41,7 +41,7 @@ def test_every_module_runs_in_its_small_version(name, tmp_path):
 
 @pytest.mark.parametrize('name', ['start', 'recording'])
 def test_without_ros_figures_of_nodes_are_missed_and_it_is_said_why(name, tmp_path, monkeypatch):
-    monkeypatch.setattr(findings, 'find_spec', lambda _: None)
+    monkeypatch.setattr(modules, 'find_spec', lambda _: None)
     result = run('--small', '--out', tmp_path, name)
     assert result.exit_code == 0, result.output
     (row,) = json.loads((tmp_path / 'benchmark.json').read_text())['rows']

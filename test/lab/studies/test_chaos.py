@@ -17,7 +17,7 @@ from trawl_ros.lab.studies.chaos.crew import Recording
 from trawl_ros.lab.studies.chaos.kills import Kills
 from trawl_ros.lab.studies.chaos.plan import REPERTOIRE, Plan, faults_of
 from trawl_ros.lab.studies.chaos.report import write_chaos
-from trawl_ros.lab.studies.chaos.rows import chaos_rows
+from trawl_ros.lab.studies.chaos.rows import chaos_sections
 from trawl_ros.lab.studies.chaos.study import Chaos, run_chaos
 from trawl_ros.lab.studies.chaos.tow import Tow
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -43,7 +43,7 @@ def tow(value=1.0, **kwargs):
 
 def missed(wild, calm=None, kills=None):
     chaos = Chaos(Plan(), calm or tow(), wild, kills or Kills((), 0.0))
-    return [row.what for _, rows in chaos_rows(chaos) for row in rows if not row.ok]
+    return [row.what for section in chaos_sections(chaos) for row in section.missed]
 
 
 def test_an_hour_holds_every_fault_once_in_the_order_of_a_seed():

@@ -53,6 +53,6 @@ def test_no_node_ends_and_nothing_moves_silently():
     steps = []
     found = run_hostile(2000, 7, steps.append, minutes=3.0)
     assert [step.done for step in steps] == list(range(STEPS + 1))
-    missed = [row for row in rows_of(found)[1:] if row.asked and not row.ok]
+    missed = [row for row in rows_of(found)[1:] if not row.ok]
     assert not missed
     assert found.moved.windows[0] > 0

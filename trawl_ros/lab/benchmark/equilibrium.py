@@ -6,13 +6,13 @@ from functools import partial
 from itertools import cycle
 from statistics import median
 
-from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.gears import default_gear
-from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import median_s, timed
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed, peer
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -44,33 +44,30 @@ def measure(small: bool) -> Findings:
     near = median_s(lambda: steady_state(model, 520.0, 2.1, start=known), repeats)
     size = f'{model.nodes} nodes, {len(model.ends)} bars, two boards in 6-DOF'
     rows = [
-        BenchmarkRow(
+        MeasuredValue(
             'steady state of the full gear, warm',
             1e3 * median(warm),
             'ms',
-            WARM_MS,
-            'at_most',
+            at_most(WARM_MS),
             f'{size}; median over {len(CHANGES)} changes of warp length (±20, ±100 m) and speed '
             f'(±0.05 m/s), {1e3 * min(warm):.0f} to {1e3 * max(warm):.0f} ms',
         ),
-        BenchmarkRow(
+        MeasuredValue(
             'the same, cold',
             median(cold),
             's',
-            COLD_S,
-            'at_most',
+            at_most(COLD_S),
             f'from a first guess; median over {len(points)} operating points, slowest '
             f'{max(cold):.2f} s',
         ),
-        BenchmarkRow(
+        MeasuredValue(
             'the same, cold, with the check of stability',
             median(usable),
             's',
-            COLD_S,
-            'at_most',
+            at_most(COLD_S),
             f'slowest {max(usable):.2f} s',
         ),
-        BenchmarkRow(
+        MeasuredValue(
             'the same, warm, with the check of stability', 1e3 * near, 'ms', note='+20 m of warp'
         ),
     ]
@@ -100,20 +97,20 @@ def _usable(model: GearModel, length: float, speed: float) -> Callable[[], Stead
     return lambda: steady_state(model, length, speed)
 
 
-def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[BenchmarkRow]:
+def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[MeasuredValue]:
     what = "trawlkit's time for one speed, over the warm steady state"
     try:
         times = trawlkit_s(small=small)
     except PeerAbsent as absent:
-        return [BenchmarkRow(what, math.nan, '×', OVER_TRAWLKIT, 'at_least', str(absent))]
+        return [MeasuredValue(what, math.nan, '×', at_least(OVER_TRAWLKIT), str(absent))]
     peer = median(times)
     note = (
         f'trawlkit {peer:.1f} s, {min(times):.1f} to {max(times):.1f} s over {len(times)} speeds '
         'of its example, doors coupled'
     )
     return [
-        BenchmarkRow(what, peer / warm_s, '×', OVER_TRAWLKIT, 'at_least', note),
-        BenchmarkRow('the same, over the cold steady state', peer / cold_s, '×', note=note),
+        MeasuredValue(what, peer / warm_s, '×', at_least(OVER_TRAWLKIT), note),
+        MeasuredValue('the same, over the cold steady state', peer / cold_s, '×', note=note),
     ]
 
 
@@ -133,14 +130,14 @@ def trawlkit_s(*, small: bool) -> list[float]:
     return times
 
 
-def _beside_moorpy(warm_s: float, *, small: bool) -> list[BenchmarkRow]:
+def _beside_moorpy(warm_s: float, *, small: bool) -> list[MeasuredValue]:
     what = "MoorPy's time for one wire alone, warm, over the warm steady state of the gear"
     try:
         seconds = moorpy_s(1 if small else 5)
     except (PeerAbsent, PeerFailed) as error:
-        return [BenchmarkRow(what, math.nan, '×', note=str(error))]
+        return [MeasuredValue(what, math.nan, '×', note=str(error))]
     note = f'MoorPy {1e3 * seconds:.0f} ms, 20 m more or less of a towed wire of 600 m'
-    return [BenchmarkRow(what, seconds / warm_s, '×', note=note)]
+    return [MeasuredValue(what, seconds / warm_s, '×', note=note)]
 
 
 def moorpy_s(repeats: int) -> float:

@@ -9,7 +9,6 @@ from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.fit_rivals import (
     CoordinateSearch,
     Counting,
@@ -18,8 +17,9 @@ from trawl_ros.lab.benchmark.fit_rivals import (
 )
 from trawl_ros.lab.benchmark.fit_trial import LENGTHS, MORE_DRAG, SPEEDS, plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import timed
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
 
@@ -66,29 +66,42 @@ def measure(small: bool) -> Findings:
         f'{searched.solves} steady states, its budget: the ratio is no more than a lower bound'
     )
     rows = (
-        BenchmarkRow(
-            f'steady states solved for one fit to {len(windows)} states', ours.solves, '',
+        MeasuredValue(
+            f'steady states solved for one fit to {len(windows)} states',
+            ours.solves,
             note=f'{ours.reason}; eq. 35 at {ours.objective:.4f}',
         ),
-        BenchmarkRow(
-            "coordinate search's steady states over ours", searched.solves / ours.solves, '×',
-            OVER_SEARCH, 'at_least', f'the search {found}',
+        MeasuredValue(
+            "coordinate search's steady states over ours",
+            searched.solves / ours.solves,
+            '×',
+            at_least(OVER_SEARCH),
+            f'the search {found}',
         ),
-        BenchmarkRow(
-            "coordinate search's time over ours", seconds / ours.seconds, '×', 1.0, 'at_least',
+        MeasuredValue(
+            "coordinate search's time over ours",
+            seconds / ours.seconds,
+            '×',
+            at_least(1.0),
             f'{seconds:.0f} s and {ours.seconds:.1f} s',
         ),
-        BenchmarkRow(
+        MeasuredValue(
             "finite-difference Gauss–Newton's steady states over ours",
-            theirs.solves / ours.solves, '×', OVER_DIFFERENCES, 'at_least', theirs.reason,
+            theirs.solves / ours.solves,
+            '×',
+            at_least(OVER_DIFFERENCES),
+            theirs.reason,
         ),
-        BenchmarkRow(
-            "finite-difference Gauss–Newton's time over ours", theirs.seconds / ours.seconds, '×',
-            1.0, 'at_least', f'{theirs.seconds:.0f} s and {ours.seconds:.1f} s',
+        MeasuredValue(
+            "finite-difference Gauss–Newton's time over ours",
+            theirs.seconds / ours.seconds,
+            '×',
+            at_least(1.0),
+            f'{theirs.seconds:.0f} s and {ours.seconds:.1f} s',
         ),
         _no_worse('coordinate search', ours, searched),
         _no_worse('finite-difference Gauss–Newton', ours, theirs),
-    )  # fmt: skip
+    )
     return Findings(
         rows,
         text=f'The model has {gear.netting.around} meshes around its net; the {len(windows)} '
@@ -124,10 +137,10 @@ def _fitted(
     return Fitted(value, solves, seconds, estimate.reason)
 
 
-def _no_worse(name: str, ours: Fitted, theirs: Fitted | Searched) -> BenchmarkRow:
+def _no_worse(name: str, ours: Fitted, theirs: Fitted | Searched) -> MeasuredValue:
     """Row on the objective (eq. 35) to four digits, since differences are never exact."""
     note = f'{ours.objective:.4f} and {theirs.objective:.4f}'
     if ours.objective > theirs.objective:
         note += '; a search that is stopped when it is no worse ends a little lower'
     ratio = round(ours.objective / theirs.objective, 4)
-    return BenchmarkRow(f'our objective over that of {name}', ratio, '×', note=note)
+    return MeasuredValue(f'our objective over that of {name}', ratio, '×', note=note)

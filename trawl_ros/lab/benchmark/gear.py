@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import CONVERGED_S, FROM, TO, Error, HaulManoeuvre, error, haul_of
-from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import factor_cost, median_s, timed
 from trawl_ros.lab.benchmark.web import moordyn_web_factor
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
-from trawl_ros.lab.report.check import CaseFigure
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.stepper import StepFailed
 
@@ -58,23 +58,19 @@ def measure(small: bool) -> Findings:
         factor = haul.duration_s / median_s(lambda: haul.run(step), 1 if small else 3)
         note = _words(runs[best], haul)
     what = 'full gear with boards in 6-DOF, hauling, at the fastest step with an error below 1 %'
-    rows.append(BenchmarkRow(what, factor, '× real time', REAL_TIME, 'at_least', note))
+    rows.append(MeasuredValue(what, factor, '× real time', at_least(REAL_TIME), note))
     rows.append(_beside_moordyn(factor, model, small=small))
     if best is not None:
-        rows.append(BenchmarkRow('that step', runs[best].step_s, 's'))
+        rows.append(MeasuredValue('that step', runs[best].step_s, 's'))
         worst = runs[best].error
         assert worst is not None
         note = f'of the range of {worst.worst}; {worst.of_value:.2%} of its value at most'
-        rows.append(BenchmarkRow('its error', 100 * worst.of_range, '%', note=note))
+        rows.append(MeasuredValue('its error', 100 * worst.of_range, '%', note=note))
     rows.append(_simulation(model, 4.0 if small else 60.0))
     return Findings(
         tuple(rows),
-        (
-            CaseFigure(
-                'steps', 'Error and speed of the manoeuvre against the time step.', _draw(runs)
-            ),
-        ),
-        f'{haul.duration_s:.0f} s: the winches haul from {FROM.port_length:.0f} to '
+        (Drawing('steps', 'Error and speed of the manoeuvre against the time step.', _draw(runs)),),
+        text=f'{haul.duration_s:.0f} s: the winches haul from {FROM.port_length:.0f} to '
         f'{TO.port_length:.0f} m and the ship slows from {FROM.speed:g} to {TO.speed:g} m/s, '
         f'both within what they can do. Spread, depths, tensions, opening, α and δ are held '
         f'against a run in steps of {CONVERGED_S:g} s, which took {seconds:.0f} s; the error is '
@@ -106,17 +102,17 @@ def _words(run: Run, haul: HaulManoeuvre) -> str:
     )
 
 
-def _beside_moordyn(factor: float, model: GearModel, *, small: bool) -> BenchmarkRow:
+def _beside_moordyn(factor: float, model: GearModel, *, small: bool) -> MeasuredValue:
     what = "the same beside MoorDyn's factor on a web of as many lines and points"
     try:
         theirs = moordyn_web_factor(small)
     except (PeerAbsent, PeerFailed) as error:
-        return BenchmarkRow(what, math.nan, '×', OVER_MOORDYN, 'at_least', str(error))
+        return MeasuredValue(what, math.nan, '×', at_least(OVER_MOORDYN), str(error))
     note = f'MoorDyn: {theirs:.1f} × real time, its doors prescribed'
-    return BenchmarkRow(what, factor / theirs, '×', OVER_MOORDYN, 'at_least', note)
+    return MeasuredValue(what, factor / theirs, '×', at_least(OVER_MOORDYN), note)
 
 
-def _simulation(model: GearModel, duration_s: float) -> BenchmarkRow:
+def _simulation(model: GearModel, duration_s: float) -> MeasuredValue:
     """Row on the tow as `sim_node` and `trawl tow` advance it."""
     period_s = 0.1
     simulation = Simulation(model, FROM, period=period_s)
@@ -127,7 +123,7 @@ def _simulation(model: GearModel, duration_s: float) -> BenchmarkRow:
             simulation.advance()
 
     seconds = timed(tow)[1]
-    return BenchmarkRow(
+    return MeasuredValue(
         'the same hauling in the steps that sim_node takes by default',
         duration_s / seconds,
         '× real time',

@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.benchmark.haul import START, haul_of
-from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.benchmark.timing import factor_cost, median_s
-from trawl_ros.lab.report.check import CaseFigure
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
@@ -64,35 +64,30 @@ def measure(small: bool) -> Findings:
     step_there = exponent([s.nodes for s in upper], [s.step_s for s in upper])
     warm_there = exponent([s.nodes for s in upper], [s.warm_s for s in upper])
     rows = (
-        BenchmarkRow(
-            'net nodes of the largest net', last.nodes, '', MOST_NODES, 'at_least', refused
+        MeasuredValue(
+            'net nodes of the largest net', last.nodes, target=at_least(MOST_NODES), note=refused
         ),
-        BenchmarkRow(
+        MeasuredValue(
             'exponent of the time per step in the number of net nodes',
             step,
-            '',
-            EXPONENT,
-            'at_most',
-            f'{span}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
+            target=at_most(EXPONENT),
+            note=f'{span}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
             f'{1e3 * last.step_s:.0f} ms; {step_there:.2f} in the finer half of the sizes',
         ),
-        BenchmarkRow(
+        MeasuredValue(
             'exponent of the time per steady state, warm',
             warm,
-            '',
-            EXPONENT,
-            'at_most',
-            f'{span}; {1e3 * sizes[0].warm_s:.0f} to {1e3 * last.warm_s:.0f} ms; '
+            target=at_most(EXPONENT),
+            note=f'{span}; {1e3 * sizes[0].warm_s:.0f} to {1e3 * last.warm_s:.0f} ms; '
             f'{warm_there:.2f} in the finer half of the sizes',
         ),
-        BenchmarkRow(
+        MeasuredValue(
             'exponent of one factorisation and solution',
             linear,
-            '',
             note=f'{1e3 * sizes[0].factor_s:.2f} to {1e3 * last.factor_s:.0f} ms',
         ),
-        BenchmarkRow(f'memory of the factors at {last.nodes} net nodes', last.factor_mb, 'MB'),
-        BenchmarkRow(
+        MeasuredValue(f'memory of the factors at {last.nodes} net nodes', last.factor_mb, 'MB'),
+        MeasuredValue(
             f'most memory of the process up to {last.nodes} net nodes',
             last.peak_mb,
             'MB',
@@ -101,9 +96,9 @@ def measure(small: bool) -> Findings:
     )
     return Findings(
         rows,
-        (CaseFigure('nodes', 'Time and memory against the number of net nodes.', _draw(sizes)),),
-        'Meshes around the net are refined and rows along it with them; warps and bridles stay '
-        'as they are. Exponents are slopes of straight lines through the logarithms.',
+        (Drawing('nodes', 'Time and memory against the number of net nodes.', _draw(sizes)),),
+        text='Meshes around the net are refined and rows along it with them; warps and bridles '
+        'stay as they are. Exponents are slopes of straight lines through the logarithms.',
     )
 
 

@@ -1,12 +1,14 @@
 """Modules of the benchmark, in the order of the report."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib import import_module
+from importlib.util import find_spec
 from types import MappingProxyType
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.lab.benchmark.findings import Findings
-from trawl_ros.lab.benchmark.row import BenchmarkRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
+from trawl_ros.lab.report.page import Findings
 
 TITLES: Mapping[str, str] = MappingProxyType(
     {
@@ -48,7 +50,15 @@ def measure(name: str, *, small: bool) -> Findings:
         found = module.measure(small)
     except TrawlError as error:
         return Findings(
-            (BenchmarkRow(f'{name}: runs to its end', 0.0, '', 1.0, 'at_least', str(error)),)
+            (MeasuredValue(f'{name}: runs to its end', 0.0, target=at_least(1.0), note=str(error)),)
         )
     assert isinstance(found, Findings)
     return found
+
+
+def without_ros(asked: MeasuredValue) -> Findings | None:
+    """Return findings that say ROS 2 is missing for this row; None where it is installed."""
+    if find_spec('rclpy') is not None:
+        return None
+    note = 'rclpy is not installed; it is part of ROS 2, or of the extra `ros`'
+    return Findings((replace(asked, note=note),))

@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from trawl_ros.bags.reader import Bag
-from trawl_ros.lab.benchmark.findings import Findings, without_ros
-from trawl_ros.lab.benchmark.row import BenchmarkRow
+from trawl_ros.lab.benchmark.modules import without_ros
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 
@@ -96,7 +97,7 @@ def record(folder: Path, rate: float, seconds: float) -> Recorded:
 def measure(small: bool) -> Findings:
     """Record at each rate and count."""
     what = f'messages lost at {RATES_HZ[0]:g} messages/s of all topics'
-    asked = BenchmarkRow(what, math.nan, '', 0.0, 'at_most')
+    asked = MeasuredValue(what, math.nan, target=at_most(0.0))
     if (nothing := without_ros(asked)) is not None:
         return nothing
     seconds = SMALL_SECONDS if small else SECONDS
@@ -111,10 +112,10 @@ def measure(small: bool) -> Findings:
         rows.append(
             replace(asked, value=found.lost, note=note)
             if rate == RATES_HZ[0]
-            else BenchmarkRow(f'messages lost at {rate:g} messages/s', found.lost, '', note=note)
+            else MeasuredValue(f'messages lost at {rate:g} messages/s', found.lost, note=note)
         )
         rows.append(
-            BenchmarkRow(
+            MeasuredValue(
                 f'recorder at {rate:g} messages/s, of one core',
                 100.0 * found.cpu_s / seconds,
                 '%',

@@ -14,10 +14,11 @@ from pathlib import Path
 from statistics import median
 
 from trawl_ros.core.resources import share_path
-from trawl_ros.lab.benchmark.findings import Findings, without_ros
 from trawl_ros.lab.benchmark.gears import default_gear
-from trawl_ros.lab.benchmark.row import BenchmarkRow
+from trawl_ros.lab.benchmark.modules import without_ros
 from trawl_ros.lab.benchmark.timing import median_s
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.processes import Processes, Value
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
@@ -63,7 +64,7 @@ def starts(folder: Path) -> tuple[Start, ...]:
 def measure(small: bool) -> Findings:
     """Start one node after another and wait for its first message."""
     what = 'cold start of a node to its first message, wall, the slowest node'
-    asked = BenchmarkRow(what, math.nan, 's', LIMIT_S, 'at_most')
+    asked = MeasuredValue(what, math.nan, 's', at_most(LIMIT_S))
     if (nothing := without_ros(asked)) is not None:
         return nothing
     with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST):
@@ -84,13 +85,13 @@ def measure(small: bool) -> Findings:
     rows = [replace(asked, value=median(times[slowest]), note=note)]
     for node, found in times.items():
         note = f'{min(found):.2f} to {max(found):.2f} s in {len(found)} starts'
-        rows.append(BenchmarkRow(f'{node}, wall', median(found), 's', note=note))
-    rows.append(BenchmarkRow('of it, imports, wall', total, 's', note=heaviest))
+        rows.append(MeasuredValue(f'{node}, wall', median(found), 's', note=note))
+    rows.append(MeasuredValue('of it, imports, wall', total, 's', note=heaviest))
     if not small:
         model = build_model(default_gear(small=False))
         seconds = median_s(lambda: steady_state(model, 500.0, 2.0), 3)
         rows.append(
-            BenchmarkRow(
+            MeasuredValue(
                 'of it, in sim_node, the first steady state', seconds, 's', note='stability checked'
             )
         )

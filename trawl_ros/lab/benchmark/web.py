@@ -8,11 +8,11 @@ from statistics import median
 
 import numpy as np
 
-from trawl_ros.lab.benchmark.findings import Findings
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
 from trawl_ros.lab.reference_codes.moordyn_web import Web, towed, web_of
+from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -71,15 +71,17 @@ def measure(small: bool) -> Findings:
         model, found = _web(small)
         best = best_of(found)
     except (PeerAbsent, PeerFailed) as error:
-        return Findings((BenchmarkRow(what, math.nan, '× real time', note=str(error)),))
+        return Findings((MeasuredValue(what, math.nan, '× real time', note=str(error)),))
     note = (
         f'{len(model.ends)} lines of one segment, {model.nodes} free points, doors and blocks '
         f'prescribed; {best.scheme} in steps of {1e3 * best.step:.2f} ms'
     )
-    rows = [BenchmarkRow(what, best.factor, '× real time', note=note)]
+    rows = [MeasuredValue(what, best.factor, '× real time', note=note)]
     for one in found:
         note = f'largest stable step {1e3 * one.step:.2f} ms, damping {one.damping:g} of critical'
-        rows.append(BenchmarkRow(f'the same by {one.scheme}', one.factor, '× real time', note=note))
+        rows.append(
+            MeasuredValue(f'the same by {one.scheme}', one.factor, '× real time', note=note)
+        )
     if not small:
         rows.append(_smaller(best.scheme, best.damping))
     return Findings(
@@ -93,11 +95,11 @@ def measure(small: bool) -> Findings:
     )
 
 
-def _smaller(scheme: str, damping: float) -> BenchmarkRow:
+def _smaller(scheme: str, damping: float) -> MeasuredValue:
     model = build_model(with_around(default_gear(small=False), COARSE_AROUND))
     found = best_of(_stable(model, ((scheme, damping),), small=False))
     note = f'a net of {COARSE_AROUND} meshes around, {len(model.ends)} lines, {model.nodes} points'
-    return BenchmarkRow('the same on a smaller web', found.factor, '× real time', note=note)
+    return MeasuredValue('the same on a smaller web', found.factor, '× real time', note=note)
 
 
 def best_of(found: tuple[Stable, ...]) -> Stable:

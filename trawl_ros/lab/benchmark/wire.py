@@ -6,14 +6,14 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from statistics import median
 
-from trawl_ros.lab.benchmark.findings import Findings
-from trawl_ros.lab.benchmark.row import BenchmarkRow
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
 from trawl_ros.lab.reference_codes.history import History, apart
 from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
 from trawl_ros.lab.reference_codes.moordyn_wire import MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, TowedWire
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.solver.stepper import StepFailed
 
 SEGMENTS = 20
@@ -77,7 +77,7 @@ def measure(small: bool) -> Findings:
         theirs = [(choice, _peer(choice, manoeuvre, small=small)) for choice in _choices(small)]
     except PeerAbsent as absent:
         return Findings(
-            (*rows, BenchmarkRow('the same in MoorDyn', math.nan, '× real time', note=str(absent)))
+            (*rows, MeasuredValue('the same in MoorDyn', math.nan, '× real time', note=str(absent)))
         )
     found = [(choice, one) for choice, one in theirs if one is not None]
     for choice, one in found:
@@ -86,7 +86,7 @@ def measure(small: bool) -> Findings:
             f'{choice.damping_time:g} s'
         )
         rows.append(
-            BenchmarkRow(
+            MeasuredValue(
                 f'the same in MoorDyn by {choice.scheme}', one.factor, '× real time', note=note
             )
         )
@@ -156,21 +156,21 @@ def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireMa
         return system.follow(manoeuvre)
 
 
-def _own_row(ours: Fastest | None) -> BenchmarkRow:
+def _own_row(ours: Fastest | None) -> MeasuredValue:
     what = 'one wire of 600 m in 20 segments, hauling and turning'
     if ours is None:
         note = f'no step of those tried keeps the error below {LIMIT:.0%}'
-        return BenchmarkRow(what, math.nan, '× real time', note=note)
+        return MeasuredValue(what, math.nan, '× real time', note=note)
     each = 1e3 * ours.step / ours.factor
     note = f'steps of {ours.step:g} s, error {ours.error:.2%}; {each:.2f} ms per step'
-    return BenchmarkRow(what, ours.factor, '× real time', note=note)
+    return MeasuredValue(what, ours.factor, '× real time', note=note)
 
 
-def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> BenchmarkRow:
+def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> MeasuredValue:
     what = "the same beside MoorDyn's best stable scheme"
     if ours is None or not theirs:
-        return BenchmarkRow(
-            what, math.nan, '×', 1.0, 'at_least', 'one of the two has no step that is good'
+        return MeasuredValue(
+            what, math.nan, '×', at_least(1.0), 'one of the two has no step that is good'
         )
     ratio = ours.factor / max(one.factor for one in theirs)
     note = ''
@@ -179,4 +179,4 @@ def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> BenchmarkRow:
             f'a step takes {1e3 * ours.step / ours.factor:.2f} ms here, for a wire as for a gear '
             'that has boards and a kite besides; MoorDyn has the wire alone'
         )
-    return BenchmarkRow(what, ratio, '×', 1.0, 'at_least', note)
+    return MeasuredValue(what, ratio, '×', at_least(1.0), note)

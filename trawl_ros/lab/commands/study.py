@@ -13,7 +13,8 @@ from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.commands.outcome import print_missed, print_reached
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.studies.chaos.plan import Plan as ChaosPlan
 from trawl_ros.lab.studies.chaos.report import REPORT as CHAOS_REPORT
 from trawl_ros.lab.studies.chaos.report import write_chaos
@@ -34,7 +35,6 @@ from trawl_ros.lab.studies.soak.study import SoakPlan, run_soak
 from trawl_ros.lab.studies.sonar.report import REPORT as SONAR_REPORT
 from trawl_ros.lab.studies.sonar.report import write_sonar
 from trawl_ros.lab.studies.sonar.study import CASES, SonarStudy
-from trawl_ros.report.rendering import number
 
 
 @click.group('study')
@@ -59,7 +59,7 @@ def command() -> None:
 def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, coarse: bool) -> None:
     """Tow for a day through the ROS graph, and watch memory, delay and processor time.
 
-    Every node is a process of its own. Writes soak.json, soak.md and soak.png; a target that
+    Every node is a process of its own. Writes soak.json, .md, .html and .png; a target that
     is missed is part of the report. Ctrl-C ends the tow early, and the report says so.
     """
     load_gear(gear)
@@ -73,7 +73,7 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
             lambda: interruption.requested,
         )
         rows = write_soak(out, seen)
-    _say(rows, out / REPORT, console)
+    _tell(rows, out / REPORT, console)
     if interruption.requested:
         raise SystemExit(INTERRUPTED)
 
@@ -105,7 +105,7 @@ def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str
             lambda: interruption.requested,
         )
         rows = write_chaos(out, seen)
-    _say(rows, out / CHAOS_REPORT, console)
+    _tell(rows, out / CHAOS_REPORT, console)
     if interruption.requested:
         raise SystemExit(INTERRUPTED)
 
@@ -122,7 +122,7 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
     """Set the openings that are read off the trawl sonar's image beside the truth.
 
     Over several states of the gear, and with fish and the seabed in view. Writes sonar.json,
-    sonar.md and sonar.png.
+    .md, .html and .png.
     """
     study = SonarStudy(sweeps, gear=gear, instruments=instruments)
     empty_folder(out, force=force)
@@ -194,9 +194,8 @@ def identification(
     except KeyboardInterrupt:
         console.print(f'stopped; the trials made so far are kept in {out}')
         raise SystemExit(INTERRUPTED) from None
-    write_identification(out, plan, found.sections, found.figure)
-    rows = [row for _, section in found.sections for row in section]
-    _say(rows, out / IDENTIFICATION_REPORT, console)
+    rows = write_identification(out, plan, found.sections, found.figure)
+    _tell(rows, out / IDENTIFICATION_REPORT, console)
 
 
 @command.command('counters')
@@ -220,7 +219,7 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     except KeyboardInterrupt:
         console.print('stopped; no report is written')
         raise SystemExit(INTERRUPTED) from None
-    _say(rows, out / COUNTERS_REPORT, console)
+    _tell(rows, out / COUNTERS_REPORT, console)
 
 
 @command.command('hostile')
@@ -246,7 +245,7 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
     console = error_console()
     with ProgressDisplay(console) as display:
         found = run_hostile(messages, seed, display)
-    _say(write_hostile(out, found, seed), out / HOSTILE_REPORT, console)
+    _tell(write_hostile(out, found, seed), out / HOSTILE_REPORT, console)
 
 
 @command.command('discrepancy')
@@ -305,14 +304,9 @@ def discrepancy(
         console.print(f'stopped; the trials made so far are kept in {out}')
         raise SystemExit(INTERRUPTED) from None
     rows = write_discrepancy(out, plan, trials, read_classes(out))
-    _say(rows, out / DISCREPANCY_REPORT, console)
+    _tell(rows, out / DISCREPANCY_REPORT, console)
 
 
-def _say(rows: Sequence[StudyRow], report: Path, console: Console) -> None:
-    """Say which targets are missed, and how many are reached."""
-    asked = [row for row in rows if row.asked]
-    for row in asked:
-        if not row.ok:
-            console.print(f'missed: {row.what}: {number(row.value)} {row.unit}', markup=False)
-    reached = sum(row.ok for row in asked)
-    click.echo(f'{reached} of {len(asked)} targets are reached: {report}')
+def _tell(rows: Sequence[MeasuredValue], report: Path, console: Console) -> None:
+    print_missed(rows, console)
+    print_reached(rows, report)

@@ -3,15 +3,12 @@
 from pathlib import Path
 
 import click
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from trawl_ros.cli.files import FOLDER
-from trawl_ros.cli.progress import error_console
-from trawl_ros.core.files import empty_folder
-from trawl_ros.lab.validation.cases import NAMES
-from trawl_ros.lab.validation.run import Finished, run_cases
-from trawl_ros.lab.validation.writing import write_report
-from trawl_ros.report.rendering import number
+from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.lab.commands.outcome import print_missed, print_reached
+from trawl_ros.lab.report.page import Section
+from trawl_ros.lab.validation.run import validate
 
 
 @click.command('validate')
@@ -29,28 +26,21 @@ def command(cases: tuple[str, ...], out: Path, force: bool, small: bool, workers
     their figures. A check that does not hold is part of the report; the exit code is 0
     whenever the report is complete.
     """
-    names = tuple(dict.fromkeys(cases)) or NAMES
-    empty_folder(out, force=force)
     console = error_console()
-    finished: list[Finished] = []
-    columns = (
-        TextColumn('validating'), BarColumn(), MofNCompleteColumn(), TextColumn('cases'),
-        TimeElapsedColumn(),
-    )  # fmt: skip
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task('', total=len(names))
-        for case in run_cases(names, out, small=small, workers=workers):
-            finished.append(case)
-            progress.advance(task)
-            held = sum(check.ok for check in case.checks)
-            console.print(
-                f'{case.name}: {held} of {len(case.checks)} checks hold, {case.seconds:.0f} s'
-            )
-            for check in case.checks:
-                if not check.ok:
-                    measured = f'{number(check.measured)} {check.unit}'.strip()
-                    console.print(f'  {check.what}: {measured}. {check.note}')
-    write_report(out, finished, small=small)
-    held = sum(check.ok for case in finished for check in case.checks)
-    total = sum(len(case.checks) for case in finished)
-    click.echo(f'{held} of {total} checks hold: {out / "report.html"}')
+
+    def show(case: Section) -> None:
+        held, total = sum(row.ok for row in case.rows), len(case.rows)
+        console.print(f'{case.name}: {held} of {total} checks hold, {case.seconds:.0f} s')
+        print_missed(case.rows, console)
+
+    with ProgressDisplay(console) as display:
+        finished = validate(
+            out,
+            cases,
+            small=small,
+            workers=workers,
+            force=force,
+            on_case=show,
+            on_progress=display,
+        )
+    print_reached([row for case in finished for row in case.rows], out / 'report.html')

@@ -1,67 +1,169 @@
-"""Report of a study: JSON, Markdown, a self-contained HTML page and a figure."""
+"""Report of measured values: JSON, Markdown and HTML, with tables and pictures."""
 
-import base64
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from matplotlib.figure import Figure
-
-from trawl_ros.core.files import write_figure, write_json, write_text
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.core.files import made_folder, write_json, write_text
+from trawl_ros.core.version import __version__
+from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.report.pictures import Drawing, Picture, draw, embedded
 from trawl_ros.report.rendering import number
 from trawl_ros.report.rendering import page as filled
-from trawl_ros.report.style import DPI
 
-Section = tuple[str, Sequence[StudyRow]]
+
+@dataclass(frozen=True)
+class TextTable:
+    """Table of text; all rows as long as ``head``."""
+
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Findings of a case or benchmark. ``text`` is a paragraph of plain words for the report."""
+
+    rows: tuple[MeasuredValue, ...]
+    drawings: tuple[Drawing, ...] = ()
+    tables: tuple[TextTable, ...] = ()
+    text: str = ''
+
+
+@dataclass(frozen=True)
+class Section:
+    """Section of a report.
+
+    Attributes
+    ----------
+    title
+        Its heading.
+    rows, pictures, tables, text
+        What stands in it; ``text`` is a paragraph.
+    group
+        Heading that it shares with those beside it; '' for none.
+    name, command, seconds
+        Of what was run for it: its name, the command for it alone, and s of wall clock.
+    """
+
+    title: str
+    rows: Sequence[MeasuredValue] = ()
+    pictures: Sequence[Picture] = ()
+    tables: Sequence[TextTable] = ()
+    text: str = ''
+    group: str = ''
+    name: str = ''
+    command: str = ''
+    seconds: float = 0.0
+
+    @property
+    def missed(self) -> list[MeasuredValue]:
+        """Rows whose target is not reached."""
+        return [row for row in self.rows if not row.ok]
 
 
 @dataclass(frozen=True)
 class Page:
-    """Texts of a page beside its rows.
+    """Texts of a report beside its sections.
 
     Attributes
     ----------
     name
         Of the files, without their endings.
     title, command, method
-        What was asked, how the page is made anew, and how figures were found.
-    alternative, caption
-        What the figure shows, in short and in full.
+        What was asked, how the report is made anew, and how values were found.
+    data
+        Of the JSON file, without its ending; by default as the others.
     """
 
     name: str
     title: str
     command: str
     method: str
-    alternative: str
-    caption: str
+    data: str = ''
 
 
-def write_page(folder: Path, page: Page, sections: Sequence[Section], figure: Figure) -> None:
-    """Write ``<name>.json`` with all rows, ``.md``, ``.html`` and ``.png`` into a folder."""
-    records = [row.record() for _, rows in sections for row in rows]
-    write_json(folder / f'{page.name}.json', {'rows': records}, indent=1, ensure_ascii=False)
-    picture = folder / f'{page.name}.png'
-    write_figure(picture, figure, DPI)
-    content: dict[str, Any] = {
-        **asdict(page),
-        'sections': [section for section in sections if section[1]],
-        'asked': [row for _, rows in sections for row in rows if row.asked],
-        'figure': picture.name,
-        'data': base64.b64encode(picture.read_bytes()).decode('ascii'),
-        'wanted': wanted,
-    }
-    for kind in ('md', 'html'):
-        text = filled('trawl_ros.lab.report', f'study.{kind}', **content)
+def write_page(
+    folder: Path,
+    page: Page,
+    sections: Sequence[Section],
+    drawings: Iterable[Drawing] = (),
+    record: Mapping[str, object] | None = None,
+) -> list[MeasuredValue]:
+    """Write ``<name>.json``, ``.md``, ``.html`` and the pictures into a folder; return all rows.
+
+    Parameters
+    ----------
+    folder
+        Made if it does not exist.
+    page
+        Its texts.
+    sections
+        What stands on it. Their pictures are in the folder already, and the page refers to them.
+    drawings
+        To be drawn, for the end of the page; the HTML page has them in it.
+    record
+        Content of the JSON file; by default all rows.
+
+    Raises
+    ------
+    TrawlError
+        If something cannot be written.
+    """
+    rows = [row for section in sections for row in section.rows]
+    content = {'rows': [row.record() for row in rows]} if record is None else record
+    made_folder(folder)
+    write_json(folder / f'{page.data or page.name}.json', content, indent=1, ensure_ascii=False)
+    pictures = draw(folder, drawings)
+    asked = [row for row in rows if row.target is not None]
+    for kind, shown in (('md', pictures), ('html', embedded(folder, pictures))):
+        text = filled(
+            'trawl_ros.lab.report',
+            f'report.{kind}',
+            page=page,
+            version=__version__,
+            sections=[section for section in sections if section.rows or section.tables],
+            asked=asked,
+            reached=[row for row in asked if row.ok],
+            missed=_missed_table(sections),
+            values_table=values_table,
+            pictures=shown,
+        )
         write_text(folder / f'{page.name}.{kind}', text)
+    return rows
 
 
-def wanted(row: StudyRow) -> str:
-    """Target of a row, in words."""
-    if row.least is not None and row.target is not None:
-        return f'{number(row.least)} to {number(row.target)}'
-    if row.least is not None:
-        return f'at least {number(row.least)}'
-    return '' if row.target is None else f'at most {number(row.target)}'
+def values_table(rows: Sequence[MeasuredValue]) -> TextTable:
+    """Table of values; columns that would be empty are left out."""
+    head = ('what', 'value', 'low', 'high', 'asked for', 'reached', 'note')
+    cells = [
+        (
+            row.what,
+            row.figure,
+            *('' if math.isnan(end) else number(end) for end in (row.low, row.high)),
+            row.wanted,
+            '' if row.target is None else 'yes' if row.ok else 'no',
+            row.note,
+        )
+        for row in rows
+    ]
+    kept = [column for column in range(len(head)) if any(row[column] for row in cells)]
+    return TextTable(
+        '',
+        tuple(head[column] for column in kept),
+        tuple(tuple(row[column] for column in kept) for row in cells),
+    )
+
+
+def _missed_table(sections: Sequence[Section]) -> TextTable:
+    return TextTable(
+        '',
+        ('where', 'what', 'value', 'asked for', 'why'),
+        tuple(
+            (section.title, row.what, row.figure, row.wanted, row.note)
+            for section in sections
+            for row in section.missed
+        ),
+    )

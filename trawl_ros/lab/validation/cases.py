@@ -1,11 +1,12 @@
 """The cases of ``trawl validate``, in the order of the report."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.lab.report.check import ValidationCase
+from trawl_ros.lab.report.page import Findings
 
 SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -40,6 +41,19 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'branches': 'Branches',
     }
 )
+
+
+@dataclass(frozen=True)
+class ValidationCase:
+    """Case: a name for the command line, a title, and the function that runs it.
+
+    ``run(small)`` does it; with ``small`` in seconds and on less, for the test suite.
+    """
+
+    name: str
+    title: str
+    run: Callable[[bool], Findings]
+
 
 NAMES: tuple[str, ...] = tuple(name for names in SECTIONS.values() for name in names)
 

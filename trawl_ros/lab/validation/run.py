@@ -1,66 +1,107 @@
-"""Runner of cases, several at a time, each in a process of its own."""
+"""Validation of the model: cases run several at a time, each in its own process, and reported."""
 
 import multiprocessing
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import write_figure
-from trawl_ros.lab.report.check import CaseOutcome, Check, TextTable
-from trawl_ros.lab.validation.cases import load_case, section_of
-from trawl_ros.report.rendering import DPI
+from trawl_ros.core.files import empty_folder, finite
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.lab.report.measured import MeasuredValue, within
+from trawl_ros.lab.report.page import Findings, Page, Section, write_page
+from trawl_ros.lab.validation.cases import NAMES, TITLES, load_case, section_of
+from trawl_ros.report.pictures import draw
 
 PROCESS = multiprocessing.get_context('spawn')
 
 LONG = ('steady_states', 'sentences')
 """Cases that take minutes, and are started first so that none is left over at the end."""
 
-
-@dataclass(frozen=True)
-class CasePicture:
-    """A figure that was drawn: its file in the report's folder, and its caption."""
-
-    file: str
-    caption: str
+COMMAND = 'trawl validate'
 
 
-@dataclass(frozen=True)
-class Finished:
-    """A case that was run, with its ``seconds`` of wall clock."""
+def validate(
+    out: str | Path,
+    cases: Sequence[str] = (),
+    *,
+    small: bool = False,
+    workers: int = 2,
+    force: bool = False,
+    on_case: Callable[[Section], None] = lambda case: None,
+    on_progress: OnProgress = ignore,
+) -> tuple[Section, ...]:
+    """Check the model against closed forms, the paper and other programs, and write the report.
 
-    name: str
-    title: str
-    section: str
-    checks: tuple[Check, ...]
-    pictures: tuple[CasePicture, ...]
-    tables: tuple[TextTable, ...]
-    text: str
-    seconds: float
+    Parameters
+    ----------
+    out
+        Folder for ``validation.json``, ``report.html``, ``report.md`` and their figures.
+    cases
+        Names of the cases; by default all.
+    small
+        Whether each case runs on less, in seconds.
+    workers
+        Processes at a time.
+    force
+        Whether an earlier report in ``out`` is replaced.
+    on_case
+        Called with each case as it ends.
+    on_progress
+        Called as cases end.
 
-    @property
-    def ok(self) -> bool:
-        """True if every check of the case holds."""
-        return all(check.ok for check in self.checks)
-
-
-def run_cases(
-    names: Sequence[str], folder: Path, *, small: bool, workers: int
-) -> Iterator[Finished]:
-    """Run cases and give each as it ends; figures go into ``folder``/figures.
+    Returns
+    -------
+    tuple of Section
+        The cases in the order of the report; ``rows`` are their checks, each with ``value``,
+        ``target`` and ``ok``.
 
     Raises
     ------
     TrawlError
-        If there is no case of one of these names.
+        If there is no such case, or ``out`` holds files already or cannot be written to. A check
+        that does not hold is part of the report.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import trawl_ros
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (case,) = trawl_ros.validate(folder, ['board_law'], small=True)
+    >>> all(check.ok for check in case.rows)
+    True
     """
+    folder, names = Path(out), tuple(dict.fromkeys(cases)) or NAMES
     for name in names:
         section_of(name)
-    (folder / 'figures').mkdir(parents=True, exist_ok=True)
+    empty_folder(folder, force=force)
+    finished: list[Section] = []
+    for case in run_cases(names, folder, small=small, workers=workers):
+        finished.append(case)
+        on_case(case)
+        on_progress(WorkProgress('validating', len(finished), len(names), 'cases', case.name))
+    finished.sort(key=lambda case: NAMES.index(case.name))
+    page = Page(
+        name='report',
+        title='Validation',
+        command=COMMAND,
+        method='Small version of each case.'
+        if small
+        else 'Each case says what it is held against.',
+        data='validation',
+    )
+    record = {f'{case.name}.{row.key}': check_record(row) for case in finished for row in case.rows}
+    write_page(folder, page, finished, record=record)
+    return tuple(finished)
+
+
+def run_cases(
+    names: Sequence[str], folder: Path, *, small: bool, workers: int
+) -> Iterator[Section]:
+    """Run cases and give each as it ends; figures go into ``folder``/figures."""
     with ThreadPoolExecutor(workers) as threads:
         first = sorted(names, key=lambda name: name not in LONG)
         pending = [threads.submit(_apart, name, folder, small) for name in first]
@@ -71,46 +112,62 @@ def run_cases(
             threads.shutdown(wait=False, cancel_futures=True)
 
 
-def _apart(name: str, folder: Path, small: bool) -> Finished:
+def _apart(name: str, folder: Path, small: bool) -> Section:
     """Run one case in a process of its own, which a crash of a reference code ends alone."""
     with ProcessPoolExecutor(1, mp_context=PROCESS) as process:
         try:
             return process.submit(run_case, name, folder, small=small).result()
         except BrokenProcessPool:
-            note = 'The process that ran it ended without a word.'
-            check = Check('ran', 'the case ran to its end', 0.0, 1.0, note=note)
-            case = load_case(name)
-            return Finished(name, case.title, section_of(name), (check,), (), (), '', 0.0)
+            return _section(name, _broken('The process that ran it ended without a word.'), 0.0)
 
 
-def run_case(name: str, folder: Path, *, small: bool) -> Finished:
+def run_case(name: str, folder: Path, *, small: bool) -> Section:
     """Run one case here and draw its figures.
 
     A case whose model has no answer is a case that fails, not the end of the report.
     """
-    case = load_case(name)
     began = time.perf_counter()
     try:
-        outcome = case.run(small)
+        findings = load_case(name).run(small)
     except TrawlError as error:
-        check = Check('ran', 'the case ran to its end', 0.0, 1.0, note=str(error))
-        outcome = CaseOutcome((check,))
+        findings = _broken(str(error))
     seconds = time.perf_counter() - began
-    pictures = []
-    for drawing in outcome.drawings:
-        file = f'figures/{name}_{drawing.name}.png'
-        write_figure(folder / file, drawing.figure, DPI)
-        pictures.append(CasePicture(file, drawing.caption))
-    keys = [check.key for check in outcome.checks]
+    keys = [row.key for row in findings.rows]
     assert len(set(keys)) == len(keys), f'{name}: two checks share a key'
     assert all(re.fullmatch(r'\w+', key) for key in keys), f'{name}: {keys}'
-    return Finished(
-        name=name,
-        title=case.title,
-        section=section_of(name),
-        checks=outcome.checks,
-        pictures=tuple(pictures),
-        tables=outcome.tables,
-        text=outcome.text,
-        seconds=seconds,
+    return _section(name, findings, seconds, folder)
+
+
+def _broken(note: str) -> Findings:
+    return Findings(
+        (MeasuredValue('the case ran to its end', 0.0, '', within(0.0, of=1.0), note, key='ran'),)
     )
+
+
+def _section(name: str, findings: Findings, seconds: float, folder: Path = Path()) -> Section:
+    return Section(
+        load_case(name).title,
+        findings.rows,
+        draw(folder, findings.drawings, f'figures/{name}_'),
+        findings.tables,
+        findings.text,
+        TITLES[section_of(name)],
+        name,
+        f'{COMMAND} {name}',
+        seconds,
+    )
+
+
+def check_record(check: MeasuredValue) -> dict[str, object]:
+    """One check as plain values; what could not be measured is null."""
+    assert check.target is not None
+    return {
+        'what': check.what,
+        'measured': finite(check.value),
+        'expected': check.target.expected,
+        'tolerance': check.target.tolerance,
+        'rule': check.target.rule,
+        'unit': check.unit,
+        'ok': check.ok,
+        'note': check.note,
+    }

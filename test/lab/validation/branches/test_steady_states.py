@@ -12,7 +12,7 @@ from trawl_ros.lab.validation.branches.continuation import Place, Search, judged
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.lab.validation.branches.lattices import Lattice, speed_lattice
 from trawl_ros.lab.validation.branches.steady_states import CASE
-from trawl_ros.lab.validation.writing import check_record
+from trawl_ros.lab.validation.run import check_record
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -31,8 +31,8 @@ def lattice(model: GearModel) -> Lattice:
 @pytest.mark.slow
 def test_every_check_of_the_small_map_holds() -> None:
     outcome = CASE.run(True)
-    assert [check.key for check in outcome.checks if not check.ok] == []
-    json.dumps([check_record(check) for check in outcome.checks])
+    assert [check.key for check in outcome.rows if not check.ok] == []
+    json.dumps([check_record(check) for check in outcome.rows])
     assert len(outcome.drawings) == 2
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from trawl_ros.lab.validation.convergence.manoeuvres import SteppedManoeuvre, smooth_tow
 from trawl_ros.lab.validation.convergence.time_step import CASE, convergence
-from trawl_ros.lab.validation.writing import check_record
+from trawl_ros.lab.validation.run import check_record
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 
@@ -15,8 +15,8 @@ from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 @pytest.mark.slow
 def test_every_check_of_the_small_case_holds() -> None:
     outcome = CASE.run(True)
-    assert [check.key for check in outcome.checks if not check.ok] == []
-    json.dumps([check_record(check) for check in outcome.checks])
+    assert [check.key for check in outcome.rows if not check.ok] == []
+    json.dumps([check_record(check) for check in outcome.rows])
 
 
 def test_the_smooth_manoeuvre_moves_as_its_rates_say(model: GearModel) -> None:

@@ -2,20 +2,21 @@
 
 import numpy as np
 
-from trawl_ros.lab.validation.paper.claim import claim, claim_table, part
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, between
+from trawl_ros.lab.validation.paper.claim import claim, claim_table
 
 
 def test_a_sentence_agrees_in_full_in_part_or_not() -> None:
-    holds = part('one', 'a growth', 0.2, 0.0, 'never told', unit='m')
-    fails = part('two', 'a size', 3.0, (5.0, 10.0), 'it is small.', unit='%')
+    holds = MeasuredValue('a growth', 0.2, 'm', at_least(0.0), 'never told', key='one')
+    fails = MeasuredValue('a size', 3.0, '%', between(5.0, 10.0), 'it is small.', key='two')
     assert claim('IV', 'it grows', holds).agrees == 'yes'
     assert claim('IV', 'it grows by 5-10 %', holds, fails).agrees == 'in part'
-    assert claim('IV', 'by 5-10 %', fails).agrees == '**no**'
+    assert claim('IV', 'by 5-10 %', fails).agrees == 'no'
 
 
 def test_only_what_fails_is_told_why() -> None:
-    holds = part('one', 'a growth', 0.2, 0.0, 'never told', unit='m')
-    fails = part('two', 'a size', 3.0, (5.0, 10.0), 'it is small.', unit='%')
+    holds = MeasuredValue('a growth', 0.2, 'm', at_least(0.0), 'never told', key='one')
+    fails = MeasuredValue('a size', 3.0, '%', between(5.0, 10.0), 'it is small.', key='two')
     both = claim('IV.C, Fig. 9', 'it grows by 5-10 %', holds, fails)
     ((where, says, gives, agrees, why),) = claim_table([both]).rows
     assert (where, says, agrees) == ('IV.C, Fig. 9', 'it grows by 5-10 %', 'in part')
@@ -29,4 +30,5 @@ def test_only_what_fails_is_told_why() -> None:
 
 
 def test_what_could_not_be_measured_does_not_hold() -> None:
-    assert claim('IV', 'it grows', part('one', 'a growth', np.nan, 0.0, 'why')).agrees == '**no**'
+    unknown = MeasuredValue('a growth', np.nan, target=at_least(0.0), note='why', key='one')
+    assert claim('IV', 'it grows', unknown).agrees == 'no'

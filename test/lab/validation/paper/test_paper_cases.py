@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from trawl_ros.lab.report.check import CaseOutcome
+from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.validation.cases import SECTIONS, load_case
 
 FIGURES = {
@@ -17,7 +17,7 @@ FIGURES = {
 
 
 @cache
-def small(name: str) -> CaseOutcome:
+def small(name: str) -> Findings:
     """The small version of a case, run once."""
     return load_case(name).run(True)
 
@@ -32,7 +32,7 @@ def test_a_small_case_is_whole(name: str) -> None:
     keys = [check.key for check in found.checks]
     assert len(set(keys)) == len(keys)
     for check in found.checks:
-        assert check.measured == check.measured, check.key
+        assert check.value == check.value, check.key
         assert check.ok or check.note, check.key
     if name != 'sentences':
         assert all(check.ok for check in found.checks), found.checks

@@ -4,20 +4,20 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, write_page
-from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.running.chain import CHAIN
 from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION
-from trawl_ros.lab.studies.chaos.rows import MOST_LOST_S, chaos_rows
+from trawl_ros.lab.studies.chaos.rows import MOST_LOST_S, chaos_sections
 from trawl_ros.lab.studies.chaos.study import Chaos
 from trawl_ros.lab.studies.soak.rows import series
+from trawl_ros.report.pictures import Drawing
 
 REPORT = 'chaos.md'
 
 
-def write_chaos(folder: Path, chaos: Chaos) -> list[StudyRow]:
+def write_chaos(folder: Path, chaos: Chaos) -> list[MeasuredValue]:
     """Write ``chaos.json``, ``.md``, ``.html`` and ``.png`` into a folder; return the rows."""
-    sections = chaos_rows(chaos)
     plan = chaos.plan
     page = Page(
         name='chaos',
@@ -37,12 +37,14 @@ def write_chaos(folder: Path, chaos: Chaos) -> list[StudyRow]:
             f'{plan.kills} times while all topics come as fast as the simulation goes, with truth '
             'ten times a second.'
         ),
-        alternative='Memory over the tow with faults, and what recorders that were killed lost',
-        caption='Resident memory on the tow with faults (grey lines), and what each recorder that '
-        'was killed at full load had lost.',
     )
-    write_page(folder, page, sections, _figure(chaos))
-    return [row for _, rows in sections for row in rows]
+    caption = (
+        'Resident memory on the tow with faults (grey lines), and what each recorder that was '
+        'killed at full load had lost.'
+    )
+    return write_page(
+        folder, page, chaos_sections(chaos), [Drawing('chaos', caption, _figure(chaos))]
+    )
 
 
 def _figure(chaos: Chaos) -> Figure:

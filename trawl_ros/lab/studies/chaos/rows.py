@@ -4,7 +4,8 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.running.chain import CHAIN
 from trawl_ros.lab.studies.chaos.crew import Recording
 from trawl_ros.lab.studies.chaos.kills import Kills
@@ -17,10 +18,8 @@ MOST_LOST_S = 1.0
 MOST_GROWTH = 10.0
 """Memory at the end, per cent above that of the undisturbed tow at its end."""
 
-Sections = list[tuple[str, list[StudyRow]]]
 
-
-def chaos_rows(chaos: Chaos) -> Sections:
+def chaos_sections(chaos: Chaos) -> list[Section]:
     """Return the rows by their section."""
     wild = chaos.wild
     missing = max(0.0, chaos.plan.end_s - wild.towed_s) / 3600.0
@@ -28,52 +27,57 @@ def chaos_rows(chaos: Chaos) -> Sections:
     listed = ', '.join(f'{kind} {count}' for kind, count in sorted(done.items()))
     cut = [recording for recording in wild.recordings if recording.ended]
     tow = [
-        StudyRow(
+        MeasuredValue(
             'tow that is missing to the whole',
             missing,
-            unit='h',
-            target=0.01 * chaos.plan.hours,
-            note=f'{wild.towed_s / 3600.0:.3g} of {chaos.plan.hours:g} h at sea were towed',
+            'h',
+            at_most(0.01 * chaos.plan.hours),
+            f'{wild.towed_s / 3600.0:.3g} of {chaos.plan.hours:g} h at sea were towed',
         ),
-        StudyRow('faults', float(len(wild.done)), note=listed),
-        StudyRow(
+        MeasuredValue('faults', float(len(wild.done)), note=listed),
+        MeasuredValue(
             'nodes ended by themselves',
             float(len(wild.died)),
-            target=0.0,
+            target=at_most(0.0),
             note='; '.join(_short(words) for _, words in wild.died),
         ),
-        StudyRow(
+        MeasuredValue(
             'full disks that were not told in a sentence',
             float(len(wild.mute)),
-            target=0.0,
+            target=at_most(0.0),
             note='; '.join(_short(words) for words in wild.mute),
         ),
-        StudyRow(
+        MeasuredValue(
             'longest time without truth',
             wild.silence_s,
-            unit='s',
+            's',
             note=f'wall time; the undisturbed tow: {chaos.calm.silence_s:.1f} s',
         ),
     ]
     return [
-        ('The tow', tow),
-        ('Bags', [*_bags(wild.recordings), *_lost(cut, 'before kills and full disks')]),
-        ('Estimate', _estimate(chaos.calm, wild)),
-        ('Memory', _memory(chaos.calm, wild)),
-        ('The recorder killed at full load', _kills(chaos.kills)),
+        Section('The tow', tow),
+        Section('Bags', [*_bags(wild.recordings), *_lost(cut, 'before kills and full disks')]),
+        Section('Estimate', _estimate(chaos.calm, wild)),
+        Section('Memory', _memory(chaos.calm, wild)),
+        Section('The recorder killed at full load', _kills(chaos.kills)),
     ]
 
 
-def _bags(recordings: Sequence[Recording]) -> list[StudyRow]:
+def _bags(recordings: Sequence[Recording]) -> list[MeasuredValue]:
     problems = [recording.problem for recording in recordings if recording.problem]
     messages = sum(recording.messages for recording in recordings)
     note = '; '.join(problems) or f'{messages} messages in {len(recordings)} bags'
     return [
-        StudyRow('bags that cannot be read, repaired', float(len(problems)), target=0.0, note=note)
+        MeasuredValue(
+            'bags that cannot be read, repaired',
+            float(len(problems)),
+            target=at_most(0.0),
+            note=note,
+        )
     ]
 
 
-def _lost(cut: Sequence[Recording], what: str) -> list[StudyRow]:
+def _lost(cut: Sequence[Recording], what: str) -> list[MeasuredValue]:
     if not cut:
         return []
     lost = [recording.lost_s for recording in cut if not recording.problem]
@@ -82,21 +86,26 @@ def _lost(cut: Sequence[Recording], what: str) -> list[StudyRow]:
         f'{len(lost)}'
     )
     worst, least = (max(lost), min(lost)) if lost else (math.nan, math.nan)
-    return [StudyRow(f'lost {what}', worst, least, worst, 's', MOST_LOST_S, note)]
+    return [
+        MeasuredValue(f'lost {what}', worst, 's', at_most(MOST_LOST_S), note, low=least, high=worst)
+    ]
 
 
-def _estimate(calm: Tow, wild: Tow) -> list[StudyRow]:
+def _estimate(calm: Tow, wild: Tow) -> list[MeasuredValue]:
     windows = [
-        StudyRow(f'windows of the {title} tow', float(tow.estimate.get('windows', 'nan')),
-            note=tow.finish)
+        MeasuredValue(
+            f'windows of the {title} tow',
+            float(tow.estimate.get('windows', 'nan')),
+            note=tow.finish,
+        )
         for title, tow in (('undisturbed', calm), ('disturbed', wild))
-    ]  # fmt: skip
+    ]
     if any(tow.estimate.get('windows', '0') == '0' for tow in (calm, wild)):
         reason = wild.estimate.get('reason', '')
-        there = StudyRow(
+        there = MeasuredValue(
             'estimates without a reason why there is none',
             float(not reason),
-            target=0.0,
+            target=at_most(0.0),
             note=reason,
         )
         return [*windows, there]
@@ -109,12 +118,19 @@ def _estimate(calm: Tow, wild: Tow) -> list[StudyRow]:
     worst = max(off, key=lambda name: off[name])
     return [
         *windows,
-        StudyRow('estimate off the undisturbed one', off[worst], min(off.values()), off[worst],
-            'half widths of its 95 % interval', 1.0, f'the worst of twelve coefficients, {worst}'),
-    ]  # fmt: skip
+        MeasuredValue(
+            'estimate off the undisturbed one',
+            off[worst],
+            'half widths of its 95 % interval',
+            at_most(1.0),
+            f'the worst of twelve coefficients, {worst}',
+            low=min(off.values()),
+            high=off[worst],
+        ),
+    ]
 
 
-def _memory(calm: Tow, wild: Tow) -> list[StudyRow]:
+def _memory(calm: Tow, wild: Tow) -> list[MeasuredValue]:
     if not calm.glances or not wild.glances:
         return []
     rows = []
@@ -123,25 +139,29 @@ def _memory(calm: Tow, wild: Tow) -> list[StudyRow]:
         note = f'at the end; {before:.0f} MB undisturbed, {after:.0f} MB after chaos'
         growth = 100.0 * (after / before - 1.0)
         rows.append(
-            StudyRow(
-                f'{node}: memory above undisturbed', growth, unit='%', target=MOST_GROWTH, note=note
+            MeasuredValue(
+                f'{node}: memory above undisturbed', growth, '%', at_most(MOST_GROWTH), note
             )
         )
     return rows
 
 
-def _kills(kills: Kills) -> list[StudyRow]:
+def _kills(kills: Kills) -> list[MeasuredValue]:
     if not kills.recordings:
         return []
     messages = sum(recording.messages for recording in kills.recordings)
     images = sum(recording.images for recording in kills.recordings)
     return [
-        StudyRow('kills', float(len(kills.recordings))),
+        MeasuredValue('kills', float(len(kills.recordings))),
         *_bags(kills.recordings),
         *_lost(kills.recordings, 'before the kill'),
-        StudyRow('load', messages / kills.recorded_s, unit='messages/s',
-            note=f'of all topics of the chain, {images} images of the sonar among them'),
-    ]  # fmt: skip
+        MeasuredValue(
+            'load',
+            messages / kills.recorded_s,
+            'messages/s',
+            note=f'of all topics of the chain, {images} images of the sonar among them',
+        ),
+    ]
 
 
 def _short(words: str) -> str:

@@ -17,8 +17,8 @@ from trawl_ros.diagnosis.report.figures import gap_figure
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.lab.report.page import Page, write_page
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, between
+from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.scoring.worth import part_removed
 from trawl_ros.lab.studies.discrepancy.trials.making import WRONG_BY, floor_of, windows_of
@@ -26,6 +26,7 @@ from trawl_ros.lab.studies.discrepancy.trials.plan import FINER
 from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import BlindTrialPlan, PlannedTow
 from trawl_ros.lab.studies.identification.readings import wrong_by
+from trawl_ros.report.pictures import Drawing
 
 REPORT = 'counters.md'
 FATHOM = 1.8288
@@ -101,7 +102,7 @@ def read_table(path: Path) -> CounterTable:
 
 def run_counters(
     table: CounterTable, folder: Path, on_progress: OnProgress = ignore, seed: int = SEED
-) -> list[StudyRow]:
+) -> list[MeasuredValue]:
     """Make the trial, diagnose it with and without a baseline, and write the page.
 
     Parameters
@@ -148,12 +149,14 @@ def run_counters(
             f'blind tests, seed {seed}. With the baseline: {with_baseline.verdict}. '
             f'{headline(with_baseline)} Without it: {without.verdict}. {headline(without)}'
         ),
-        alternative='Errors on tows that decided nothing, before and after',
-        caption='Errors on tows that decided nothing, with boards alone, with the counters '
-        'repaired, and with the best other effect.',
     )
-    write_page(folder, page, [('Counters', rows)], figure)
-    return rows
+    caption = (
+        'Errors on tows that decided nothing, with boards alone, with the counters repaired, and '
+        'with the best other effect.'
+    )
+    return write_page(
+        folder, page, [Section('Counters', rows)], [Drawing('counters', caption, figure)]
+    )
 
 
 def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> Diagnosis:
@@ -163,7 +166,7 @@ def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> D
 
 def _rows(
     table: CounterTable, found: Diagnosis, without: Diagnosis, floor: Mapping[str, float]
-) -> list[StudyRow]:
+) -> list[MeasuredValue]:
     scale, offset = table.lines()
     values = {} if found.repair is None else values_of(found.repair.refit)
     nothing = (np.nan, np.nan, np.nan, '')
@@ -174,16 +177,37 @@ def _rows(
     named = [] if without.best is None else list(without.best.refit.names)
     others = [] if without.named is None else [*without.named.rivals, *without.named.alike]
     return [
-        StudyRow('counter_scale with a baseline', 100.0 * part[0], 100.0 * part[1], 100.0 * part[2],
-            '%', ABOUT_SCALE[1], f'a line through the table has {100.0 * scale:.2f} %',
-            ABOUT_SCALE[0]),
-        StudyRow('counter_offset with a baseline', metres[0], metres[1], metres[2], 'm',
-            ABOUT_OFFSET[1], f'a line through the table has {offset:.1f} m', ABOUT_OFFSET[0]),
-        StudyRow('held-out excess error removed', removed, unit='%', least=50.0,
-            note='beyond the errors that the plant itself would have' + other),
-        StudyRow('effects not told apart without a baseline', float(len({*named, *others})),
-            note=f'{without.verdict}: {", ".join(dict.fromkeys((*named, *others))) or "none"}'),
-    ]  # fmt: skip
+        MeasuredValue(
+            'counter_scale with a baseline',
+            100.0 * part[0],
+            '%',
+            between(ABOUT_SCALE[0], ABOUT_SCALE[1]),
+            f'a line through the table has {100.0 * scale:.2f} %',
+            low=100.0 * part[1],
+            high=100.0 * part[2],
+        ),
+        MeasuredValue(
+            'counter_offset with a baseline',
+            metres[0],
+            'm',
+            between(ABOUT_OFFSET[0], ABOUT_OFFSET[1]),
+            f'a line through the table has {offset:.1f} m',
+            low=metres[1],
+            high=metres[2],
+        ),
+        MeasuredValue(
+            'held-out excess error removed',
+            removed,
+            '%',
+            at_least(50.0),
+            'beyond the errors that the plant itself would have' + other,
+        ),
+        MeasuredValue(
+            'effects not told apart without a baseline',
+            float(len({*named, *others})),
+            note=f'{without.verdict}: {", ".join(dict.fromkeys((*named, *others))) or "none"}',
+        ),
+    ]
 
 
 def _removed(shown: HoldoutComparison | None, floor: Mapping[str, float]) -> tuple[float, str]:

@@ -1,16 +1,16 @@
 """Report of the study of hostile messages."""
 
-import json
 import math
 from pathlib import Path
 
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.core.files import made_folder, write_json
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.studies.hostile.study import MOST_MOVED, Found
 
 REPORT = 'hostile_messages.json'
 
 
-def rows_of(found: Found) -> list[StudyRow]:
+def rows_of(found: Found) -> list[MeasuredValue]:
     """Give the figures, and what was asked of them."""
     tallies, moved = found.tallies, found.moved
     sent = sum(sum(tally.sent.values()) for tally in tallies) + moved.sent
@@ -19,46 +19,49 @@ def rows_of(found: Found) -> list[StudyRow]:
     fields = sorted(name for tally in tallies for name in tally.not_finite)
     topics = sum(len(tally.sent) for tally in tallies)
     return [
-        StudyRow('hostile messages', sent, least=100_000),
-        StudyRow('subscriptions', topics),
-        StudyRow(
+        MeasuredValue('hostile messages', sent, target=at_least(100_000)),
+        MeasuredValue('subscriptions', topics),
+        MeasuredValue(
             'messages that nodes refused and counted', sum(tally.refused for tally in tallies)
         ),
-        StudyRow('nodes ended', len(ended), target=0, note=', '.join(ended)),
-        StudyRow(
+        MeasuredValue('nodes ended', len(ended), target=at_most(0), note=', '.join(ended)),
+        MeasuredValue(
             'nodes that do not answer to sound messages any more',
             len(mute),
-            target=0,
+            target=at_most(0),
             note=', '.join(mute),
         ),
-        StudyRow(
-            'fields published with NaN or infinity', len(fields), target=0, note=', '.join(fields)
+        MeasuredValue(
+            'fields published with NaN or infinity',
+            len(fields),
+            target=at_most(0),
+            note=', '.join(fields),
         ),
-        StudyRow(
+        MeasuredValue(
             'longest sentence on /diagnostics',
             max(t.longest_report for t in tallies),
-            unit='characters',
-            target=1000,
+            'characters',
+            at_most(1000),
         ),
-        StudyRow('hostile messages within the tow of the estimate', moved.sent),
-        StudyRow('of these and their readings told to be refused', moved.told),
-        StudyRow(
+        MeasuredValue('hostile messages within the tow of the estimate', moved.sent),
+        MeasuredValue('of these and their readings told to be refused', moved.told),
+        MeasuredValue(
             'estimates moved silently',
             int(moved.shift > MOST_MOVED and not moved.told),
-            target=0,
+            target=at_most(0),
             note=f'{moved.windows[0]} windows undisturbed, {moved.windows[1]} of the same tow with '
             'hostile messages',
         ),
-        StudyRow(
+        MeasuredValue(
             'largest change of a coefficient',
             moved.shift,
-            unit='std',
+            'std',
             note='' if math.isfinite(moved.shift) else 'no estimate, with a reason',
         ),
     ]
 
 
-def write_hostile(folder: Path, found: Found, seed: int) -> list[StudyRow]:
+def write_hostile(folder: Path, found: Found, seed: int) -> list[MeasuredValue]:
     """Write ``hostile_messages.json`` into a folder; give its rows."""
     rows = rows_of(found)
     nodes = {
@@ -72,6 +75,5 @@ def write_hostile(folder: Path, found: Found, seed: int) -> list[StudyRow]:
         for tally in found.tallies
     }
     content = {'seed': seed, 'rows': [row.record() for row in rows], 'nodes': nodes}
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / REPORT).write_text(json.dumps(content, indent=1) + '\n', encoding='utf-8')
+    write_json(made_folder(folder) / REPORT, content, indent=1)
     return rows

@@ -20,7 +20,7 @@ from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
 from trawl_ros.nodes.playback.excerpt import Excerpt
@@ -79,15 +79,15 @@ def replay(seconds: float = REPLAY_S) -> Replay:
     return found
 
 
-def replay_rows(found: Replay) -> list[StudyRow]:
+def replay_rows(found: Replay) -> list[MeasuredValue]:
     """Speed of a replay over real time on one core."""
     return [
-        StudyRow(
+        MeasuredValue(
             'replay through trawl identify',
             found.recorded_s / found.cpu_s,
-            unit='times real time',
-            least=LEAST_RATIO,
-            note=f'{found.recorded_s / 60.0:.0f} min of the sample trial by {found.cpu_s:.1f} s of '
+            'times real time',
+            at_least(LEAST_RATIO),
+            f'{found.recorded_s / 60.0:.0f} min of the sample trial by {found.cpu_s:.1f} s of '
             f'processor time ({found.wall_s:.1f} s of wall time): start, reading, windows, fit, '
             'tows left out, figures and page',
         )
@@ -162,26 +162,26 @@ def live(
     return Live(tuple(delays), share, wall_s)
 
 
-def live_rows(found: Live) -> list[StudyRow]:
+def live_rows(found: Live) -> list[MeasuredValue]:
     """Delay of estimates, and the node's share of a core."""
     delays = np.array(found.delays_s)
     there = len(delays) > 0
     return [
-        StudyRow(
+        MeasuredValue(
             "node in real time: estimate after its window's end",
             float(delays.max()) if there else math.nan,
-            float(delays.min()) if there else math.nan,
-            float(delays.max()) if there else math.nan,
-            unit='s',
-            target=LATEST_S,
-            note=f'the latest of {len(delays)} windows; least and most',
+            's',
+            at_most(LATEST_S),
+            f'the latest of {len(delays)} windows; least and most',
+            low=float(delays.min()) if there else math.nan,
+            high=float(delays.max()) if there else math.nan,
         ),
-        StudyRow(
+        MeasuredValue(
             'node in real time: share of a core',
             found.share,
-            unit='%',
-            target=MOST_OF_CORE,
-            note=f'mean over {found.wall_s / 60.0:.1f} min of the sample trial',
+            '%',
+            at_most(MOST_OF_CORE),
+            f'mean over {found.wall_s / 60.0:.1f} min of the sample trial',
         ),
     ]
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.studies.identification.rows import (
     COVERAGE,
     MOST_ERROR,
@@ -44,7 +44,7 @@ def trials_figure(
     return figure
 
 
-def _draw_rows(axes: Axes, rows: Sequence[StudyRow], asked: tuple[float, float]) -> None:
+def _draw_rows(axes: Axes, rows: Sequence[MeasuredValue], asked: tuple[float, float]) -> None:
     at = np.arange(len(rows))
     values, low, high = (np.array([getattr(row, key) for row in rows])
                          for key in ('value', 'low', 'high'))  # fmt: skip

@@ -7,7 +7,7 @@ from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.planning.plan import plan_trial
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
 from trawl_ros.lab.studies.identification.plant import Cut, State
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import CHANNELS, MEASURED
@@ -25,21 +25,21 @@ LOOKED_AT: tuple[State, ...] = (
 """States in which model and plant are compared."""
 
 
-def planning_rows(gear: str) -> list[StudyRow]:
+def planning_rows(gear: str) -> list[MeasuredValue]:
     """Number of law quantities that a six-hour trial makes well known."""
     plan = plan_trial(load_gear(gear), hours=HOURS)
     limits = '; '.join(f'{name}: {what}' for name, what in plan.limits.items())
     rows = [
-        StudyRow(
+        MeasuredValue(
             'planned six hours: values and slopes of laws that are well known',
             int(plan.trial.known.well_known.sum()),
-            least=LEAST_KNOWN,
+            target=at_least(LEAST_KNOWN),
             note=f'of {len(QUANTITIES)}: standard deviation below 20 % of what the law spans over '
             f'15° of its angle; what limits the others: {limits or "nothing"}',
         )
     ]
     rows += [
-        StudyRow(
+        MeasuredValue(
             f'the same six hours as a {sweep.name}',
             int(sweep.known.well_known.sum()),
             note=f'{len(sweep.legs)} legs, {sweep.minutes:.0f} min; 0 to {MOST_SWEEP} expected',
@@ -49,7 +49,7 @@ def planning_rows(gear: str) -> list[StudyRow]:
     return rows
 
 
-def model_error_rows(gear: str, cut: Cut) -> list[StudyRow]:
+def model_error_rows(gear: str, cut: Cut) -> list[MeasuredValue]:
     """Differences of a model and a plant, both with the board of the gear file."""
     model, plant = (_looks(record) for record in (cut.model(gear), cut.plant(gear)))
     rows = []
@@ -59,13 +59,13 @@ def model_error_rows(gear: str, cut: Cut) -> list[StudyRow]:
         difference = plant[:, columns] - model[:, columns]
         parts = np.degrees(difference) if angle else 100.0 * difference / model[:, columns]
         rows.append(
-            StudyRow(
+            MeasuredValue(
                 f'plant less model ({cut.around} meshes): {group.replace("_", " ")}',
                 float(np.sqrt(np.mean(parts**2))),
-                float(parts.min()),
-                float(parts.max()),
-                unit='deg' if angle else '%',
+                'deg' if angle else '%',
                 note=f'{cut}; root mean square over {len(LOOKED_AT)} steady states, least and most',
+                low=float(parts.min()),
+                high=float(parts.max()),
             )
         )
     return rows

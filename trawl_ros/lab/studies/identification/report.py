@@ -7,14 +7,15 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.report.machine import cpu_model, software
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS
 from trawl_ros.lab.studies.identification.readings import CORRELATION_S
 from trawl_ros.lab.studies.identification.study import COVERAGE, EstimationStudyPlan
 from trawl_ros.lab.studies.identification.trial import WRONG_BY
+from trawl_ros.report.pictures import Drawing
 
 REPORT = 'identification.md'
-ALTERNATIVE = 'Coverage and spread by coefficient, errors on tows left out'
 CAPTION = (
     'Above: how often the 95 % interval of a coefficient covers the truth. Middle: root mean '
     'square error over the Bayesian Cramér–Rao bound. Below: errors on tows left out, those of a '
@@ -25,17 +26,15 @@ CAPTION = (
 
 def write_identification(
     folder: Path, plan: EstimationStudyPlan, sections: Sequence[Section], figure: Figure
-) -> None:
-    """Write ``identification.json``, ``.md``, ``.html`` and ``.png`` into a folder."""
+) -> list[MeasuredValue]:
+    """Write ``identification.json``, ``.md``, ``.html``, ``.png`` into a folder; give the rows."""
     page = Page(
         name='identification',
         title='What identification is worth',
         command=f'trawl study identification{_options(plan)}',
         method=_method(plan),
-        alternative=ALTERNATIVE,
-        caption=CAPTION,
     )
-    write_page(folder, page, sections, figure)
+    return write_page(folder, page, sections, [Drawing(page.name, CAPTION, figure)])
 
 
 def _options(plan: EstimationStudyPlan) -> str:

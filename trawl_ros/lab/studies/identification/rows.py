@@ -8,7 +8,7 @@ from scipy.stats import binomtest
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.prior import BoardPrior
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
 from trawl_ros.lab.studies.identification.trial import EstimationTrial
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -29,26 +29,29 @@ AGAIN = 'interval by drawing trials again'
 SEED = 7
 
 
-def coverage_rows(trials: Sequence[EstimationTrial], series: str, *, asked: bool) -> list[StudyRow]:
+def coverage_rows(
+    trials: Sequence[EstimationTrial], series: str, *, asked: bool
+) -> list[MeasuredValue]:
     """Share of truths inside the intervals, of all coefficients together and of each."""
     if not trials:
         return [
-            StudyRow(f'{series}: 95 % intervals that cover the truth', np.nan, note='no trials')
+            MeasuredValue(
+                f'{series}: 95 % intervals that cover the truth', np.nan, note='no trials'
+            )
         ]
-    least, most = COVERAGE if asked else (None, None)
+    target = between(*COVERAGE) if asked else None
     truth, low, high = (_array(trials, name) for name in ('truth', 'low', 'high'))
     inside = (low <= truth) & (truth <= high)
     low_all, high_all = _interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
     rows = [
-        StudyRow(
+        MeasuredValue(
             f'{series}: 95 % intervals that cover the truth',
             float(100.0 * inside.mean()),
+            '%',
+            target,
+            f'all twelve of {len(trials)} trials; {AGAIN}',
             low=float(low_all),
             high=float(high_all),
-            unit='%',
-            least=least,
-            target=most,
-            note=f'all twelve of {len(trials)} trials; {AGAIN}',
         )
     ]
     if not asked:
@@ -57,15 +60,14 @@ def coverage_rows(trials: Sequence[EstimationTrial], series: str, *, asked: bool
         count = int(inside[:, column].sum())
         ends = binomtest(count, len(trials)).proportion_ci(method='exact')
         rows.append(
-            StudyRow(
+            MeasuredValue(
                 f'{series}: intervals of {name} that cover the truth',
                 100.0 * count / len(trials),
+                '%',
+                target,
+                'binomial 95 % interval (Clopper and Pearson)',
                 low=100.0 * ends.low,
                 high=100.0 * ends.high,
-                unit='%',
-                least=least,
-                target=most,
-                note='binomial 95 % interval (Clopper and Pearson)',
             )
         )
     return rows
@@ -75,10 +77,10 @@ OTHER_BOUND = (1, 2, 3)
 """Places of rows that explain, and of which nothing is asked."""
 
 
-def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[StudyRow]:
+def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[MeasuredValue]:
     """Root mean square error over the Bayesian Cramér–Rao bound (Van Trees)."""
     if not trials:
-        return [StudyRow('spread of estimates over its bound', np.nan, note='no trials')]
+        return [MeasuredValue('spread of estimates over its bound', np.nan, note='no trials')]
     error = _array(trials, 'values') - _array(trials, 'truth')
     known = np.array([trial.information for trial in trials])
     before = np.diag(prior.std**-2)
@@ -100,7 +102,6 @@ def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[St
 
     values = figures(np.arange(len(trials)))
     ends = _interval(figures, len(trials))
-    least, most = SPREAD
     texts = [
         (
             'spread of estimates over its bound',
@@ -124,15 +125,14 @@ def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[St
         *((f'spread of {name} over its bound', AGAIN) for name in COEFFICIENTS),
     ]
     return [
-        StudyRow(
+        MeasuredValue(
             what,
             float(value),
-            float(low),
-            float(high),
             # Only one of the two bounds is what was asked for.
-            least=None if place in OTHER_BOUND else least,
-            target=None if place in OTHER_BOUND else most,
+            target=None if place in OTHER_BOUND else between(*SPREAD),
             note=note,
+            low=float(low),
+            high=float(high),
         )
         for place, ((what, note), value, low, high) in enumerate(
             zip(texts, values, *ends, strict=True)
@@ -140,10 +140,10 @@ def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[St
     ]
 
 
-def held_out_rows(trials: Sequence[EstimationTrial]) -> list[StudyRow]:
+def held_out_rows(trials: Sequence[EstimationTrial]) -> list[MeasuredValue]:
     """Errors on tows left out, and how they compare with a perfect model's."""
     if not trials:
-        return [StudyRow('tows left out: error', np.nan, note='no trials')]
+        return [MeasuredValue('tows left out: error', np.nan, note='no trials')]
     channels = len(PAPER_CHANNELS)
     measured, predicted, perfect = (
         _array(trials, name).reshape(len(trials), -1, channels)
@@ -168,46 +168,46 @@ def held_out_rows(trials: Sequence[EstimationTrial]) -> list[StudyRow]:
     for column, channel in enumerate(PAPER_CHANNELS):
         name = channel.name.replace('_', ' ')
         rows += [
-            StudyRow(
+            MeasuredValue(
                 f'tows left out: error in {name}',
                 float(errors[column]),
-                float(low[0, column]),
-                float(high[0, column]),
-                unit='%',
-                target=MOST_ERROR[channel.name],
-                note='mean error over mean measured value'
+                '%',
+                at_most(MOST_ERROR[channel.name]),
+                'mean error over mean measured value'
                 + (f'; {missing} states have none in the fitted model' if missing else ''),
+                low=float(low[0, column]),
+                high=float(high[0, column]),
             ),
-            StudyRow(
+            MeasuredValue(
                 f'tows left out: error in {name} over that of a perfect model',
                 float(beyond[column]),
-                float(low[1, column]),
-                float(high[1, column]),
-                target=OVER_FLOOR,
+                target=at_most(OVER_FLOOR),
                 note=f'the plant itself, at inputs as measured, is {floors[column]:.2f} % off for '
                 'noise and biases of these tows',
+                low=float(low[1, column]),
+                high=float(high[1, column]),
             ),
         ]
     return rows
 
 
-def board_rows(trials: Sequence[EstimationTrial]) -> list[StudyRow]:
+def board_rows(trials: Sequence[EstimationTrial]) -> list[MeasuredValue]:
     """Convergence of fits, and rate of boards that could not be towed."""
     rejected = sum((Counter(trial.rejected) for trial in trials), Counter[str]())
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
     drawn = len(trials) + rejected.total()
     rest = [trial.converged for trial in trials]
     return [
-        StudyRow(
+        MeasuredValue(
             'fits that came to rest',
             100.0 * float(np.mean(rest)) if trials else np.nan,
-            unit='%',
+            '%',
             note=f'{sum(rest)} of {len(rest)}; those that did not count in all figures',
         ),
-        StudyRow(
+        MeasuredValue(
             'boards drawn from the prior that cannot be towed',
             100.0 * rejected.total() / drawn if drawn else np.nan,
-            unit='%',
+            '%',
             note=f'of {drawn}; drawn again ({reasons or "none"})',
         ),
     ]

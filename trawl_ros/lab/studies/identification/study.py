@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore, step_counter
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.studies.identification.costs import LIVE_S, live, live_rows, replay, replay_rows
 from trawl_ros.lab.studies.identification.figure import trials_figure
 from trawl_ros.lab.studies.identification.kept import KeptTrials
@@ -99,7 +99,7 @@ class EstimationStudyPlan:
 class Found:
     """Result: all rows by section, and a figure of the trials."""
 
-    sections: tuple[tuple[str, tuple[StudyRow, ...]], ...]
+    sections: tuple[Section, ...]
     figure: Figure
 
 
@@ -132,12 +132,12 @@ def run_study(
     kept = run_trials(plan, folder, on_progress, scheduler=scheduler, force=force)
     coverage, bound, mouth = (trials_of(plan, kept, series) for series in SERIES)
     prior = board_prior(load_gear(plan.gear))
-    sections: list[tuple[str, tuple[StudyRow, ...]]] = [
-        ('Intervals', (*coverage_rows(coverage, COVERAGE.words, asked=True),
+    sections: list[Section] = [
+        Section('Intervals', (*coverage_rows(coverage, COVERAGE.words, asked=True),
                        *(coverage_rows(mouth, MOUTH.words, asked=False) if plan.mouth else ()))),
-        ('Spread of the estimates', tuple(spread_rows(bound, prior))),
-        ('Tows left out', tuple(held_out_rows(coverage))),
-        ('The trials', tuple(board_rows((*coverage, *bound, *mouth)))),
+        Section('Spread of the estimates', spread_rows(bound, prior)),
+        Section('Tows left out', held_out_rows(coverage)),
+        Section('The trials', board_rows((*coverage, *bound, *mouth))),
     ]  # fmt: skip
     if not small:
         done = step_counter('model beside plant', 2, on_progress)
@@ -145,14 +145,14 @@ def run_study(
         for cut in (plan.cut(COVERAGE), DEFAULT_FINER):
             rows += model_error_rows(plan.gear, cut)
             done()
-        sections.append(('Model and plant', tuple(rows)))
+        sections.append(Section('Model and plant', rows))
         on_progress(WorkProgress('planning'))
-        sections.append(('A planned trial', tuple(planning_rows(plan.gear))))
+        sections.append(Section('A planned trial', planning_rows(plan.gear)))
         on_progress(WorkProgress('replay'))
         costs = replay_rows(replay())
         if plan.live_s > 0.0:
             costs += live_rows(live(plan.live_s, folder / 'log', on_progress))
-        sections.append(('Cost', tuple(costs)))
+        sections.append(Section('Cost', costs))
     return Found(tuple(sections), trials_figure(coverage, bound, prior))
 
 

@@ -7,38 +7,48 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.core.files import write_figure, write_json, write_text
 from trawl_ros.lab.report.machine import cpu_model, software
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.lab.running.chain import CHAIN, CONSUMERS, Glance
 from trawl_ros.lab.studies.soak.rows import MOST_GROWTH, WARM_SHARE, series, soak_rows
-from trawl_ros.lab.studies.soak.study import SETTLE_S, Soak
-from trawl_ros.report.rendering import DPI, page
+from trawl_ros.lab.studies.soak.study import SETTLE_S, Soak, SoakPlan
+from trawl_ros.report.pictures import Drawing
 
-JSON, REPORT, FIGURE = 'soak.json', 'soak.md', 'soak.png'
+REPORT = 'soak.md'
 
 
-def write_soak(folder: Path, soak: Soak) -> list[StudyRow]:
-    """Write ``soak.json``, ``soak.md`` and ``soak.png`` into a folder; return the rows."""
-    rows = soak_rows(soak)
-    records = [row.record() for row in rows]
-    write_json(folder / JSON, {'rows': records}, indent=1, ensure_ascii=False)
-    write_figure(folder / FIGURE, soak_figure(soak.fast, soak.plan.hours), DPI)
-    text = page(
-        'trawl_ros.lab.studies.soak',
-        REPORT,
-        rows=rows,
-        asked=[row for row in rows if row.target is not None],
-        plan=soak.plan,
-        warm_share=WARM_SHARE,
-        settle_s=SETTLE_S,
-        cpu=cpu_model(),
-        cores=os.cpu_count(),
-        software=software(),
-        figure=FIGURE,
-    )  # fmt: skip
-    write_text(folder / REPORT, text)
-    return rows
+def write_soak(folder: Path, soak: Soak) -> list[MeasuredValue]:
+    """Write ``soak.json``, ``.md``, ``.html`` and ``.png`` into a folder; return the rows."""
+    plan = soak.plan
+    page = Page(
+        name='soak',
+        title='A long tow through the graph',
+        command=f'trawl study soak --hours {plan.hours:g} --gear {plan.gear} '
+        f'--real-time-s {plan.real_time_s:g}{" --coarse" if plan.coarse else ""}',
+        method=_method(plan),
+    )
+    caption = 'Memory, delay and pace over the tow; what is left out as warm-up is grey.'
+    drawing = Drawing('soak', caption, soak_figure(soak.fast, plan.hours))
+    return write_page(folder, page, [Section('The tow', soak_rows(soak))], [drawing])
+
+
+def _method(plan: SoakPlan) -> str:
+    """Method in sentences."""
+    net = ', with a net of 12 meshes around' if plan.coarse else ''
+    real = (
+        f', and then for {plan.real_time_s:g} s in real time'
+        f'{", with the gear as it is and" if plan.coarse else " with"} truth ten times a second'
+    )
+    versions = ', '.join(f'{name} {version}' for name, version in software().items())
+    return (
+        '`sim_node`, the instrument nodes and `bag_recorder`, each a process of its own, towed as '
+        f'fast as they could ({plan.hours:g} h at sea{net}, truth {plan.truth_rate_hz:g} times a '
+        f'second, warps hauled and veered by 20 m now and then){real if plan.real_time_s else ""}. '
+        f'Growth is that after the first {100.0 * WARM_SHARE:g} % of the tow; in real time the '
+        f'first {SETTLE_S:g} s do not count. On {os.cpu_count()} cores of {cpu_model()}, with '
+        f'{versions}.'
+    )
 
 
 PARTS = round(1.0 / WARM_SHARE)

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import theilslopes
 
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.running.chain import CHAIN, CONSUMERS, Glance
 from trawl_ros.lab.studies.soak.study import SETTLE_S, Soak
 
@@ -22,7 +22,7 @@ FEWEST = 10
 """Glances without which no trend is told."""
 
 
-def soak_rows(soak: Soak) -> list[StudyRow]:
+def soak_rows(soak: Soak) -> list[MeasuredValue]:
     """Return the rows of both runs."""
     warm = [g for g in soak.fast if g.data_s >= WARM_SHARE * 3600.0 * soak.plan.hours]
     towed = soak.fast[-1].data_s / 3600.0 if soak.fast else 0.0
@@ -30,9 +30,14 @@ def soak_rows(soak: Soak) -> list[StudyRow]:
     # The last glance is a little before the end.
     nearly = soak.plan.hours * 0.01
     rows = [
-        StudyRow('tow that is missing to the whole', missing, unit='h', target=nearly,
-            note=f'{towed:.3g} of {soak.plan.hours:g} h at sea were towed'),
-    ]  # fmt: skip
+        MeasuredValue(
+            'tow that is missing to the whole',
+            missing,
+            'h',
+            at_most(nearly),
+            f'{towed:.3g} of {soak.plan.hours:g} h at sea were towed',
+        ),
+    ]
     if len(warm) >= FEWEST:
         rows += [_memory_growth(node, warm) for node in CHAIN]
         rows += [_memory(node, warm) for node in CHAIN]
@@ -46,77 +51,109 @@ def soak_rows(soak: Soak) -> list[StudyRow]:
     return rows
 
 
-def _memory_growth(node: str, glances: Sequence[Glance]) -> StudyRow:
+def _memory_growth(node: str, glances: Sequence[Glance]) -> MeasuredValue:
     seen = [g.memory_mb[node] for g in glances]
     growth, low, high = _trend(glances, lambda g: g.memory_mb[node])
     scale = 100.0 / float(np.mean(seen))
-    return StudyRow(
-        f'{node}: growth of memory', growth * scale, low * scale, high * scale, '% of its mean',
-        MOST_GROWTH, 'median slope (Theil-Sen) times the time after warm-up; 95 % interval',
-    )  # fmt: skip
+    return MeasuredValue(
+        f'{node}: growth of memory',
+        growth * scale,
+        '% of its mean',
+        at_most(MOST_GROWTH),
+        'median slope (Theil-Sen) times the time after warm-up; 95 % interval',
+        low=low * scale,
+        high=high * scale,
+    )
 
 
-def _memory(node: str, glances: Sequence[Glance]) -> StudyRow:
+def _memory(node: str, glances: Sequence[Glance]) -> MeasuredValue:
     seen = [g.memory_mb[node] for g in glances]
     note = 'resident; mean, least and most after warm-up'
-    return StudyRow(f'{node}: memory', float(np.mean(seen)), min(seen), max(seen), 'MB', note=note)
+    return MeasuredValue(
+        f'{node}: memory', float(np.mean(seen)), 'MB', note=note, low=min(seen), high=max(seen)
+    )
 
 
-def _delay_growth(node: str, glances: Sequence[Glance], most_s: float) -> StudyRow:
+def _delay_growth(node: str, glances: Sequence[Glance], most_s: float) -> MeasuredValue:
     growth, low, high = _trend(glances, lambda g: g.delay_s.get(node, np.nan))
-    return StudyRow(
-        f'{node}: growth of the delay', growth, low, high, 's', most_s,
+    return MeasuredValue(
+        f'{node}: growth of the delay',
+        growth,
+        's',
+        at_most(most_s),
         'at most one truth; median slope (Theil-Sen) times the time after warm-up; 95 % interval',
-    )  # fmt: skip
+        low=low,
+        high=high,
+    )
 
 
-def _delay(node: str, glances: Sequence[Glance]) -> StudyRow:
+def _delay(node: str, glances: Sequence[Glance]) -> MeasuredValue:
     seen = [g.delay_s[node] for g in glances if node in g.delay_s]
     note = (
         'time at sea between the newest truth and what the node has dealt with, as the study '
         'hears of both; mean, and least and most of means between two glances'
     )
     mean, least, most = (float(f(seen)) if seen else np.nan for f in (np.mean, min, max))
-    return StudyRow(f'{node}: delay', mean, least, most, 's', note=note)
+    return MeasuredValue(f'{node}: delay', mean, 's', note=note, low=least, high=most)
 
 
-def _effort(node: str, glances: Sequence[Glance]) -> StudyRow:
+def _effort(node: str, glances: Sequence[Glance]) -> MeasuredValue:
     def of(piece: Sequence[Glance]) -> float:
         hours = (piece[-1].data_s - piece[0].data_s) / 3600.0
         return (piece[-1].cpu_s[node] - piece[0].cpu_s[node]) / hours
 
     pieces = [of(piece) for piece in _pieces(glances)]
     note = f'least and most of {len(pieces)} pieces of the tow'
-    return StudyRow(f'{node}: processor time', of(glances), min(pieces), max(pieces),
-               's per hour at sea', note=note)  # fmt: skip
+    return MeasuredValue(
+        f'{node}: processor time',
+        of(glances),
+        's per hour at sea',
+        note=note,
+        low=min(pieces),
+        high=max(pieces),
+    )
 
 
-def _pace(glances: Sequence[Glance]) -> StudyRow:
+def _pace(glances: Sequence[Glance]) -> MeasuredValue:
     pieces = [
         (piece[-1].data_s - piece[0].data_s) / (piece[-1].wall_s - piece[0].wall_s)
         for piece in _pieces(glances)
     ]
     whole = (glances[-1].data_s - glances[0].data_s) / (glances[-1].wall_s - glances[0].wall_s)
     note = f'least and most of {len(pieces)} pieces of the tow'
-    return StudyRow('times real time', whole, min(pieces), max(pieces), note=note)
+    return MeasuredValue('times real time', whole, note=note, low=min(pieces), high=max(pieces))
 
 
-def _bag(soak: Soak, towed: float) -> StudyRow:
-    return StudyRow('bag', soak.bag_mb / max(towed, 1e-9), unit='MB per hour at sea')
+def _bag(soak: Soak, towed: float) -> MeasuredValue:
+    return MeasuredValue('bag', soak.bag_mb / max(towed, 1e-9), 'MB per hour at sea')
 
 
-def _shares(glances: Sequence[Glance]) -> list[StudyRow]:
+def _shares(glances: Sequence[Glance]) -> list[MeasuredValue]:
     """Share of a core used by each node in real time, and by all together."""
     note = f'least and most of {len(_pieces(glances))} pieces'
     rows = []
     for node in CHAIN:
         whole, low, high = _share(glances, _cpu_of(node))
-        rows.append(StudyRow(f'{node}: in real time', whole, low, high, '% of a core', note=note))
+        rows.append(
+            MeasuredValue(
+                f'{node}: in real time', whole, '% of a core', note=note, low=low, high=high
+            )
+        )
     whole, low, high = _share(glances, lambda g: sum(g.cpu_s.values()))
-    rows.append(StudyRow('the chain in real time', whole, low, high, '% of a core', ONE_CORE, note))
+    rows.append(
+        MeasuredValue(
+            'the chain in real time',
+            whole,
+            '% of a core',
+            at_most(ONE_CORE),
+            note,
+            low=low,
+            high=high,
+        )
+    )
     first, last = glances[0], glances[-1]
     pace = (last.data_s - first.data_s) / (last.wall_s - first.wall_s)
-    rows.append(StudyRow('pace asked to be real time', pace, unit='times real time'))
+    rows.append(MeasuredValue('pace asked to be real time', pace, 'times real time'))
     return rows
 
 

@@ -1,31 +1,46 @@
-"""Report of the study of the trawl sonar: JSON, Markdown and a figure."""
+"""Report of the study of the trawl sonar: JSON, Markdown, HTML and a figure."""
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.core.files import write_figure, write_json, write_text
+from trawl_ros.core.files import finite
+from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.studies.sonar.study import SHOWN, STATES, SonarMeasurement, figures
 from trawl_ros.plots.records import SonarPicture
 from trawl_ros.plots.sonar import BACKGROUND, ECHOES, draw, prepare
-from trawl_ros.report import style
-from trawl_ros.report.rendering import page
+from trawl_ros.report.pictures import Drawing
 
-JSON, REPORT, PICTURE = 'sonar.json', 'sonar.md', 'sonar.png'
+REPORT = 'sonar.md'
+CAPTION = (
+    'Sweeps at 500 m of warp: the net alone, with its ropes as circles; the same sweep as it is in '
+    'the message; dense fish between the ropes; the seabed in view. Blue is what was read off.'
+)
 
 
 def write_sonar(folder: Path, measured: Sequence[SonarMeasurement], sweeps: int) -> None:
-    """Write ``sonar.json``, ``sonar.md`` and ``sonar.png`` into a folder."""
-    folder.mkdir(parents=True, exist_ok=True)
-    rows = [_row(case) for case in measured]
-    write_json(folder / JSON, {'sweeps': sweeps, 'cases': rows}, indent=1)
-    about = {'rows': rows, 'sweeps': sweeps, 'picture': PICTURE, 'states': scatter(measured)}
-    write_text(folder / REPORT, page('trawl_ros.lab.studies.sonar', REPORT, **about))
-    write_figure(folder / PICTURE, sonar_figure(measured), style.DPI)
+    """Write ``sonar.json``, ``.md``, ``.html`` and ``.png`` into a folder."""
+    states, rows = scatter(measured), [_row(case) for case in measured]
+    page = Page(
+        name='sonar',
+        title="The openings, as they are read off the trawl sonar's image",
+        command=f'trawl study sonar --sweeps {sweeps}',
+        method=f'{sweeps} sweeps of each case, readings less the truth in the middle of the sweep, '
+        'm. "Unread" counts sweeps that gave NaN. Over the states of the gear alone, the first '
+        f'{len(STATES)}, the scatter is {states["height"]:.2f} m of the height and '
+        f'{states["width"]:.2f} m of the width.',
+    )
+    write_page(
+        folder,
+        page,
+        [Section('The cases', tables=[_table(rows)])],
+        [Drawing('sonar', CAPTION, sonar_figure(measured))],
+        record={'sweeps': sweeps, 'cases': rows},
+    )
 
 
 def scatter(measured: Sequence[SonarMeasurement]) -> dict[str, float]:
@@ -41,17 +56,31 @@ def _together(scatters: Sequence[float]) -> float:
     return float(np.sqrt(np.mean(np.square(scatters)))) if scatters else float('nan')
 
 
-def _row(measured: SonarMeasurement) -> dict[str, object]:
+def _row(measured: SonarMeasurement) -> dict[str, Any]:
     def side(readings: np.ndarray, truth: np.ndarray) -> dict[str, float | None]:
         found = {'truth': float(truth.mean()), **asdict(figures(readings, truth))}
-        # What could not be measured is null.
-        return {key: value if math.isfinite(value) else None for key, value in found.items()}
+        return {key: finite(value) for key, value in found.items()}
 
     return {
         'name': measured.case.name,
         'height': side(measured.height, measured.true_height),
         'width': side(measured.width, measured.true_width),
     }
+
+
+def _table(rows: Sequence[Mapping[str, Any]]) -> TextTable:
+    def cells(side: Mapping[str, float | None]) -> Iterator[str]:
+        yield f'{side["truth"]:.1f}'
+        for key in ('bias', 'scatter', 'worst'):
+            yield '' if side[key] is None else f'{side[key]:.2f}'
+        yield f'{side["unread"]:g}'
+
+    errors = ('bias', 'scatter', 'worst', 'unread')
+    return TextTable(
+        'The openings as they are, and the errors of what was read, m.',
+        ('case', 'height', *errors, 'width', *errors),
+        tuple((row['name'], *cells(row['height']), *cells(row['width'])) for row in rows),
+    )
 
 
 def sonar_figure(measured: Sequence[SonarMeasurement]) -> Figure:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.report.check import Check
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
 from trawl_ros.lab.validation.branches.continuation import SAME, Answer
 from trawl_ros.lab.validation.branches.lattices import Lattice
 from trawl_ros.model.board_law import LAW_RANGE
@@ -39,7 +39,7 @@ def usable(lattices: Sequence[Lattice]) -> list[Answer]:
     ]
 
 
-def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[Check]:
+def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[MeasuredValue]:
     """Checks that hold for any map; ``name`` begins their keys.
 
     Raises
@@ -58,69 +58,63 @@ def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[Check]:
     low, high = np.degrees(LAW_RANGE)
     searches = sum(answer.searches for answer in good)
     return [
-        Check(
-            f'{name}_apart',
+        MeasuredValue(
             'distance between the states to which different starts lead, at usable places',
             max(answer.apart for answer in good),
-            SAME,
-            rule='at_most',
-            unit='m',
-            note=f'{searches} searches at {len(good)} places: from every neighbour, so both ways '
+            'm',
+            at_most(SAME),
+            f'{searches} searches at {len(good)} places: from every neighbour, so both ways '
             'along each line of the map, and at every third place cold.',
+            key=f'{name}_apart',
         ),
-        Check(
-            f'{name}_depends_on_start',
+        MeasuredValue(
             'usable places at which some start found nothing',
             sum(not answer.agreed for answer in good),
-            0.0,
+            target=within(0.0, of=0.0),
+            key=f'{name}_depends_on_start',
         ),
-        Check(
-            f'{name}_second_branch',
+        MeasuredValue(
             'places with more than one usable state',
             sum(answer.usable_roots > 1 for answer in every),
-            0.0,
+            target=within(0.0, of=0.0),
+            key=f'{name}_second_branch',
         ),
-        Check(
-            f'{name}_lowest_attack',
+        MeasuredValue(
             'smallest attack angle of a usable state',
             float(attacks.min()),
-            low,
-            rule='at_least',
-            unit='°',
-            note='The range of eq. 14; on the collapsed branch α is negative, or above 40°.',
+            '°',
+            at_least(low),
+            'The range of eq. 14; on the collapsed branch α is negative, or above 40°.',
+            key=f'{name}_lowest_attack',
         ),
-        Check(
-            f'{name}_highest_attack',
+        MeasuredValue(
             'largest attack angle of a usable state',
             float(attacks.max()),
-            high,
-            rule='at_most',
-            unit='°',
+            '°',
+            at_most(high),
+            key=f'{name}_highest_attack',
         ),
-        Check(
-            f'{name}_normal',
+        MeasuredValue(
             'smallest vertical part of an outward normal in a usable state',
             float(np.min(normals)),
-            COLLAPSED_NORMAL,
-            rule='at_least',
+            target=at_least(COLLAPSED_NORMAL),
             note='A board counts as collapsed below this.',
+            key=f'{name}_normal',
         ),
-        Check(
-            f'{name}_slowest',
+        MeasuredValue(
             'longest CPU time of one answer, refusals included',
             max(answer.seconds for answer in every),
-            PATIENCE,
-            rule='at_most',
-            unit='s',
-            note='Searches end after a fixed number of iterations, whatever they meet.',
+            's',
+            at_most(PATIENCE),
+            'Searches end after a fixed number of iterations, whatever they meet.',
+            key=f'{name}_slowest',
         ),
     ]
 
 
-def smoothness_checks(lattice: Lattice) -> Iterator[Check]:
+def smoothness_checks(lattice: Lattice) -> Iterator[MeasuredValue]:
     """Check that a map over speed is smooth, and monotone in warp length where it should be."""
-    yield Check(
-        'jump',
+    yield MeasuredValue(
         'largest change of the attack angle from one usable place to the next',
         max(
             (
@@ -130,21 +124,21 @@ def smoothness_checks(lattice: Lattice) -> Iterator[Check]:
             ),
             default=0.0,
         ),
-        JUMP,
-        rule='at_most',
-        unit='°',
-        note='A step onto another branch would show as a jump.',
+        '°',
+        at_most(JUMP),
+        'A step onto another branch would show as a jump.',
+        key='jump',
     )
     for k, (name, read) in enumerate(GROWING.items()):
         falls = sum(
             bool(read(long) <= read(short)) for short, long in _neighbouring(lattice, along=(1, 0))
         )
-        yield Check(
-            f'grows_{k + 1}',
+        yield MeasuredValue(
             f'steps of warp length, at one speed, along which {name} does not grow',
             falls,
-            0.0,
+            target=within(0.0, of=0.0),
             note='The paper, Fig. 6 and 13–16.',
+            key=f'grows_{k + 1}',
         )
 
 

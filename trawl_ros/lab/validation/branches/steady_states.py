@@ -8,7 +8,8 @@ import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, within
+from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.branches.collapsed_starts import Tally, collapsed_shapes, tally
 from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
@@ -20,7 +21,9 @@ from trawl_ros.lab.validation.branches.lattices import (
     speed_lattice,
 )
 from trawl_ros.lab.validation.branches.maps import LOOKS, angle_figure, speed_figure
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.equilibrium import COLLAPSED_NORMAL, Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.relax import relax
@@ -67,7 +70,7 @@ HOPELESS = 500.0, 1.5
 """A warp length (m) and speed (m/s) at which the gear cannot be towed."""
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Continue over the maps and search from collapsed shapes."""
     size = SMALL if small else FULL
     gear = load_gear('kaifuha')
@@ -78,8 +81,8 @@ def run(small: bool) -> CaseOutcome:
     speeds = speed_lattice(model, size.lengths, size.speeds)
     angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
     collapsed_checks, collapsed_table = _collapsed(model, size)
-    return CaseOutcome(
-        checks=(
+    return Findings(
+        rows=(
             _working('working_speeds', 'warp lengths and speeds of 1.9 to 2.3 m/s', [speeds]),
             _working('installed', 'warp lengths and installation angles up to ±5°', angles),
             *branch_checks('speed', [speeds]),
@@ -88,13 +91,13 @@ def run(small: bool) -> CaseOutcome:
             *collapsed_checks,
         ),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'speed',
                 'Steady states over warp length and speed; numbers are attack angles in degrees, '
                 'also of states that are refused.',
                 speed_figure(speeds),
             ),
-            CaseFigure(
+            Drawing(
                 'angles',
                 f'Steady states over warp length and installation angles at {SPEED:g} m/s; '
                 'numbers are attack angles in degrees.',
@@ -106,7 +109,7 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _working(key: str, what: str, lattices: Sequence[Lattice]) -> Check:
+def _working(key: str, what: str, lattices: Sequence[Lattice]) -> MeasuredValue:
     """Share of usable places in the gear's working range."""
     low, high = WORKING if key == 'working_speeds' else (-INSTALLED, INSTALLED)
     places = [
@@ -123,17 +126,17 @@ def _working(key: str, what: str, lattices: Sequence[Lattice]) -> Check:
     note = f'{len(places)} places.'
     if refused:
         note = f'Of {len(places)} places {len(refused)} refused: {"; ".join(refused)}.'
-    return Check(
-        key,
+    return MeasuredValue(
         f'share of usable places among {what}',
         100.0 * (1.0 - len(refused) / len(places)),
-        100.0,
-        unit='%',
-        note=note,
+        '%',
+        within(0.0, of=100.0),
+        note,
+        key=key,
     )
 
 
-def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[Check], TextTable]:
+def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue], TextTable]:
     """Search from collapsed shapes, with and without a steady state at hand."""
     rows = []
     tallies: list[Tally] = []
@@ -149,12 +152,12 @@ def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[Check], TextTab
     rows.append(_row(length, speed, tallies[-1]))
     total = sum(each.searches for each in tallies)
     checks = [
-        Check(
-            'collapsed_starts',
+        MeasuredValue(
             'searches from a collapsed shape that gave another state than the good branch',
             sum(each.other for each in tallies),
-            0.0,
+            target=within(0.0, of=0.0),
             note=f'{total} searches; the good branch is the one found cold, within {SAME:g} m.',
+            key='collapsed_starts',
         ),
         _overturned(model, goods[-1]),
     ]
@@ -174,7 +177,7 @@ def _row(length: float, speed: float, counted: Tally) -> tuple[str, ...]:
     )
 
 
-def _overturned(model: GearModel, good: Equilibrium) -> Check:
+def _overturned(model: GearModel, good: Equilibrium) -> MeasuredValue:
     """Check that boards set so far in that they collapse are refused, whatever the start."""
     overturned = model.with_board(installation=(OVERTURNED, 0.0, 0.0))
     tow = steady_tow(overturned, good.point)
@@ -186,14 +189,14 @@ def _overturned(model: GearModel, good: Equilibrium) -> Check:
             given.append('a state')
         except NoSteadyState as error:
             given.append(error.reason)
-    return Check(
-        'overturned',
+    return MeasuredValue(
         f'of three searches for boards set at ε = {np.degrees(OVERTURNED):.0f}°, refused as '
         'collapsed',
         given.count('collapsed'),
-        3.0,
+        target=within(0.0, of=3.0),
         note=f'Cold, from the gear set at 0°, and from the collapsed root itself, {left:.1g} N '
         f'from balance; they gave: {", ".join(given)}.',
+        key='overturned',
     )
 
 

@@ -9,13 +9,16 @@ from scipy.spatial.transform import Rotation
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import BoardRecord, GearRecord
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.paper_board import PaperBoard, coefficients
 from trawl_ros.model.assembly import board_loads, points_of
 from trawl_ros.model.board import coefficients_at
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import State
 from trawl_ros.model.water import Water
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 
 ATTITUDES = 50
@@ -130,7 +133,7 @@ def compare(
     )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Compare within the law's range and outside, with forces in either axes."""
     random = np.random.default_rng(20)
     default = load_gear('kaifuha')
@@ -149,13 +152,12 @@ def run(small: bool) -> CaseOutcome:
             )
             for part in ('force', 'moment'):
                 checks.append(
-                    Check(
-                        f'{part}_{where}_{axes}',
+                    MeasuredValue(
                         f'largest difference of the {part} {what}, as a share of it',
                         getattr(found, part),
-                        TOLERANCE,
-                        rule='at_most',
+                        target=at_most(TOLERANCE),
                         note='Against eq. 1-14 evaluated from the vertices of the board.',
+                        key=f'{part}_{where}_{axes}',
                     )
                 )
             low, high = np.degrees(found.attack)
@@ -169,10 +171,10 @@ def run(small: bool) -> CaseOutcome:
                 )
             )
     checks.extend(_continuation_checks(default.board))
-    return CaseOutcome(
-        checks=tuple(checks),
+    return Findings(
+        rows=tuple(checks),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'coefficients',
                 'Force and moment coefficients over the attack angle without slip, as the model '
                 'has them and evaluated anew; between the dotted lines eq. 14 holds as it stands.',
@@ -191,7 +193,7 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _continuation_checks(record: BoardRecord) -> list[Check]:
+def _continuation_checks(record: BoardRecord) -> list[MeasuredValue]:
     """Check the continuation of the law outside its range."""
     attack = np.radians(np.linspace(-180.0, 180.0, 3601))
     seen = coefficients_at(record.coefficients.array(), attack, np.zeros_like(attack))
@@ -199,29 +201,26 @@ def _continuation_checks(record: BoardRecord) -> list[Check]:
     gone = coefficients_at(record.coefficients.array(), ends, np.zeros(2))
     jumps = np.abs(np.diff(seen, axis=0)).max()
     return [
-        Check(
-            'no_thrust',
+        MeasuredValue(
             'least drag coefficient at any attack angle',
             float(seen[:, 0].min()),
-            0.0,
-            rule='at_least',
+            target=at_least(0.0),
             note='Drag never becomes thrust.',
+            key='no_thrust',
         ),
-        Check(
-            'lift_gone',
+        MeasuredValue(
             'largest lift coefficient, and moment coefficient of α, at -40° and 90°',
             float(np.abs(gone[:, [1, 3, 5]]).max()),
-            1e-12,
-            rule='at_most',
+            target=at_most(1e-12),
             note='There lift and moments have faded.',
+            key='lift_gone',
         ),
-        Check(
-            'no_jump',
+        MeasuredValue(
             'largest change of a coefficient over 0.1° of attack',
             float(jumps),
-            2.0 * np.abs(record.coefficients.array()).max() * np.radians(0.1),
-            rule='at_most',
+            target=at_most(2.0 * np.abs(record.coefficients.array()).max() * np.radians(0.1)),
             note='At most twice that of the steepest line of eq. 14: the law has no step.',
+            key='no_jump',
         ),
     ]
 

@@ -7,10 +7,13 @@ from matplotlib.figure import Figure
 from scipy.optimize import root
 
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.bar import SLACK_WIDTH
+from trawl_ros.report.pictures import Drawing
 
 WEIGHT, STIFFNESS = WIRE['weight_in_water_n_m'], WIRE['stiffness_n']
 
@@ -99,7 +102,7 @@ def sagging(segments: int) -> Sagging:
     )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Compare both, the sagging wire at several numbers of segments."""
     counts = SEGMENTS[1:4] if small else SEGMENTS
     models = {count: sagging(count) for count in counts}
@@ -117,29 +120,28 @@ def run(small: bool) -> CaseOutcome:
     }
     checks = [*_hanging_checks(), *_sagging_checks(models[CLAIMED], exact[CLAIMED])]
     checks += [
-        Check(
-            f'order_of_{key.replace(" ", "_")}',
+        MeasuredValue(
             f'order of convergence of the sagging wire, {key}',
             order(counts, values),
-            1.9,
-            rule='at_least',
+            target=at_least(1.9),
             note='A lumped line is of second order in the length of its segments.',
+            key=f'order_of_{key.replace(" ", "_")}',
         )
         for key, values in errors.items()
     ]
     rows = tuple(
         (str(n), *(f'{values[k]:.2e}' for values in errors.values())) for k, n in enumerate(counts)
     )
-    return CaseOutcome(
-        checks=tuple(checks),
+    return Findings(
+        rows=tuple(checks),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'convergence',
                 'Relative errors of the sagging wire against the elastic catenary; the shape is '
                 'the largest distance of a node from its place, over the length.',
                 drawn(counts, errors, 'Sagging wire, 480 m between points 402 m apart'),
             ),
-            CaseFigure('shape', 'The sagging wire.', _shape(models[CLAIMED])),
+            Drawing('shape', 'The sagging wire.', _shape(models[CLAIMED])),
         ),
         tables=(
             TextTable(
@@ -156,68 +158,58 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _hanging_checks() -> list[Check]:
+def _hanging_checks() -> list[MeasuredValue]:
     stretch, pull = hanging(CLAIMED)
     fine, _ = hanging(2 * CLAIMED)
     loaded_stretch, loaded_pull = hanging(CLAIMED, HUNG_LOAD)
     alone = 'a wire of 600 m hanging alone'
     under = 'a wire of 600 m hanging with 20 kN at its end, 20 segments'
     return [
-        Check(
-            'hanging_depth',
+        MeasuredValue(
             f'depth of the end of {alone}, 20 segments',
             HANGING_LENGTH + stretch,
-            HANGING_LENGTH + stretch_of_hanging(0.0),
-            1e-5,
-            'relative',
             'm',
+            within_share(1e-5, of=HANGING_LENGTH + stretch_of_hanging(0.0)),
             'Expected: L + w L² / 2 EA.',
+            key='hanging_depth',
         ),
-        Check(
-            'hanging_stretch',
+        MeasuredValue(
             f'stretch of {alone}, 40 segments',
             fine,
-            stretch_of_hanging(0.0) - rounded_off(),
-            1e-3,
-            'relative',
             'm',
+            within_share(1e-3, of=stretch_of_hanging(0.0) - rounded_off()),
             'Expected: w L² / 2 EA less the rounding between slack and taut, in closed form. '
             'There strain is a square root of tension, which makes this figure of order 1.5 only.',
+            key='hanging_stretch',
         ),
-        Check(
-            'hanging_tension',
+        MeasuredValue(
             f'pull at the block of {alone}, 20 segments',
             pull,
-            WEIGHT * HANGING_LENGTH,
-            1e-6,
-            'relative',
             'N',
+            within_share(1e-6, of=WEIGHT * HANGING_LENGTH),
             'Expected: the weight of the wire.',
+            key='hanging_tension',
         ),
-        Check(
-            'loaded_stretch',
+        MeasuredValue(
             f'stretch of {under}',
             loaded_stretch,
-            stretch_of_hanging(HUNG_LOAD),
-            1e-6,
-            'relative',
             'm',
+            within_share(1e-6, of=stretch_of_hanging(HUNG_LOAD)),
             'Expected: (P L + w L² / 2) / EA; taut all along, so eq. 20 holds to the letter.',
+            key='loaded_stretch',
         ),
-        Check(
-            'loaded_tension',
+        MeasuredValue(
             f'pull at the block of {under}',
             loaded_pull,
-            HUNG_LOAD + WEIGHT * HANGING_LENGTH,
-            1e-6,
-            'relative',
             'N',
+            within_share(1e-6, of=HUNG_LOAD + WEIGHT * HANGING_LENGTH),
             'Expected: the weight of wire and load.',
+            key='loaded_tension',
         ),
     ]
 
 
-def _sagging_checks(model: Sagging, exact: Sagging) -> list[Check]:
+def _sagging_checks(model: Sagging, exact: Sagging) -> list[MeasuredValue]:
     what = 'of the sagging wire, 20 segments'
     pairs = {
         'lowest_node': (f'height of the lowest node {what}', model.places, exact.places, 'm'),
@@ -232,15 +224,13 @@ def _sagging_checks(model: Sagging, exact: Sagging) -> list[Check]:
         'end': lambda a: np.linalg.norm(a[1]),
     }
     return [
-        Check(
-            f'sagging_{key}',
+        MeasuredValue(
             text,
             float(read[key](found)),
-            float(read[key](wanted)),
-            1e-3,
-            'relative',
             unit,
+            within_share(1e-3, of=float(read[key](wanted))),
             'Expected: the elastic catenary.',
+            key=f'sagging_{key}',
         )
         for key, (text, found, wanted, unit) in pairs.items()
     ]

@@ -8,11 +8,14 @@ from matplotlib.figure import Figure
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.power import STORES, WORKS, Ledger
 from trawl_ros.lab.validation.closed_forms.refinement import order
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import Tow
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.simulation.simulation import HALVINGS
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -141,7 +144,7 @@ def advanced(
     return first + advanced(stepper, first[-1], boundary, 0.5 * h, halvings - 1)
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Haul with shorter and shorter steps."""
     gear = load_gear('kaifuha')
     if small:
@@ -152,10 +155,10 @@ def run(small: bool) -> CaseOutcome:
     start = find_equilibrium(model, OperatingPoint(WARP, WARP, SPEED))
     budgets = {h: budget(model, start, haul, h) for h in steps}
     left = [float(np.abs(budgets[h].residual).max()) for h in steps]
-    return CaseOutcome(
-        checks=_checks(budgets[USUAL], order([round(haul.seconds / h) for h in steps], left)),
+    return Findings(
+        rows=_checks(budgets[USUAL], order([round(haul.seconds / h) for h in steps], left)),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'history',
                 'Work done on the gear since the start, what of it the gear holds, and what is '
                 'missing in the budget; the winches haul in the shaded time.',
@@ -172,7 +175,7 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _checks(found: Budget, falls: float) -> tuple[Check, ...]:
+def _checks(found: Budget, falls: float) -> tuple[MeasuredValue, ...]:
     left = float(np.abs(found.residual).max())
     against = {
         'closes': ('all work of ship and winches', found.put_in),
@@ -183,25 +186,23 @@ def _checks(found: Budget, falls: float) -> tuple[Check, ...]:
         ),
     }
     checks = [
-        Check(
-            key,
+        MeasuredValue(
             f'most that is ever missing in the budget, over {what} (steps of {USUAL} s)',
             left / abs(over),
-            CLAIMED,
-            rule='at_most',
+            target=at_most(CLAIMED),
             note='Each term is a quadrature of the model’s own forces or a difference of '
             'energies; none is what the others leave.',
+            key=key,
         )
         for key, (what, over) in against.items()
     ]
     checks.append(
-        Check(
-            'order',
+        MeasuredValue(
             'order with which what is missing falls with the step',
             falls,
-            1.9,
-            rule='at_least',
+            target=at_least(1.9),
             note='It is the error of time stepper and quadrature, both of second order.',
+            key='order',
         )
     )
     return tuple(checks)

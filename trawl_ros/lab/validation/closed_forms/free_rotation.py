@@ -6,13 +6,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.reference_codes.lone_line import WIRE, holding, lone_line, lying
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import order
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import rotation
 from trawl_ros.model.state import State, Tow
 from trawl_ros.model.water import Water
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.stepper import Motion, Stepper
 
 VOID = Water(density=1e-12, gravity=0.0)
@@ -112,7 +115,7 @@ def spun(h: float, seconds: float) -> Spin:
     return Spin(table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Spin with shorter and shorter steps."""
     seconds = 0.5 * SECONDS if small else SECONDS
     spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT))}
@@ -123,54 +126,49 @@ def run(small: bool) -> CaseOutcome:
     second = 'The drift is the error of the time stepper, which is of second order.'
     counts = [round(seconds / h) for h in STEPS]
     checks = [
-        Check(
-            'momentum',
+        MeasuredValue(
             f'largest drift of the angular momentum in {seconds:.0f} s, steps of {usual} s',
             momentum[usual],
-            5e-3,
-            rule='at_most',
+            target=at_most(5e-3),
             note=kept,
+            key='momentum',
         ),
-        Check(
-            'energy',
+        MeasuredValue(
             f'largest drift of the kinetic energy in {seconds:.0f} s, steps of {usual} s',
             energy[usual],
-            1e-3,
-            rule='at_most',
+            target=at_most(1e-3),
             note=kept,
+            key='energy',
         ),
-        Check(
-            'order_of_momentum',
+        MeasuredValue(
             'order with which the drift of the angular momentum falls with the step',
             order(counts, [momentum[h] for h in STEPS]),
-            1.9,
-            rule='at_least',
+            target=at_least(1.9),
             note=second,
+            key='order_of_momentum',
         ),
-        Check(
-            'order_of_energy',
+        MeasuredValue(
             'order with which the drift of the energy falls with the step',
             order(counts, [energy[h] for h in STEPS]),
-            1.9,
-            rule='at_least',
+            target=at_least(1.9),
             note=second,
+            key='order_of_energy',
         ),
-        Check(
-            'tumbles',
+        MeasuredValue(
             'least cosine between the port board’s z axis and its first',
             float(spins[usual].upright[:, 0].min()),
-            -0.9,
-            rule='at_most',
+            target=at_most(-0.9),
             note='It turns over: what is kept is kept through large rotations.',
+            key='tumbles',
         ),
     ]
     if not small:
         checks.append(_floor(momentum[SHORT]))
     rows = tuple((f'{h:g}', f'{momentum[h]:.2e}', f'{energy[h]:.2e}') for h in spins)
-    return CaseOutcome(
-        checks=tuple(checks),
+    return Findings(
+        rows=tuple(checks),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'drift',
                 'Drift of angular momentum and energy of two free boards, and how the port one '
                 'tumbles.',
@@ -189,14 +187,13 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _floor(drift: float) -> Check:
-    return Check(
-        'short_steps',
+def _floor(drift: float) -> MeasuredValue:
+    return MeasuredValue(
         f'largest drift of the angular momentum in {SECONDS:.0f} s, steps of {SHORT} s',
         drift,
-        1e-3,
-        rule='at_most',
+        target=at_most(1e-3),
         note='With the error of the method out of the way, it is the equations that keep it.',
+        key='short_steps',
     )
 
 

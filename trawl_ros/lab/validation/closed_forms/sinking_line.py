@@ -6,8 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_line, lying
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_most, within_share
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.model.assembly import forces, mass
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.stepper import Motion, Stepper
 
 LENGTH, SEGMENTS = 200.0, 20
@@ -88,7 +91,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
     )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Let the line go level, and sloping."""
     found = {slope: sinking(np.radians(slope), SECONDS) for slope in SLOPES}
     level, sloping = (found[slope] for slope in SLOPES)
@@ -103,54 +106,46 @@ def run(small: bool) -> CaseOutcome:
         for slope, line in found.items()
     }
     checks = (
-        Check(
-            'level',
+        MeasuredValue(
             'last sinking speed of a level line',
             float(level.velocities[-1, 1]),
-            float(across_level),
-            1e-4,
-            'relative',
             'm/s',
+            within_share(1e-4, of=float(across_level)),
             law + 'w = ½ ρ C_n d U².',
+            key='level',
         ),
-        Check(
-            'sloping_across',
+        MeasuredValue(
             'last speed across a line that slopes by 30°',
             float(sloping.velocities[-1, 1]),
-            float(across),
-            1e-4,
-            'relative',
             'm/s',
+            within_share(1e-4, of=float(across)),
             law + 'w cos φ = ½ ρ C_n d U².',
+            key='sloping_across',
         ),
-        Check(
-            'sloping_along',
+        MeasuredValue(
             'last speed along a line that slopes by 30°',
             float(sloping.velocities[-1, 0]),
-            float(along),
-            1e-4,
-            'relative',
             'm/s',
+            within_share(1e-4, of=float(along)),
             law + 'w sin φ = ½ ρ C_t π d U².',
+            key='sloping_along',
         ),
-        Check(
-            'together',
+        MeasuredValue(
             'largest difference of velocity between two nodes at the end',
             max(line.uneven for line in found.values()),
-            1e-6,
-            rule='at_most',
-            unit='m/s',
-            note='Weight and drag are alike all along, so the line keeps straight.',
+            'm/s',
+            at_most(1e-6),
+            'Weight and drag are alike all along, so the line keeps straight.',
+            key='together',
         ),
         *(
-            Check(
-                f'history_{slope:.0f}',
+            MeasuredValue(
                 f'largest error of the speed on the way, line sloping by {slope:.0f}°, as a '
                 'share of the last speed',
                 error,
-                1e-3,
-                rule='at_most',
+                target=at_most(1e-3),
                 note=f'Against U tanh(w t / m U), with steps of {TIME_STEP} s.',
+                key=f'history_{slope:.0f}',
             )
             for slope, error in history.items()
         ),
@@ -165,9 +160,9 @@ def run(small: bool) -> CaseOutcome:
         )
         for slope, line in found.items()
     )
-    return CaseOutcome(
-        checks=checks,
-        drawings=(CaseFigure('speed', 'Speed of a free line let go from rest.', _drawn(found)),),
+    return Findings(
+        rows=checks,
+        drawings=(Drawing('speed', 'Speed of a free line let go from rest.', _drawn(found)),),
         tables=(
             TextTable(
                 'Last speeds.',

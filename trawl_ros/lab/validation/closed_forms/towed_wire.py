@@ -7,9 +7,12 @@ from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
 from trawl_ros.model.assembly import block_forces
+from trawl_ros.report.pictures import Drawing
 
 LENGTH, SPEED = 600.0, 2.0
 
@@ -97,35 +100,31 @@ def modelled(segments: int) -> Wire:
     )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Compare at several numbers of segments."""
     counts = SEGMENTS[1:4] if small else SEGMENTS
     exact = {count: integrated(count) for count in counts}
     wires = {count: modelled(count) for count in counts}
     claimed, reference = wires[CLAIMED], exact[CLAIMED]
     checks = [
-        Check(
-            f'{key}_at_20_segments',
+        MeasuredValue(
             f'{key} of the wire, 20 segments',
             getattr(claimed, key),
-            getattr(reference, key),
-            1e-3,
-            'relative',
             unit,
+            within_share(1e-3, of=getattr(reference, key)),
             'Expected: the integrated equation.',
+            key=f'{key}_at_20_segments',
         )
         for key, unit in UNITS.items()
     ]
     checks += [
-        Check(
-            f'integrated_{key}',
+        MeasuredValue(
             f'{key} by the equation integrated here',
             getattr(reference, key),
-            KNOWN[key],
-            2e-6,
-            'relative',
             unit,
+            within_share(2e-6, of=KNOWN[key]),
             'Expected: an integration of the same wire made before this model, to its digits.',
+            key=f'integrated_{key}',
         )
         for key, unit in UNITS.items()
     ]
@@ -139,13 +138,12 @@ def run(small: bool) -> CaseOutcome:
     }
     orders = {'shape': shape, **errors}
     checks += [
-        Check(
-            f'order_of_{key}',
+        MeasuredValue(
             f'order of convergence of the {key}',
             order(counts, values),
-            1.9,
-            rule='at_least',
+            target=at_least(1.9),
             note='A lumped line is of second order in the length of its segments.',
+            key=f'order_of_{key}',
         )
         for key, values in orders.items()
     ]
@@ -154,16 +152,16 @@ def run(small: bool) -> CaseOutcome:
         for n in counts
     )
     last = ('integrated', f'{reference.depth:.4f}', f'{reference.lag:.4f}')
-    return CaseOutcome(
-        checks=tuple(checks),
+    return Findings(
+        rows=tuple(checks),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'convergence',
                 'Relative errors of the towed wire against the integrated equation; the shape is '
                 'the largest distance of a node from its place, over the length.',
                 drawn(counts, orders, 'Towed wire, 600 m at 2 m/s'),
             ),
-            CaseFigure('shape', 'The wire as modelled and as integrated.', _shape(claimed)),
+            Drawing('shape', 'The wire as modelled and as integrated.', _shape(claimed)),
         ),
         tables=(
             TextTable(

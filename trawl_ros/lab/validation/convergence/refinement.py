@@ -8,7 +8,9 @@ from matplotlib.figure import Figure
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.convergence.gears import (
     AROUND_ZERO,
     REFERENCE,
@@ -18,6 +20,7 @@ from trawl_ros.lab.validation.convergence.gears import (
     row,
 )
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.report.pictures import Drawing
 
 ALLOWED = 2.0
 """Largest difference from the finer gear, %."""
@@ -57,7 +60,7 @@ DRAWN = (
 TICKS = -50, -20, -10, -5, -2, -1, 0, 1, 2, 5, 10, 20, 50
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Solve all gears and compare."""
     lengths = (500.0,) if small else (200.0, 500.0, 900.0)
     gear = load_gear('kaifuha')
@@ -71,10 +74,10 @@ def run(small: bool) -> CaseOutcome:
     series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
-    return CaseOutcome(
-        checks=tuple(_checks(default, finer, lengths, series)),
+    return Findings(
+        rows=tuple(_checks(default, finer, lengths, series)),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'net',
                 'Observables over the numerical meshes around the net, as their difference from '
                 'the finest: linear within the band of 2 %, logarithmic beyond. The dotted line '
@@ -105,7 +108,7 @@ def _checks(
     finer: Sequence[RefinementRow],
     lengths: Sequence[float],
     series: Mapping[int, RefinementRow],
-) -> Iterator[Check]:
+) -> Iterator[MeasuredValue]:
     """One check for each way of refining and warp length: the worst of all observables."""
     for fine in finer:
         for k, length in enumerate(lengths):
@@ -121,15 +124,14 @@ def _checks(
                     f'It is {name}, {beyond} of {len(OBSERVABLES)} observables differ by more; '
                     + _reason(fine, worst, k, series)
                 )
-            yield Check(
-                f'{fine.name}_{length:g}',
+            yield MeasuredValue(
                 f'largest difference of an observable from the gear with {WORDS[fine.name]}, '
                 f'{length:g} m of warp',
                 float(shares[worst]),
-                ALLOWED,
-                rule='at_most',
-                unit='%',
-                note=note,
+                '%',
+                at_most(ALLOWED),
+                note,
+                key=f'{fine.name}_{length:g}',
             )
 
 

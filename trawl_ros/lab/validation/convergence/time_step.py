@@ -8,7 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.convergence.manoeuvres import (
     START,
     SteppedManoeuvre,
@@ -18,6 +20,7 @@ from trawl_ros.lab.validation.convergence.manoeuvres import (
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 
@@ -85,7 +88,7 @@ def convergence(runs: Sequence[SteppedManoeuvre]) -> Convergence:
     )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Run both manoeuvres at several steps."""
     size = SMALL if small else FULL
     gear = load_gear('kaifuha')
@@ -101,62 +104,56 @@ def run(small: bool) -> CaseOutcome:
     flapping = _flapping(model, smooth)
     at_default = ramp.errors[list(ramp.steps).index(DEFAULT_STEP)]
     least, worst = int(orders.argmin()), int(at_default.argmax())
-    return CaseOutcome(
-        checks=(
-            Check(
-                'smooth_every_observable',
+    return Findings(
+        rows=(
+            MeasuredValue(
                 'lowest order among all observables, smooth inputs',
                 float(orders[least]),
-                ORDER,
-                rule='at_least',
+                target=at_least(ORDER),
                 note=f'It is that of {OBSERVABLES[least]}; the next is '
                 f'{np.sort(orders)[1]:.2f}. The method, generalised-α, is of second order. '
                 + ('' if orders[least] >= ORDER else flapping),
+                key='smooth_every_observable',
             ),
-            Check(
-                'smooth_norm',
+            MeasuredValue(
                 'order in the root mean square of all observables, smooth inputs',
                 smooth.order(smooth.norm),
-                ORDER,
-                rule='at_least',
+                target=at_least(ORDER),
+                key='smooth_norm',
             ),
-            Check(
-                'smooth_places',
+            MeasuredValue(
                 'order in the places of all nodes and boards, smooth inputs',
                 smooth.order(smooth.places.max(1)),
-                ORDER,
-                rule='at_least',
+                target=at_least(ORDER),
                 note=flapping,
+                key='smooth_places',
             ),
-            Check(
-                'smooth_median_place',
+            MeasuredValue(
                 'order in the median place of all nodes and boards, smooth inputs',
                 smooth.order(np.median(smooth.places, 1)),
-                ORDER,
-                rule='at_least',
+                target=at_least(ORDER),
+                key='smooth_median_place',
             ),
-            Check(
-                'ramp_norm',
+            MeasuredValue(
                 'order in the root mean square of all observables, winch ramp',
                 ramp.order(ramp.norm),
-                ORDER,
-                rule='at_least',
+                target=at_least(ORDER),
                 note='Ship and winches accelerate abruptly: the second derivative of what they '
                 'impose jumps, and a single observable need not show the order.',
+                key='ramp_norm',
             ),
-            Check(
-                'ramp_default_step',
+            MeasuredValue(
                 'largest error of an observable at the default step, winch ramp, as a share of '
                 'its change',
                 100.0 * float(at_default[worst]),
-                1.0,
-                rule='at_most',
-                unit='%',
-                note=f'It is that of {OBSERVABLES[worst]}, at {DEFAULT_STEP:g} s.',
+                '%',
+                at_most(1.0),
+                f'It is that of {OBSERVABLES[worst]}, at {DEFAULT_STEP:g} s.',
+                key='ramp_default_step',
             ),
         ),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'order',
                 'Largest error of each observable during the manoeuvre over the time step, as a '
                 'share of how much it changes.',

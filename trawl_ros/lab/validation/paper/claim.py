@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from trawl_ros.lab.report.check import Check, Rule, TextTable
-from trawl_ros.lab.validation.writing import expectation
-from trawl_ros.report.rendering import number
+from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.lab.report.page import TextTable
 
 Expected = float | tuple[float, float]
 
@@ -26,16 +25,16 @@ class Claim:
 
     where: str
     says: str
-    checks: tuple[Check, ...]
+    checks: tuple[MeasuredValue, ...]
 
     @property
     def agrees(self) -> str:
         """Agreement of the model in words: yes, no, or in part."""
         held = sum(check.ok for check in self.checks)
-        return 'yes' if held == len(self.checks) else 'in part' if held else '**no**'
+        return 'yes' if held == len(self.checks) else 'in part' if held else 'no'
 
 
-def claim(where: str, says: str, *checks: Check) -> Claim:
+def claim(where: str, says: str, *checks: MeasuredValue) -> Claim:
     """Make a claim; its checks that hold are noted with the place in the paper."""
     noted = tuple(
         replace(check, note=f'Section {where}: {says}.') if check.ok else check for check in checks
@@ -43,32 +42,11 @@ def claim(where: str, says: str, *checks: Check) -> Claim:
     return Claim(where, says, noted)
 
 
-def part(
-    key: str,
-    what: str,
-    measured: float,
-    expected: Expected,
-    reason: str,
-    *,
-    rule: Rule = 'at_least',
-    unit: str = '',
-    tolerance: float = 0.0,
-) -> Check:
-    """Make the check of a measurable part; ``reason`` is told when it does not hold."""
-    if isinstance(expected, tuple):
-        rule = 'between'
-    return Check(key, what, float(measured), expected, tolerance, rule, unit, reason)
-
-
 def claim_table(claims: Sequence[Claim]) -> TextTable:
     """Table of all claims."""
     rows = []
     for one in claims:
-        gives = '; '.join(
-            f'{check.what}: {number(check.measured)} {check.unit}'.rstrip()
-            + f' ({expectation(check)})'
-            for check in one.checks
-        )
+        gives = '; '.join(f'{check.what}: {check.figure} ({check.wanted})' for check in one.checks)
         reasons = dict.fromkeys(check.note for check in one.checks if not check.ok)
         rows.append((one.where, one.says, gives, one.agrees, ' '.join(reasons)))
     return TextTable(

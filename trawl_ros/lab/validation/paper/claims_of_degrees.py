@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from trawl_ros.lab.validation.paper.claim import Claim, claim, part
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
+from trawl_ros.lab.validation.paper.claim import Claim, claim
 from trawl_ros.lab.validation.paper.comparison import Comparison, column
 
 ERRORS = {'door_spread': 4.8, 'door_depth': 4.5, 'net_depth': 7.4, 'warp_tension': 2.6}
@@ -45,16 +46,15 @@ def _errors(seen: Comparison) -> Claim:
         'the 6-DOF model errs by 4.8 % in spread, 4.5 % in door depth, 7.4 % in net depth and '
         '2.6 % in tension',
         *(
-            part(
-                f'six_{channel}',
+            MeasuredValue(
                 f'error of the {_words(channel)}, 6-DOF boards',
                 seen.error(seen.trial_six, channel),
-                error,
+                '%',
+                at_most(error),
                 f'on the mean of all states the model departs by {_bias(seen, channel):+.1f} %; '
                 f'it predicts with eq. 37 at {min(speeds):.1f} to {max(speeds):.1f} m/s, where the '
                 'errors of the paper are those of a fit to its points.',
-                rule='at_most',
-                unit='%',
+                key=f'six_{channel}',
             )
             for channel, error in ERRORS.items()
         ),
@@ -70,15 +70,14 @@ def _close(seen: Comparison) -> Claim:
         'IV.D, Fig. 13 and 16',
         'spread and tension are close for both kinds of boards',
         *(
-            part(
-                f'close_{channel}',
+            MeasuredValue(
                 f'mean difference of the {_words(channel)}, 3-DOF to 6-DOF',
                 apart(channel),
-                CLOSE,
+                '%',
+                at_most(CLOSE),
                 'the point keeps its lift level at every warp length, while a board that leans '
                 'gives part of it up.',
-                rule='at_most',
-                unit='%',
+                key=f'close_{channel}',
             )
             for channel in ('door_spread', 'warp_tension')
         ),
@@ -94,24 +93,24 @@ def _spread(seen: Comparison) -> list[Claim]:
         claim(
             'IV.D, Fig. 13',
             'spread grows slightly faster with warp length for 6-DOF boards',
-            part(
-                'spread_growth',
+            MeasuredValue(
                 'growth of spread over the sweep, 6-DOF over 3-DOF',
                 growth,
-                1.0,
-                f'C_y^F changes by {lift:+.1f} % over the sweep, and the lean takes more of it.',
+                target=at_least(1.0),
+                note=f'C_y^F changes by {lift:+.1f} % over the sweep; the lean takes more of it.',
+                key='spread_growth',
             ),
         ),
         claim(
             'IV.D, Fig. 13',
             'because α grows with warp length and lift with α',
-            part(
-                'lift_growth',
+            MeasuredValue(
                 'change of C_y^F from the shortest to the longest warp',
                 lift,
-                0.0,
+                '%',
+                at_least(0.0),
                 'α does not grow over the sweep.',
-                unit='%',
+                key='lift_growth',
             ),
         ),
     ]
@@ -131,12 +130,12 @@ def _depths(seen: Comparison) -> list[Claim]:
             'IV.D, Fig. 14 and 15',
             'depths of boards and net grow significantly faster with warp length for 3-DOF boards',
             *(
-                part(
-                    f'growth_{channel}',
+                MeasuredValue(
                     f'growth of {_words(channel)} over the sweep, 3-DOF over 6-DOF',
                     growth(channel),
-                    1.1,
-                    f'δ changes by {lean:+.1f}° over the sweep, too little for more.',
+                    target=at_least(1.1),
+                    note=f'δ changes by {lean:+.1f}° over the sweep, too little for more.',
+                    key=f'growth_{channel}',
                 )
                 for channel in DEPTHS
             ),
@@ -144,22 +143,22 @@ def _depths(seen: Comparison) -> list[Claim]:
         claim(
             'IV.D, Fig. 14 and 15',
             'because δ grows with warp length and gives lift a larger vertical part',
-            part(
-                'lean_growth',
+            MeasuredValue(
                 'change of δ from the shortest to the longest warp',
                 lean,
-                0.0,
+                '°',
+                at_least(0.0),
                 'the boards come upright as warp is paid out.',
-                unit='°',
+                key='lean_growth',
             ),
-            part(
-                'upward_growth',
+            MeasuredValue(
                 'change of the upward force on a board',
                 upward,
-                0.0,
+                'kN',
+                at_least(0.0),
                 f'C_y^F changes from {first.board.lift:.2f} to {last.board.lift:.2f}, δ by '
                 f'{lean:+.1f}°, but drag and C_z^F on the leaning board take more.',
-                unit='kN',
+                key='upward_growth',
             ),
         ),
     ]
@@ -187,15 +186,13 @@ def _gap(seen: Comparison) -> list[Claim]:
             'IV.D, Fig. 14 and 15',
             'from 200 to 900 m the 3-DOF model errs by about 25 %',
             *(
-                part(
-                    f'three_{channel}',
+                MeasuredValue(
                     f'error of the {_words(channel)}, 3-DOF boards',
                     three[channel],
-                    25.0,
+                    '%',
+                    within(5.0, of=25.0),
                     why,
-                    rule='within',
-                    tolerance=5.0,
-                    unit='%',
+                    key=f'three_{channel}',
                 )
                 for channel in DEPTHS
             ),
@@ -203,35 +200,34 @@ def _gap(seen: Comparison) -> list[Claim]:
         claim(
             'IV.D, Fig. 13-16',
             'that is much more than the 5 % or so of the 6-DOF model',
-            part(
-                'six_in_all',
+            MeasuredValue(
                 'mean error of the four quantities, 6-DOF boards',
                 float(np.mean([seen.error(seen.trial_six, channel) for channel in ERRORS])),
-                CLOSE,
+                '%',
+                at_most(CLOSE),
                 f'most of it is in the {_words(worst)}: {seen.error(seen.trial_six, worst):.1f} %.',
-                rule='at_most',
-                unit='%',
+                key='six_in_all',
             ),
-            part(
-                'three_against_six',
+            MeasuredValue(
                 'error of the door depth, 3-DOF over 6-DOF',
                 three['door_depth'] / six['door_depth'],
-                2.0,
-                f'6-DOF boards err by {six["door_depth"]:.1f} %, points by '
+                target=at_least(2.0),
+                note=f'6-DOF boards err by {six["door_depth"]:.1f} %, points by '
                 f'{three["door_depth"]:.1f} %.',
+                key='three_against_six',
             ),
         ),
         claim(
             'IV.D',
             'over a wide range of warp lengths the 6-DOF model is the more accurate',
             *(
-                part(
-                    f'better_{channel}',
+                MeasuredValue(
                     f'error of the {_words(channel)}, 3-DOF less 6-DOF boards',
                     three[channel] - six[channel],
-                    0.0,
+                    '%',
+                    at_least(0.0),
                     f'6-DOF boards err by {six[channel]:.1f} %, points by {three[channel]:.1f} %.',
-                    unit='%',
+                    key=f'better_{channel}',
                 )
                 for channel in DEPTHS
             ),
@@ -246,13 +242,13 @@ def _tension(seen: Comparison) -> Claim:
     return claim(
         'IV.D, Fig. 16',
         'with less vertical force on it, the 6-DOF gear has the smaller tension',
-        part(
-            'tension_less',
+        MeasuredValue(
             'least excess of the 3-DOF tension over the 6-DOF one',
             float(less.min()),
-            0.0,
+            'kN',
+            at_least(0.0),
             f'at the longest warp C_y^F of the 6-DOF board is {lift:.2f} and that of the point '
             f'{seen.point_lift:.2f}, and drag grows with it.',
-            unit='kN',
+            key='tension_less',
         ),
     )

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from trawl_ros.lab.validation.paper.claim import Claim, claim, part
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
+from trawl_ros.lab.validation.paper.claim import Claim, claim
 from trawl_ros.lab.validation.paper.refit import PaperRefit
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -39,49 +40,48 @@ def _objective(fit: PaperRefit) -> list[Claim]:
         claim(
             'IV.B, Fig. 4',
             'the objective comes down to about a third of its first value',
-            part(
-                'objective',
+            MeasuredValue(
                 'last objective over the first',
                 objective[-1] / objective[0],
-                1.0 / 3.0,
-                f'the fit rests at {objective[-1]:.3f}, with {fit.estimate.windows} states whose '
-                f'readings scatter about the model by {scatter:.1f} times their stated noise.',
-                rule='at_most',
+                target=at_most(1.0 / 3.0),
+                note=f'the fit rests at {objective[-1]:.3f}, with {fit.estimate.windows} states '
+                f'whose readings scatter about the model by {scatter:.1f} times the stated noise.',
+                key='objective',
             ),
         ),
         claim(
             'IV.B, Fig. 4',
             'it falls rapidly at first, as a negative exponential does',
-            part(
-                'early_fall',
+            MeasuredValue(
                 'part of the fall that the first third of the iterations makes',
                 float(falls[:early].sum() / falls.sum()),
-                usual,
-                'steps are limited to one standard deviation of the start in every coefficient, '
-                'which spreads the fall over the iterations.',
+                target=at_least(usual),
+                note='steps are limited to one standard deviation of the start in every '
+                'coefficient, which spreads the fall over the iterations.',
+                key='early_fall',
             ),
         ),
         claim(
             'IV.B, Fig. 4',
             'at first it falls in steps, a flat stretch before a drop',
-            part(
-                'plateaus',
+            MeasuredValue(
                 'iterations of the first third that lower it less than half as much as the next',
                 float(plateaus),
-                1.0,
-                'one iteration moves all twelve coefficients along the best direction, where the '
-                'paper moves one after the other: no weak coefficient waits for a strong one.',
+                target=at_least(1.0),
+                note='one iteration moves all twelve coefficients along the best direction, where '
+                'the paper moves one after the other: no weak coefficient waits for a strong one.',
+                key='plateaus',
             ),
         ),
         claim(
             'IV.B, Fig. 4',
             'because the coefficients act unequally on the objective',
-            part(
-                'condition',
+            MeasuredValue(
                 'largest over smallest sensitivity of the readings to directions of the twelve',
                 fit.estimate.condition_number,
-                UNLIKE,
-                'in units of what was known of each before, the data see all twelve alike.',
+                target=at_least(UNLIKE),
+                note='in units of what was known of each before, the data see all twelve alike.',
+                key='condition',
             ),
         ),
     ]
@@ -100,31 +100,37 @@ def _slopes(fit: PaperRefit) -> list[Claim]:
         claim(
             'IV.B, Fig. 5',
             'lift and drag both increase with the attack angle',
-            part('lift_slope', 'a2, slope of lift', value['a2'], 0.0, tests, unit='1/rad'),
-            part('drag_slope', 'a1, slope of drag', value['a1'], 0.0, tests, unit='1/rad'),
+            MeasuredValue(
+                'a2, slope of lift', value['a2'], '1/rad', at_least(0.0), tests, key='lift_slope'
+            ),
+            MeasuredValue(
+                'a1, slope of drag', value['a1'], '1/rad', at_least(0.0), tests, key='drag_slope'
+            ),
         ),
         claim(
             'IV.B, Fig. 5',
             'at small attack angles the identified lift is larger than in model tests',
-            part(
-                'lift_at_zero', 'c2 less that of published doors', value['c2'] - start['c2'],
-                0.0, tests,
+            MeasuredValue(
+                'c2 less that of published doors',
+                value['c2'] - start['c2'],
+                target=at_least(0.0),
+                note=tests,
+                key='lift_at_zero',
             ),
         ),
         claim(
             'IV.B, Fig. 5',
             'the slope of the identified lift is smaller than in model tests',
-            part(
-                'slope_less',
+            MeasuredValue(
                 'a2 less that of published doors',
                 value['a2'] - start['a2'],
-                0.0,
+                '1/rad',
+                at_most(0.0),
                 tests,
-                rule='at_most',
-                unit='1/rad',
+                key='slope_less',
             ),
         ),
-    ]  # fmt: skip
+    ]
 
 
 def _deviations(fit: PaperRefit) -> list[Claim]:
@@ -159,40 +165,36 @@ def _deviations(fit: PaperRefit) -> list[Claim]:
         claim(
             'IV.B, Fig. 5',
             'from 0 to 30° drag departs from board tests by about 0.1 at most',
-            part(
-                'drag_away',
+            MeasuredValue(
                 f'largest deviation of C_x^F, {beside}',
                 drag.max(),
-                ALIKE,
-                why('a1', worst),
-                rule='at_most',
+                target=at_most(ALIKE),
+                note=why('a1', worst),
+                key='drag_away',
             ),
         ),
         claim(
             'IV.B, Fig. 5',
             'the largest deviation of drag is at about 30°',
-            part(
-                'drag_worst',
+            MeasuredValue(
                 f'where C_x^F deviates most, {beside}',
                 worst,
-                30.0,
+                '°',
+                within(5.0, of=30.0),
                 'the difference of two straight lines is largest at one end of the range, here at '
                 f'the other one: {why("a1", worst)}',
-                rule='within',
-                tolerance=5.0,
-                unit='°',
+                key='drag_worst',
             ),
         ),
         claim(
             'IV.B, Fig. 5',
             'from 15 to 30° lift departs from board tests by about 0.1 at most',
-            part(
-                'lift_away',
+            MeasuredValue(
                 f'largest deviation of C_y^F, {beside}',
                 lift.max(),
-                ALIKE,
-                why('a2', worst_lift),
-                rule='at_most',
+                target=at_most(ALIKE),
+                note=why('a2', worst_lift),
+                key='lift_away',
             ),
         ),
     ]

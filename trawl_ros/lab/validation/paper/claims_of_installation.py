@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from trawl_ros.lab.report.check import Check
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
 from trawl_ros.lab.validation.paper.changes import Changes, label, percent
-from trawl_ros.lab.validation.paper.claim import Claim, claim, part
+from trawl_ros.lab.validation.paper.claim import Claim, claim
 from trawl_ros.lab.validation.paper.sweeps import TURN
 
 SPAN = (5.0, 10.0)
@@ -28,23 +28,21 @@ def _zeta(changes: Changes) -> Claim:
     return claim(
         'IV.C, Fig. 7-12',
         'ζ has little effect on the results',
-        part(
-            'zeta_gear',
+        MeasuredValue(
             'most that ±5° of ζ move spread, depth, opening and tension',
             changes.largest(RESULTS, 'zeta'),
-            SPAN[0],
+            '%',
+            at_most(SPAN[0]),
             f'most moved is the {most.replace("_", " ")}; the slip angle changes by '
             f'{slip:+.1f}° with ζ +5°, and with it C_z^F and C_y^M.',
-            rule='at_most',
-            unit='%',
+            key='zeta_gear',
         ),
-        part(
-            'zeta_angles',
+        MeasuredValue(
             'most that ζ moves α and δ over most that ε does',
             against,
-            LITTLE,
-            'δ of eq. 38 is the tilt in any direction, and turning about y is a tilt fore and aft.',
-            rule='at_most',
+            target=at_most(LITTLE),
+            note='δ of eq. 38 is the tilt in any direction; turning about y tilts fore and aft.',
+            key='zeta_angles',
         ),
     )
 
@@ -90,14 +88,16 @@ def _opening(changes: Changes) -> Claim:
     )
 
 
-def _size(changes: Changes, word: str, quantity: str, name: str, turn: float, reason: str) -> Check:
-    return part(
-        f'{word}_{name}_{"up" if turn > 0 else "down"}',
+def _size(
+    changes: Changes, word: str, quantity: str, name: str, turn: float, reason: str
+) -> MeasuredValue:
+    return MeasuredValue(
         f'size of the change of {word}, {label(name, turn)}',
         abs(changes.percent(quantity, name, turn)),
-        SPAN,
+        '%',
+        between(*SPAN),
         reason,
-        unit='%',
+        key=f'{word}_{name}_{"up" if turn > 0 else "down"}',
     )
 
 
@@ -124,34 +124,34 @@ def _signs(changes: Changes) -> list[Claim]:
         claim(
             'IV.C, Fig. 7 and 9',
             'spread and opening trade off',
-            part(
-                'trade_off',
+            MeasuredValue(
                 'turns, of six, that change them in opposite directions',
                 traded,
-                number,
-                f'not so with {not_traded}.',
+                target=at_least(number),
+                note=f'not so with {not_traded}.',
+                key='trade_off',
             ),
         ),
         claim(
             'IV.C, Fig. 7 and 10',
             'warp tension varies as spread does',
-            part(
-                'tension_follows',
+            MeasuredValue(
                 'turns, of six, that change both in one direction',
                 followed,
-                number,
-                f'not so with {not_followed}.',
+                target=at_least(number),
+                note=f'not so with {not_followed}.',
+                key='tension_follows',
             ),
         ),
         claim(
             'IV.C, Fig. 7 and 10',
             'because both are tied to the lift of the board',
-            part(
-                'lift_decides',
+            MeasuredValue(
                 'turns, of six, in which C_y^F changes as the spread does',
                 lifted,
-                number,
-                f'not so with {not_lifted}: there the lean of the board outweighs its lift.',
+                target=at_least(number),
+                note=f'not so with {not_lifted}: there the lean of the board outweighs its lift.',
+                key='lift_decides',
             ),
         ),
     ]

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
 from trawl_ros.lab.validation.paper.changes import Changes
-from trawl_ros.lab.validation.paper.claim import Claim, claim, part
+from trawl_ros.lab.validation.paper.claim import Claim, claim
 from trawl_ros.lab.validation.paper.sweeps import INSTALLATION, TURN
 
 
@@ -25,33 +26,33 @@ def _epsilon(changes: Changes) -> list[Claim]:
         claim(
             'IV.C, Fig. 11 and 12',
             'more ε raises α and δ, each by more than its own 5°',
-            part(
-                'epsilon_attack',
+            MeasuredValue(
                 'change of α, ε +5°',
                 changes.degrees('attack', 'epsilon', TURN),
-                TURN,
+                '°',
+                at_least(TURN),
                 why,
-                unit='°',
+                key='epsilon_attack',
             ),
-            part(
-                'epsilon_inclination',
+            MeasuredValue(
                 'change of δ, ε +5°',
                 changes.degrees('inclination', 'epsilon', TURN),
-                TURN,
+                '°',
+                at_least(TURN),
                 lean,
-                unit='°',
+                key='epsilon_inclination',
             ),
         ),
         claim(
             'IV.C, Fig. 11 and 12',
             'with α the moment C_x^M grows, which raises δ',
-            part(
-                'epsilon_rolling',
+            MeasuredValue(
                 'change of C_x^M, ε +5°, as it tips the outward normal up',
                 changes.board('rolling', 'epsilon', TURN),
-                0.0,
+                '%',
+                at_least(0.0),
                 why,
-                unit='%',
+                key='epsilon_rolling',
             ),
         ),
     ]
@@ -71,42 +72,41 @@ def _eta(changes: Changes) -> list[Claim]:
         claim(
             'IV.C, Fig. 12',
             'more η lowers α and raises δ',
-            part('eta_attack', 'change of α, η +5°', attack, 0.0, weak, rule='at_most', unit='°'),
-            part('eta_inclination', 'change of δ, η +5°', inclination, 0.0, weak, unit='°'),
+            MeasuredValue('change of α, η +5°', attack, '°', at_most(0.0), weak, key='eta_attack'),
+            MeasuredValue(
+                'change of δ, η +5°', inclination, '°', at_least(0.0), weak, key='eta_inclination'
+            ),
         ),
         claim(
             'IV.C, Fig. 12',
             'neither change is large (below the turn of 5° itself)',
-            part(
-                'eta_attack_small',
+            MeasuredValue(
                 'size of the change of α, η +5°',
                 abs(attack),
-                TURN,
+                '°',
+                at_most(TURN),
                 weak,
-                rule='at_most',
-                unit='°',
+                key='eta_attack_small',
             ),
-            part(
-                'eta_inclination_small',
+            MeasuredValue(
                 'size of the change of δ, η +5°',
                 abs(inclination),
-                TURN,
+                '°',
+                at_most(TURN),
                 weak,
-                rule='at_most',
-                unit='°',
+                key='eta_inclination_small',
             ),
         ),
         claim(
             'IV.C, Fig. 12',
             'the lower α reduces C_x^M, which weakens the change of δ',
-            part(
-                'eta_rolling',
+            MeasuredValue(
                 'change of C_x^M, η +5°',
                 rolling,
-                0.0,
+                '%',
+                at_most(0.0),
                 weak,
-                rule='at_most',
-                unit='%',
+                key='eta_rolling',
             ),
         ),
     ]
@@ -125,55 +125,53 @@ def _depth(changes: Changes) -> list[Claim]:
         claim(
             'IV.C, Fig. 11 and 12',
             'with more ε, the changes of α and of δ both raise the upward force',
-            part(
-                'upward_by_attack',
+            MeasuredValue(
                 'change of upward lift by C_y^F alone, ε +5°',
                 100.0 * (turned.lift / base.lift - 1.0),
-                0.0,
+                '%',
+                at_least(0.0),
                 tipped.format(f'and C_y^F goes from {base.lift:.2f} to {turned.lift:.2f}'),
-                unit='%',
+                key='upward_by_attack',
             ),
-            part(
-                'upward_by_lean',
+            MeasuredValue(
                 'change of upward lift by the lean alone, ε +5°',
                 100.0 * (turned.normal / base.normal - 1.0),
-                0.0,
+                '%',
+                at_least(0.0),
                 tipped.format(f'which goes from {base.normal:.2f} to {turned.normal:.2f}'),
-                unit='%',
+                key='upward_by_lean',
             ),
-            part(
-                'upward_force',
+            MeasuredValue(
                 'change of the upward force on a board, ε +5°',
                 upward,
-                0.0,
+                'kN',
+                at_least(0.0),
                 tipped.format('less what drag and C_z^F take'),
-                unit='kN',
+                key='upward_force',
             ),
         ),
         claim(
             'IV.C, Fig. 8',
             'ε acts strongly on the depth of the boards',
-            part(
-                'depth_by_epsilon',
+            MeasuredValue(
                 'largest change of depth by ε over the largest by ζ or η',
                 depth['epsilon'] / max(depth['zeta'], depth['eta']),
-                1.0,
-                'ζ and η tip the board as well, and its lift with it.',
+                target=at_least(1.0),
+                note='ζ and η tip the board as well, and its lift with it.',
+                key='depth_by_epsilon',
             ),
         ),
         claim(
             'IV.C, Fig. 8',
             '+5° of ε reduce the depth of the boards by about 30 %',
-            part(
-                'depth_epsilon',
+            MeasuredValue(
                 'change of door depth, ε +5°',
                 change,
-                -30.0,
+                '%',
+                within(5.0, of=-30.0),
                 f'the upward force on a board changes by {upward:+.1f} kN beside a warp tension '
                 f'of {changes.base.seen.warp_tension / 1e3:.0f} kN.',
-                rule='within',
-                tolerance=5.0,
-                unit='%',
+                key='depth_epsilon',
             ),
         ),
     ]

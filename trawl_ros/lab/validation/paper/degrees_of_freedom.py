@@ -4,9 +4,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, within
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.comparison import Comparison, column, compare_trial
 from trawl_ros.lab.validation.paper.trial import warp_length
+from trawl_ros.report.pictures import Drawing
 
 PANELS = (
     ('Fig. 13', 'door_spread', 'door spread [m]', 1.0),
@@ -16,22 +19,22 @@ PANELS = (
 )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Compare the two kinds of boards with the sample trial."""
     seen = compare_trial(small)
     solved = np.isfinite(seen.trial_six).all(1) & np.isfinite(seen.trial_three).all(1)
     checks = (
-        Check(
-            'windows',
+        MeasuredValue(
             'states of the trial for which both kinds of boards have a steady state',
             float(solved.sum()),
-            float(len(seen.windows)),
+            target=within(0.0, of=float(len(seen.windows))),
+            key='windows',
         ),
-        Check(
-            'lengths',
+        MeasuredValue(
             'warp lengths of the sweep at which both have one',
             float(np.isfinite(seen.six + seen.three).all(1).sum()),
-            float(len(seen.lengths)),
+            target=within(0.0, of=float(len(seen.lengths))),
+            key='lengths',
         ),
     )
     text = (
@@ -44,11 +47,11 @@ def run(small: bool) -> CaseOutcome:
         f'Fig. 13 to 16 remade. Lines and full marks at {seen.speed:.2f} m/s; open marks are the '
         'states of the trial at other speeds.'
     )
-    return CaseOutcome(
+    return Findings(
         checks,
         (
-            CaseFigure('fig13_to_16', caption, _lines(seen)),
-            CaseFigure(
+            Drawing('fig13_to_16', caption, _lines(seen)),
+            Drawing(
                 'all_states',
                 'Every state of the trial, each predicted at its own warp length and speed; '
                 'the dashed line is agreement.',

@@ -3,44 +3,47 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, within
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.refit import PaperRefit, refit_trial
 from trawl_ros.lab.validation.paper.trial import trial_windows
 from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.report.pictures import Drawing
 
 ATTACK = np.radians(np.linspace(0.0, 40.0, 81))
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Fit the default gear to the sample trial."""
     windows = trial_windows(small)
     fit = refit_trial(small)
     checks = (
-        Check(
-            'windows',
+        MeasuredValue(
             'states of the trial in the fit',
             float(fit.estimate.windows),
-            float(len(windows)),
+            target=within(0.0, of=float(len(windows))),
             note='eq. 35 sums over 15 groups of data, this over the first window of each state',
+            key='windows',
         ),
-        Check(
-            'converged',
+        MeasuredValue(
             'the fit comes to rest',
             float(fit.estimate.converged),
-            1.0,
+            target=within(0.0, of=1.0),
             note=fit.estimate.reason,
+            key='converged',
         ),
     )
-    return CaseOutcome(
+    return Findings(
         checks,
         (
-            CaseFigure(
+            Drawing(
                 'fig4',
                 'Fig. 4 remade: eq. 35 with λ = 1/(n · mean measured value). One iteration moves '
                 'all twelve coefficients.',
                 _objective(fit),
             ),
-            CaseFigure(
+            Drawing(
                 'fig5',
                 'Fig. 5 remade, with two standard deviations of the estimate. In place of the '
                 "tests of the paper's references 18 and 19, whose figures it does not print, "

@@ -5,7 +5,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, within
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.sweeps import (
     FEW_TURNS,
     INSTALLATION,
@@ -18,6 +20,7 @@ from trawl_ros.lab.validation.paper.sweeps import (
     paper_model,
 )
 from trawl_ros.records.observables import Observables
+from trawl_ros.report.pictures import Drawing
 
 SYMBOLS = {'epsilon': 'ε', 'zeta': 'ζ', 'eta': 'η'}
 
@@ -31,25 +34,25 @@ PANELS: tuple[tuple[str, str, Callable[[Observables], float]], ...] = (
 )
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Turn the boards of the default gear by up to 5° about each of their axes."""
     turns = FEW_TURNS if small else TURNS
     found = installation_sweep(paper_model(small), turns)
     checks = (
-        Check(
-            'states',
+        MeasuredValue(
             'turned gears with a stable steady state under water, boards within their law',
             float(sum(len(row) for row in found.values())),
-            float(len(turns) * len(INSTALLATION)),
+            target=within(0.0, of=float(len(turns) * len(INSTALLATION))),
             note='none is left out: a turn without one ends the case',
+            key='states',
         ),
         *(_monotone(found, panel) for panel in PANELS),
     )
     where = f'{WARP_LENGTH:g} m of warp and {SPEED:g} m/s'
     caption = f'Fig. 7 to 12 remade, at {where}. ε, ζ, η turn the board about its z, y, x axes.'
-    return CaseOutcome(
+    return Findings(
         checks,
-        (CaseFigure('fig7_to_12', caption, _figure(found)),),
+        (Drawing('fig7_to_12', caption, _figure(found)),),
         (_table(found, f'Changes by turns of {TURN:g}°, at {where}.'),),
     )
 
@@ -57,18 +60,17 @@ def run(small: bool) -> CaseOutcome:
 def _monotone(
     found: Mapping[str, Mapping[float, Sighting]],
     panel: tuple[str, str, Callable[[Observables], float]],
-) -> Check:
+) -> MeasuredValue:
     """Check that the curves are monotone between -5° and 5° of ε, as the paper's are."""
     name, label, read = panel
     values = np.array([read(one.seen) for one in found['epsilon'].values()])
     steps = np.diff(values)
-    return Check(
-        f'monotone_{name[5:]}',
+    return MeasuredValue(
         f'{label.rpartition(" [")[0]}: part of its whole change with ε that goes one way',
         float(abs(steps.sum()) / np.abs(steps).sum()),
-        1.0,
-        tolerance=1e-9,
+        target=within(1e-9, of=1.0),
         note=f'{name}: each turn has one direction of effect, as section IV.C speaks of it',
+        key=f'monotone_{name[5:]}',
     )
 
 

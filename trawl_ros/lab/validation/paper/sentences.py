@@ -1,6 +1,7 @@
 """All claims of section IV with the model's checks of them."""
 
-from trawl_ros.lab.report.check import CaseOutcome, ValidationCase
+from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.changes import Changes
 from trawl_ros.lab.validation.paper.claim import claim_table
 from trawl_ros.lab.validation.paper.claims_of_degrees import degree_claims
@@ -12,7 +13,7 @@ from trawl_ros.lab.validation.paper.refit import refit_trial
 from trawl_ros.lab.validation.paper.sweeps import FEW_TURNS, faster, installation_sweep, paper_model
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Evaluate all claims."""
     model = paper_model(small)
     changes = Changes(installation_sweep(model, FEW_TURNS), faster(model))
@@ -23,7 +24,7 @@ def run(small: bool) -> CaseOutcome:
         *degree_claims(compare_trial(small)),
     )
     agree = sum(one.agrees == 'yes' for one in claims)
-    return CaseOutcome(
+    return Findings(
         tuple(check for one in claims for check in one.checks),
         tables=(claim_table(claims),),
         text=(

@@ -3,7 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
+from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.sweeps import (
     FEW_LENGTHS,
     LENGTHS,
@@ -12,9 +14,10 @@ from trawl_ros.lab.validation.paper.sweeps import (
     sighting,
     warp_sweep,
 )
+from trawl_ros.report.pictures import Drawing
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Solve the default gear from 200 to 900 m of warp."""
     lengths = FEW_LENGTHS if small else LENGTHS
     model = paper_model(small)
@@ -26,40 +29,33 @@ def run(small: bool) -> CaseOutcome:
         for name in ('attack', 'slip', 'inclination')
     }
     checks = (
-        Check(
-            'attack_grows',
+        MeasuredValue(
             'least growth of α from one length to the next',
             float(np.diff(angles['attack']).min()),
-            0.0,
-            rule='at_least',
-            unit='°',
-            note='section IV.D, Fig. 13: α grows with warp length',
+            '°',
+            at_least(0.0),
+            'section IV.D, Fig. 13: α grows with warp length',
+            key='attack_grows',
         ),
-        Check(
-            'inclination_grows',
+        MeasuredValue(
             'least growth of δ from one length to the next',
             float(np.diff(angles['inclination']).min()),
-            0.0,
-            rule='at_least',
-            unit='°',
-            note='section IV.D, Fig. 14 and 15: δ grows with warp length',
+            '°',
+            at_least(0.0),
+            'section IV.D, Fig. 14 and 15: δ grows with warp length',
+            key='inclination_grows',
         ),
-        Check(
-            'normal_up',
+        MeasuredValue(
             'least vertical part of the outward normal',
             float(min(normals)),
-            0.0,
-            rule='at_least',
+            target=at_least(0.0),
             note='section IV.D: δ gives lift an upward part, so the normal points up',
+            key='normal_up',
         ),
     )
-    return CaseOutcome(
+    return Findings(
         checks,
-        (
-            CaseFigure(
-                'fig6', f'Fig. 6 remade, at {SPEED:g} m/s.', _figure(np.array(lengths), angles)
-            ),
-        ),
+        (Drawing('fig6', f'Fig. 6 remade, at {SPEED:g} m/s.', _figure(np.array(lengths), angles)),),
     )
 
 

@@ -11,7 +11,10 @@ from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn
 from trawl_ros.lab.reference_codes.moordyn_wire import SETTLING, MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, WireSteadyState
-from trawl_ros.lab.report.check import CaseFigure, CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, at_most, within_share
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
+from trawl_ros.report.pictures import Drawing
 
 SEGMENTS = 20
 
@@ -29,7 +32,7 @@ UNITS: Mapping[str, str] = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
 OURS, PEER = 'trawl_ros', 'MoorDyn'
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Tow, haul and turn the same wire in both programs."""
     manoeuvre = short_manoeuvre() if small else haul_and_turn()
     model = own_model(WIRE, SEGMENTS)
@@ -40,10 +43,10 @@ def run(small: bool) -> CaseOutcome:
         theirs = wire.settle(0.3 * SETTLING if small else SETTLING)
         peer = wire.follow(manoeuvre)
     difference = apart(own, peer)
-    return CaseOutcome(
-        checks=(*_steady_checks(ours, theirs), *_history_checks(difference)),
+    return Findings(
+        rows=(*_steady_checks(ours, theirs), *_history_checks(difference)),
         drawings=(
-            CaseFigure(
+            Drawing(
                 'histories',
                 f'The wire while it is hauled and the ship turns, {SEGMENTS} segments in both: '
                 f"histories, and the difference as a share of {PEER}'s value.",
@@ -66,31 +69,28 @@ def run(small: bool) -> CaseOutcome:
     )
 
 
-def _steady_checks(ours: WireSteadyState, theirs: WireSteadyState) -> list[Check]:
+def _steady_checks(ours: WireSteadyState, theirs: WireSteadyState) -> list[MeasuredValue]:
     return [
-        Check(
-            f'steady_{name}',
+        MeasuredValue(
             f'steady {name}',
             getattr(ours, name),
-            getattr(theirs, name),
-            SHARE,
-            'relative',
             unit,
+            within_share(SHARE, of=getattr(theirs, name)),
             f'Expected is what {PEER} settles at.',
+            key=f'steady_{name}',
         )
         for name, unit in UNITS.items()
     ]
 
 
-def _history_checks(difference: Apart) -> list[Check]:
+def _history_checks(difference: Apart) -> list[MeasuredValue]:
     return [
-        Check(
-            f'{name}_history',
+        MeasuredValue(
             f"largest difference of {name} over the manoeuvre, share of {PEER}'s value",
             getattr(difference, name),
-            SHARE,
-            rule='at_most',
+            target=at_most(SHARE),
             note='Over all instants, each against the value at the same instant.',
+            key=f'{name}_history',
         )
         for name in ('depth', 'tension')
     ]

@@ -3,7 +3,9 @@
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.own_wire import own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE
-from trawl_ros.lab.report.check import CaseOutcome, Check, TextTable, ValidationCase
+from trawl_ros.lab.report.measured import MeasuredValue, within_share
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
 
 SEGMENTS = 20
 
@@ -11,7 +13,7 @@ SHARE = 0.01
 """Largest difference that is asked for, as a share."""
 
 
-def run(small: bool) -> CaseOutcome:
+def run(small: bool) -> Findings:
     """Solve the same steady tow in both programs; nothing is left out when ``small``."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
@@ -31,17 +33,15 @@ def run(small: bool) -> CaseOutcome:
             for name, unit in names
         ),
     )
-    return CaseOutcome(
-        checks=tuple(
-            Check(
-                f'steady_{name}',
+    return Findings(
+        rows=tuple(
+            MeasuredValue(
                 f'steady {name}',
                 getattr(ours, name),
-                getattr(theirs, name),
-                SHARE,
-                'relative',
                 unit,
+                within_share(SHARE, of=getattr(theirs, name)),
                 "Expected is MoorPy's.",
+                key=f'steady_{name}',
             )
             for name, unit in names
         ),

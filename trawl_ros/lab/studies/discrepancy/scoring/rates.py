@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import binomtest
 
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, between
 
 EXACT = 'binomial 95 % interval (Clopper and Pearson)'
 AGAIN = 'median; 95 % interval by drawing trials again'
@@ -19,16 +19,15 @@ def rate(
     least: float | None = None,
     most: float | None = None,
     note: str = '',
-) -> StudyRow:
+) -> MeasuredValue:
     """Rate of an outcome, %, with its interval."""
     if not outcomes:
-        return StudyRow(what, np.nan, unit='%', least=least, target=most, note='no trials')
+        return MeasuredValue(what, np.nan, '%', between(least, most), 'no trials')
     count, number = sum(outcomes), len(outcomes)
     ends = binomtest(count, number).proportion_ci(method='exact')
     said = f'{count} of {number}; {note or EXACT}'
-    return StudyRow(
-        what, 100.0 * count / number, 100.0 * ends.low, 100.0 * ends.high, '%', most, said, least
-    )
+    low, high = 100.0 * ends.low, 100.0 * ends.high
+    return MeasuredValue(what, 100.0 * count / number, '%', between(least, most), said, low, high)
 
 
 def median(
@@ -38,13 +37,14 @@ def median(
     *,
     least: float | None = None,
     most: float | None = None,
-) -> StudyRow:
+) -> MeasuredValue:
     """The median, of trials whose effect was named rightly."""
     if not values:
-        return StudyRow(what, np.nan, unit=unit, least=least, target=most, note='no trials')
+        return MeasuredValue(what, np.nan, unit, between(least, most), 'no trials')
     known = np.array(values)
     chance = np.random.default_rng(0)
     drawn = np.median(known[chance.integers(len(known), size=(DRAWS, len(known)))], axis=1)
     low, high = np.percentile(drawn, (2.5, 97.5))
     note = f'{len(known)} trials named rightly at 3 and 6 times; {AGAIN}'
-    return StudyRow(what, float(np.median(known)), float(low), float(high), unit, most, note, least)
+    middle, target = float(np.median(known)), between(least, most)
+    return MeasuredValue(what, middle, unit, target, note, float(low), float(high))

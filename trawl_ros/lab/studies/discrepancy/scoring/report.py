@@ -14,10 +14,10 @@ from trawl_ros.core.files import appending
 from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis import rules
 from trawl_ros.lab.report.machine import cpu_model, software
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, write_page
-from trawl_ros.lab.report.row import StudyRow
 from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
-from trawl_ros.lab.studies.discrepancy.scoring.rows import all_rows
+from trawl_ros.lab.studies.discrepancy.scoring.rows import all_sections
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes
 from trawl_ros.lab.studies.discrepancy.trials.making import DROPOUTS, WRONG_BY
 from trawl_ros.lab.studies.discrepancy.trials.plan import (
@@ -30,9 +30,9 @@ from trawl_ros.lab.studies.discrepancy.trials.plant import FRICTION, NORMAL_DRAG
 from trawl_ros.lab.studies.discrepancy.trials.towing import HAULING_SPEED
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
+from trawl_ros.report.pictures import Drawing
 
 REPORT = 'discrepancy.md'
-ALTERNATIVE = 'Verdicts by strength, and hidden effects beside what they were named'
 CAPTION = (
     'Above: what was said of trials with nothing hidden, with effects of the catalogue at three '
     'strengths in smallest detectable sizes, with effects the catalogue does not have, and with '
@@ -42,19 +42,16 @@ CAPTION = (
 
 def write_discrepancy(
     folder: Path, plan: BlindStudyPlan, trials: Sequence[Scored], classes: Classes
-) -> list[StudyRow]:
+) -> list[MeasuredValue]:
     """Write ``discrepancy.json``, ``.md``, ``.html`` and ``.png``, log it, and give the rows."""
-    sections = all_rows(trials, classes)
     page = Page(
         name='discrepancy',
         title='How often the missing effect is found',
         command=f'trawl study discrepancy{_options(plan)}',
         method=_method(plan, trials, classes),
-        alternative=ALTERNATIVE,
-        caption=CAPTION,
     )
-    write_page(folder, page, sections, verdicts_figure(trials, classes))
-    rows = [row for _, own in sections for row in own]
+    drawing = Drawing(page.name, CAPTION, verdicts_figure(trials, classes))
+    rows = write_page(folder, page, all_sections(trials, classes), [drawing])
     log_scoring(folder, plan, len(trials), rows)
     return rows
 
@@ -116,9 +113,11 @@ def _listed(classes: Classes) -> str:
 SCORINGS = 'scorings.jsonl'
 
 
-def log_scoring(folder: Path, plan: BlindStudyPlan, trials: int, rows: Sequence[StudyRow]) -> None:
+def log_scoring(
+    folder: Path, plan: BlindStudyPlan, trials: int, rows: Sequence[MeasuredValue]
+) -> None:
     """Add a line: when, of which plan and rules, which targets were asked for, and missed."""
-    asked = [row for row in rows if row.asked]
+    asked = [row for row in rows if row.target is not None]
     source = Path(rules.__file__).read_bytes()
     line = {
         'time': datetime.now(timezone.utc).isoformat(timespec='seconds'),

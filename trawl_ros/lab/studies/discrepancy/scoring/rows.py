@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.studies.discrepancy.scoring.rates import rate
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
@@ -27,22 +28,22 @@ from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
 
-def all_rows(trials: Sequence[Scored], classes: Classes) -> list[tuple[str, tuple[StudyRow, ...]]]:
+def all_sections(trials: Sequence[Scored], classes: Classes) -> list[Section]:
     """All sections with their rows."""
     return [
-        ('Clean trials', tuple(clean_rows(trials))),
-        ('Effects of the catalogue', tuple(inside_rows(trials, classes))),
-        ('Effects outside the catalogue', tuple(outside_rows(trials))),
-        ('Two effects at once', tuple(pair_rows(trials, classes))),
-        ('Trials that cannot tell', tuple(poor_rows(trials, classes))),
-        ('Full bags', tuple(bag_rows(trials))),
-        ('The repair', tuple(repair_rows(trials, classes))),
-        ('Each effect', tuple(effect_rows(trials, classes))),
-        ('Shuffled keys', tuple(shuffled_rows(trials, classes))),
+        Section('Clean trials', clean_rows(trials)),
+        Section('Effects of the catalogue', inside_rows(trials, classes)),
+        Section('Effects outside the catalogue', outside_rows(trials)),
+        Section('Two effects at once', pair_rows(trials, classes)),
+        Section('Trials that cannot tell', poor_rows(trials, classes)),
+        Section('Full bags', bag_rows(trials)),
+        Section('The repair', repair_rows(trials, classes)),
+        Section('Each effect', effect_rows(trials, classes)),
+        Section('Shuffled keys', shuffled_rows(trials, classes)),
     ]
 
 
-def clean_rows(trials: Sequence[Scored]) -> list[StudyRow]:
+def clean_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
     """Rate of false alarms."""
     clean = chosen(trials, 'clean')
     return [
@@ -53,7 +54,7 @@ def clean_rows(trials: Sequence[Scored]) -> list[StudyRow]:
     ]  # fmt: skip
 
 
-def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
+def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Detection and naming of effects in the catalogue."""
     inside = chosen(trials, 'inside')
     said = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
@@ -68,24 +69,29 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     ]
     testable = {effects_of(trial)[0] for trial in third}
     rows = [
-        StudyRow(
+        MeasuredValue(
             'effects that can be tested at 3 times the smallest detectable size',
             float(len(testable)),
-            least=12.0,
+            target=at_least(12.0),
             note=', '.join(sorted(testable)),
         ),
         *(
             rate(
                 f'detected at {strength:g} times',
-                [verdict(t) not in ('NO_DISCREPANCY', 'NOT_TESTABLE')
-                 for t in chosen(trials, 'inside', strength)],
+                [
+                    verdict(t) not in ('NO_DISCREPANCY', 'NOT_TESTABLE')
+                    for t in chosen(trials, 'inside', strength)
+                ],
                 least=95.0 if strength < 2.0 else None,
             )
             for strength in (1.5, 3.0, 6.0)
         ),
-        rate('truth within the set that is reported',
-             [right(t, reported(t), classes) for t in said], least=98.0,
-             note='of trials NAMED or AMBIGUOUS'),
+        rate(
+            'truth within the set that is reported',
+            [right(t, reported(t), classes) for t in said],
+            least=98.0,
+            note='of trials NAMED or AMBIGUOUS',
+        ),
         *(
             rate(
                 f'right single name, or class, at {strength:g} times',
@@ -94,10 +100,17 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
             )
             for strength, least in ((1.5, None), (3.0, 90.0), (6.0, 97.0))
         ),
-        StudyRow('mean size of the set at 3 times', float(np.mean(sizes)) if sizes else np.nan,
-            target=1.5, note='classes not excluded, of trials NAMED or AMBIGUOUS'),
-        rate('wrong single name', [verdict(t) == 'NAMED' and not right(t, names_of(t), classes)
-                                    for t in inside], most=2.0),
+        MeasuredValue(
+            'mean size of the set at 3 times',
+            float(np.mean(sizes)) if sizes else np.nan,
+            target=at_most(1.5),
+            note='classes not excluded, of trials NAMED or AMBIGUOUS',
+        ),
+        rate(
+            'wrong single name',
+            [verdict(t) == 'NAMED' and not right(t, names_of(t), classes) for t in inside],
+            most=2.0,
+        ),
         *(
             rate(
                 f'UNKNOWN at {strength:g} times',
@@ -105,7 +118,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
             )
             for strength in (3.0, 6.0)
         ),
-    ]  # fmt: skip
+    ]
     return rows
 
 
@@ -113,13 +126,17 @@ def _one_class(names: set[str], classes: Classes) -> set[str]:
     return names | {other for name in names for other in classes.get(name, ())}
 
 
-def outside_rows(trials: Sequence[Scored]) -> list[StudyRow]:
+def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
     """Verdicts on effects outside the catalogue."""
     outside = chosen(trials, 'outside')
     kinds = {effects_of(trial)[0] for trial in outside}
     return [
-        StudyRow('kinds of effects outside the catalogue', float(len(kinds)), least=10.0,
-            note=', '.join(sorted(kinds))),
+        MeasuredValue(
+            'kinds of effects outside the catalogue',
+            float(len(kinds)),
+            target=at_least(10.0),
+            note=', '.join(sorted(kinds)),
+        ),
         *(
             rate(
                 f'UNKNOWN at {strength:g} times',
@@ -130,10 +147,10 @@ def outside_rows(trials: Sequence[Scored]) -> list[StudyRow]:
         ),
         rate('wrong name', [verdict(t) == 'NAMED' for t in outside], most=10.0),
         rate('several names', [verdict(t) == 'AMBIGUOUS' for t in outside]),
-    ]  # fmt: skip
+    ]
 
 
-def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
+def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Verdicts on two effects at once."""
     pairs = chosen(trials, 'pair')
     return [
@@ -146,7 +163,7 @@ def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     ]
 
 
-def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
+def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Tows so much alike that effects are too, and the proposed next tow."""
     poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
     alone = [trial for trial in poor if verdict(trial) == 'NAMED' and len(reported(trial)) == 1]
@@ -161,7 +178,7 @@ def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     ]  # fmt: skip
 
 
-def bag_rows(trials: Sequence[Scored]) -> list[StudyRow]:
+def bag_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
     """Agreement of verdicts from full bags with those from simulated windows."""
     by_number: Mapping[int, Scored] = {
         trial.key['spec']['number']: trial
@@ -194,7 +211,7 @@ def bag_rows(trials: Sequence[Scored]) -> list[StudyRow]:
     return rows
 
 
-def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
+def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Right names of each effect at 3 and 6 times together."""
     rows = []
     for name in sorted({effects_of(trial)[0] for trial in chosen(trials, 'inside')}):
@@ -219,7 +236,7 @@ def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
     return rows
 
 
-def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
+def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Score by chance: the same with keys that belong to other trials."""
     inside = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
     if len(inside) < 2:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.lab.report.row import StudyRow
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.studies.discrepancy.scoring.rates import median, rate
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
@@ -18,7 +18,7 @@ from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
-def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[StudyRow]:
+def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Gain by the named effect on held-out tows."""
     named = [
         trial
