@@ -3,9 +3,9 @@
 import ast
 import doctest
 import inspect
-import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -57,13 +57,18 @@ def test_functions_name_parameters_and_errors():
                 assert 'Raises\n------' in text, name
 
 
-def test_examples_hold():
-    root = Path(trawl_ros.__file__).parents[1]
-    before = Path.cwd()
-    os.chdir(root)
-    try:
-        failed, tried = doctest.testmod(api)
-    finally:
-        os.chdir(before)
+@pytest.mark.parametrize('name', ['read_bag', 'trim', 'plot', 'validate'])
+def test_examples_hold(name, monkeypatch):
+    monkeypatch.chdir(Path(trawl_ros.__file__).parents[1])
+    failed, tried = doctest.testmod(import_module(trawl_ros._HOMES[name]))
     assert tried > 0
     assert failed == 0
+
+
+def test_what_runs_on_a_ship_imports_no_lab():
+    code = (
+        'import sys, trawl_ros.api, trawl_ros.cli.tow; '
+        'print([name for name in sys.modules if name.startswith("trawl_ros.lab")])'
+    )
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == '[]'

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from trawl_ros.gear.records import GearRecord
     from trawl_ros.instruments.parameters import load_instruments
     from trawl_ros.instruments.suite import InstrumentSuite
+    from trawl_ros.lab.validation.run import validate
     from trawl_ros.model.gear_model import GearModel, build_model
     from trawl_ros.plots.album import plot
     from trawl_ros.records.observables import Observables
@@ -63,6 +64,8 @@ _MODULES = {
     'trawl_ros.estimation.report.report': ('Report',),
     'trawl_ros.instruments.parameters': ('load_instruments',),
     'trawl_ros.instruments.suite': ('InstrumentSuite',),
+    # The one name of the lab; like all, it is loaded when it is first used.
+    'trawl_ros.lab.validation.run': ('validate',),
     'trawl_ros.model.gear_model': ('GearModel', 'build_model'),
     'trawl_ros.records.observables': ('Observables',),
     'trawl_ros.plots.album': ('plot',),
@@ -83,6 +86,7 @@ __all__ = [
     'WorkProgress', 'build_model', 'catalogue', 'check_bag', 'diagnose', 'export_bag', 'identify',
     'import_log', 'load_gear', 'load_instruments', 'load_scenario', 'plan_trial', 'plot',
     'read_bag', 'read_messages', 'repair_bag', 'simulate', 'steady_state', 'tow', 'trim',
+    'validate',
 ]  # fmt: skip
 
 

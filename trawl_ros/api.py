@@ -11,7 +11,7 @@ from pathlib import Path
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, TrawlError
-from trawl_ros.core.files import empty_folder, packaged
+from trawl_ros.core.files import empty_folder, new_folder, packaged
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis import diagnosis
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
@@ -128,9 +128,7 @@ def tow(
     ScenarioError, NoSteadyState
         As in `simulate`.
     """
-    out = Path(out)
-    if out.exists():
-        raise BagError(f'{out}: exists already and is not written over; expected a new path')
+    out = new_folder(Path(out), BagError)
     loaded = load_scenario(packaged(Path(scenario), 'scenarios'))
     on_progress(WorkProgress('looking for the steady states'))
     trial = Trial(loaded)

@@ -1,10 +1,13 @@
 """What the system refuses ends a command with one sentence, and with no traceback."""
 
+import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from trawl_ros.cli.main import printable, trawl
 
@@ -27,17 +30,35 @@ def test_a_full_disk_behind_the_standard_output(arguments: list[str], tmp_path: 
     assert (code, said) == (1, 'Error: No space left on device\n')
 
 
-@pytest.mark.parametrize('name', ['plot', 'validate'])
-def test_a_folder_that_cannot_be_made(name: str, steady_tow, tmp_path: Path, capfd) -> None:
-    bag = steady_tow.bag(tmp_path / 'bag', leg_s=30)
-    arguments = ['--small'] if name == 'validate' else [str(bag)]
+@pytest.mark.parametrize(
+    'place', ['{folder}/file/out', '{folder}/file', '/proc/out', '/dev/full/out']
+)
+@pytest.mark.parametrize(
+    'words',
+    [
+        'tow nowhere', 'identify nowhere', 'diagnose nowhere', 'plan-trial nowhere',
+        'plot nowhere', 'bag export nowhere', 'import-log {log} --mapping door_test_haul_log',
+        'validate', 'benchmark', 'study soak', 'study chaos', 'study sonar',
+        'study identification', 'study discrepancy', 'study counters --table {table}',
+        'study hostile', 'demo',
+    ],
+)  # fmt: skip
+def test_a_folder_that_cannot_be_written_is_told_before_the_work(words, place, tmp_path) -> None:
     (tmp_path / 'file').write_text('mine')
-    with pytest.raises(SystemExit) as end:
-        trawl.main([name, *arguments, '--out', str(tmp_path / 'file' / 'out')], prog_name='trawl')
-    said = capfd.readouterr().err
-    assert end.value.code
-    assert 'Error: ' in said
-    assert 'Traceback' not in said
+    (tmp_path / 'log.csv').write_text('')
+    table = ('wire_out_fm,winch_stbd_fm,winch_port_fm', '1,1,1', '2,2,2', '3,3,3')
+    (tmp_path / 'table.csv').write_text('\n'.join(table))
+    before = sorted(tmp_path.rglob('*'))
+    out = place.format(folder=tmp_path)
+    words = words.format(log=tmp_path / 'log.csv', table=tmp_path / 'table.csv').split()
+    began = time.monotonic()
+    done = CliRunner().invoke(trawl, [*words, '--out', out])
+    assert time.monotonic() - began < 20.0
+    assert done.exit_code in (1, 2), done.output
+    assert out in done.stderr
+    assert re.search(r'cannot be (written|used)|is a file|exists already', done.stderr)
+    assert sorted(tmp_path.rglob('*')) == before
+    assert (tmp_path / 'file').read_text() == 'mine'
 
 
 def test_a_terminal_obeys_nothing_that_a_file_says() -> None:

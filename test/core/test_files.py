@@ -2,12 +2,21 @@
 
 import errno
 import json
+import resource
 from pathlib import Path
 
 import pytest
 
-from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import appending, write_json, write_text, written
+from trawl_ros.core.errors import BagError, TrawlError
+from trawl_ros.core.files import (
+    appending,
+    empty_folder,
+    made_folder,
+    new_folder,
+    write_json,
+    write_text,
+    written,
+)
 
 
 def test_a_link_is_replaced_and_what_it_leads_to_stays(tmp_path: Path) -> None:
@@ -63,3 +72,49 @@ def test_a_log_is_not_added_to_through_a_link(tmp_path: Path) -> None:
 def test_names_that_are_no_text_do_not_stop_a_report(tmp_path: Path) -> None:
     write_text(tmp_path / 'page', 'tow \udcff')
     assert (tmp_path / 'page').read_text() == 'tow \\udcff\n'
+
+
+def test_the_check_of_a_folder_leaves_nothing_behind(tmp_path: Path) -> None:
+    out = tmp_path / 'a' / 'b'
+    assert empty_folder(out, force=False) == out
+    assert new_folder(out, BagError) == out
+    assert list(tmp_path.iterdir()) == []
+    made_folder(out)
+    empty_folder(out, force=False)
+    assert list(out.iterdir()) == []
+    (out / 'mine').write_text('mine')
+    with pytest.raises(TrawlError, match='holds files already'):
+        empty_folder(out, force=False)
+    assert empty_folder(out, force=True) == out
+    with pytest.raises(BagError, match='exists already'):
+        new_folder(out, BagError)
+
+
+def test_a_link_to_nowhere_is_no_new_folder(tmp_path: Path) -> None:
+    (tmp_path / 'link').symlink_to(tmp_path / 'gone')
+    with pytest.raises(BagError, match='exists already'):
+        new_folder(tmp_path / 'link', BagError)
+    with pytest.raises(TrawlError, match='cannot be written'):
+        empty_folder(tmp_path / 'link' / 'out', force=True)
+
+
+@pytest.mark.parametrize('name', ['file/out', 'x' * 300])
+def test_a_place_that_takes_no_folder_is_told(name: str, tmp_path: Path) -> None:
+    (tmp_path / 'file').write_text('mine')
+    with pytest.raises(TrawlError, match='cannot be written'):
+        empty_folder(tmp_path / name, force=True)
+    with pytest.raises(BagError, match='cannot be written'):
+        new_folder(tmp_path / name, BagError)
+    with pytest.raises(TrawlError, match='cannot be made'):
+        made_folder(tmp_path / name)
+
+
+def test_a_full_disk_is_told_before_the_work(tmp_path: Path) -> None:
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, before[1]))
+    try:
+        with pytest.raises(TrawlError, match='cannot be written'):
+            empty_folder(tmp_path, force=False)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert list(tmp_path.iterdir()) == []

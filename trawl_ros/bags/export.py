@@ -12,6 +12,7 @@ from trawl_ros.bags.field_units import unit_of
 from trawl_ros.bags.flattening import FlatColumn, FlatLayout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.files import new_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.topics import NAMESPACE, absolute, find_topic
@@ -76,6 +77,7 @@ def export_bag(
         If there is no bag, no such topic, nothing that can be written, or the folder exists or
         cannot be written.
     """
+    folder = new_folder(Path(folder), BagError)
     bag = Bag(path, namespace=namespace, lenient=True)
     wanted = _wanted(bag, topics, namespace)
     layouts = _layouts(bag, wanted, array_limit)
@@ -87,16 +89,8 @@ def export_bag(
         ]
         known = '; '.join([*bag.problems, *reasons]) or 'no message'
         raise BagError(f'{bag.path}: gives no row of a table ({known})')
-    folder = Path(folder)
     try:
         folder.mkdir(parents=True)
-    except FileExistsError:
-        raise BagError(
-            f'{folder}: exists already and is not written over; expected a new folder'
-        ) from None
-    except OSError as reason:
-        raise BagError(f'{folder}: cannot be made ({reason.strerror})') from reason
-    try:
         done = tuple(_write(bag, folder, layouts, on_progress))
         _write_dictionary(bag, folder, layouts, namespace)
     except OSError as reason:

@@ -17,6 +17,7 @@ from trawl_ros.bags.storage.rosbag2_keys import lacking
 from trawl_ros.bags.storage.stored import Definition, Stored
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
+from trawl_ros.core.files import new_folder
 from trawl_ros.core.foreign import reading
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 
@@ -78,8 +79,7 @@ def repair_bag(
     target = out or place.parent / f'{place.stem if place.is_file() else place.name}{SUFFIX}'
     if damaged.is_sound():
         return Repair(path, None, damaged.read, {}, False, ())
-    if target.exists():
-        raise BagError(f'{target}: exists already and is not written over; expected a new path')
+    new_folder(target, BagError)
     with ExitStack() as stack:
         bag: BagWriter | None = None
         for number, file in enumerate(damaged.files):

@@ -1,15 +1,11 @@
 """``trawl trim``."""
 
-from pathlib import Path
-
 import click
 import numpy as np
 
-from trawl_ros.core.files import packaged
-
 
 @click.command('trim')
-@click.argument('gear', metavar='GEAR', type=click.Path(path_type=Path))
+@click.argument('gear', metavar='GEAR')
 @click.option('--attack', required=True, type=click.FloatRange(1.0, 40.0), help='Wanted α, deg.')
 @click.option(
     '--inclination', required=True, type=click.FloatRange(0.0, 60.0), help='Wanted δ, deg.'
@@ -36,7 +32,7 @@ from trawl_ros.core.files import packaged
     help='Speed through the water, m/s.',
 )
 def command(
-    gear: Path, attack: float, inclination: float, pitch: float, warp: float, speed: float
+    gear: str, attack: float, inclination: float, pitch: float, warp: float, speed: float
 ) -> None:
     """Find fastening points that give the boards of GEAR wanted angles.
 
@@ -48,7 +44,7 @@ def command(
     from trawl_ros.model.gear_model import build_model
     from trawl_ros.solver.trim import trim
 
-    model = build_model(load_gear(packaged(gear, 'gear')))
+    model = build_model(load_gear(gear))
     found = trim(
         model,
         attack=np.radians(attack),

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, TextIO
 
 from trawl_ros.core.errors import TrawlError
@@ -29,18 +30,52 @@ def packaged(path: Path, folder: str) -> Path:
 
 
 def empty_folder(path: Path, *, force: bool) -> Path:
-    """Check that results may go into a folder, which need not exist yet.
+    """Check, before the work, that its results can go into a folder, which need not exist yet.
 
     Raises
     ------
     TrawlError
-        If there is something in it already, unless ``force`` allows replacing it.
+        If there is something in it already, unless ``force`` allows replacing it, or if it cannot
+        be written to.
     """
+    _require_writable(path, TrawlError)
     if path.is_dir() and any(path.iterdir()) and not force:
         raise TrawlError(
             f'{path}: holds files already, which are not written over; expected a new or empty '
             'folder, or --force'
         )
+    return path
+
+
+def new_folder(path: Path, error: type[TrawlError]) -> Path:
+    """Check, before the work, that a folder can be made.
+
+    Raises
+    ------
+    TrawlError
+        Of the type ``error``, if the path exists or the folder cannot be made there.
+    """
+    if os.path.lexists(path):
+        raise error(f'{path}: exists already and is not written over; expected a new path')
+    _require_writable(path, error)
+    return path
+
+
+def _require_writable(path: Path, error: type[TrawlError]) -> None:
+    """Write a file without a name where the folder is or will be, which leaves nothing behind."""
+    try:
+        with TemporaryFile(dir=_nearest(path)) as file:
+            file.write(b'?')
+    except OSError as reason:
+        raise error(f'{path}: cannot be written ({reason.strerror})') from reason
+
+
+def _nearest(path: Path) -> Path:
+    """Return the path, or the first above it, that there is."""
+    for place in (path, *path.parents):
+        with suppress(FileNotFoundError, NotADirectoryError):
+            place.lstat()
+            return place
     return path
 
 

@@ -91,10 +91,25 @@ def plot(
     on_progress
         Called as things are read and drawn.
 
+    Returns
+    -------
+    DrawnTow
+        The page, its pictures, and what could not be drawn.
+
     Raises
     ------
     TrawlError
-        If the bag cannot be read, a time is after its end, or ``out`` holds files already.
+        If the bag cannot be read, a time is after its end, or ``out`` holds files already or cannot
+        be written to.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import trawl_ros
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     drawn = trawl_ros.plot('bags/sea_trial', folder, times=[600.0])
+    >>> [picture.file for picture in drawn.pictures]
+    ['history.png', 'track.png', 'gear_00600s.png']
     """
     bag, out = Path(bag), Path(out)
     empty_folder(out, force=force)

@@ -74,10 +74,26 @@ def trim(
     warp_length, speed
         Operating point of the wanted angles, m and m/s.
 
+    Returns
+    -------
+    Trim
+        ``points`` (3, 3), m, of warp, upper and lower bridle, and the ``steady`` state with them.
+
     Raises
     ------
     NoSteadyState
         When no points balance the boards there, or the state they give cannot be used.
+
+    Examples
+    --------
+    >>> import math
+    >>> import trawl_ros
+    >>> found = trawl_ros.trim(
+    ...     trawl_ros.build_model(trawl_ros.load_gear('kaifuha')),
+    ...     attack=math.radians(20.0), inclination=math.radians(10.0), warp_length=500.0, speed=2.1,
+    ... )
+    >>> round(math.degrees(found.steady.observables.port_attack), 3)
+    20.0
     """
     point = OperatingPoint(warp_length, warp_length, speed)
     tow = steady_tow(model, point)

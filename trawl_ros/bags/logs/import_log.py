@@ -27,7 +27,8 @@ from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_nu
 from trawl_ros.bags.logs.units import UNITS
 from trawl_ros.bags.possible import impossible, impossible_compass
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.core.errors import LogError
+from trawl_ros.core.errors import BagError, LogError
+from trawl_ros.core.files import new_folder
 from trawl_ros.core.limits import LOG_READINGS
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
@@ -129,6 +130,7 @@ def write_samples(
     BagError
         If the bag exists or cannot be written.
     """
+    new_folder(Path(bag_path), BagError)
     ordered = list(islice(samples, LOG_READINGS.value + 1))
     if len(ordered) > LOG_READINGS.value:
         raise LogError(f'{path}: more than {LOG_READINGS}; expected a log in several files')

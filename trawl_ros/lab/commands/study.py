@@ -10,7 +10,7 @@ from trawl_ros.cli.files import FILE, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing
-from trawl_ros.core.files import empty_folder
+from trawl_ros.core.files import empty_folder, made_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.commands.outcome import print_missed, print_reached
@@ -211,7 +211,7 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     With tows of a baseline and without. Writes counters.json, .md, .html and .png.
     """
     known = read_table(table)
-    empty_folder(out, force=force).mkdir(parents=True, exist_ok=True)
+    made_folder(empty_folder(out, force=force))
     console = error_console()
     try:
         with ProgressDisplay(console) as display:

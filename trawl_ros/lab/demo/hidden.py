@@ -13,6 +13,7 @@ import click
 from rich.console import Console
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import made_folder
 from trawl_ros.core.parallel import cores
 from trawl_ros.diagnosis.report.writing import MODEL
 
@@ -84,7 +85,7 @@ def hidden_effect(folder: Path, console: Console) -> None:
     TrawlError
         If a command fails, the current is not found, or the repaired gear leaves something over.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    made_folder(folder)
     bags = (BASELINE, *TOWS)
     diagnose = ('diagnose', *TOWS, '--baseline', BASELINE, '--out')
     with ThreadPoolExecutor(cores()) as pool, Commands(folder) as commands:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from trawl_ros.core.files import made_folder
 from trawl_ros.core.progress import OnProgress
 from trawl_ros.lab.studies.chaos.kills import Kills, run_kills
 from trawl_ros.lab.studies.chaos.plan import Plan, faults_of
@@ -39,7 +40,7 @@ def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
     TrawlError
         If there is no ROS 2, or nodes cannot be started.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    made_folder(folder)
     calm = run_tow(plan, [], 'undisturbed', folder, on_progress, stop)
     wild = Tow() if stop() else run_tow(plan, faults_of(plan), 'chaos', folder, on_progress, stop)
     kills = Kills((), 0.0) if stop() else run_kills(plan, folder, on_progress, stop)

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder, write_json
+from trawl_ros.core.files import empty_folder, made_folder, write_json
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.lab.studies.discrepancy.diagnosing import DiagnosisTask, diagnose_case
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
@@ -243,5 +243,5 @@ def _prepare(plan: BlindStudyPlan, folder: Path, *, force: bool) -> None:
     for part in FOLDERS:
         if about.is_file():
             rmtree(folder / part, ignore_errors=True)
-        (folder / part).mkdir(parents=True, exist_ok=True)
+        made_folder(folder / part)
     write_json(about, asked)

@@ -7,6 +7,7 @@ from shutil import disk_usage
 from tempfile import TemporaryDirectory
 
 from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.core.files import made_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.lab.running.chain import Glance, start_chain, watch_chain
 from trawl_ros.lab.running.own_graph import own_graph
@@ -72,7 +73,7 @@ def run_soak(
     NodeFailed
         If a node ends by itself, or cannot end cleanly.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    made_folder(folder)
     needed, free = plan.hours * MOST_BAG_MB_PER_HOUR, disk_usage(folder).free / 1e6
     if free < needed:
         raise TrawlError(
