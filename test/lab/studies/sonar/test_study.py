@@ -75,7 +75,9 @@ def test_the_command_writes_the_table_and_the_picture(coarse_gear: Path, tmp_pat
     result = CliRunner().invoke(trawl, arguments)
     assert result.exit_code == 0, result.output
     assert f'2 sweeps of each of {len(CASES)} cases' in result.output
-    assert sorted(p.name for p in out.iterdir()) == ['sonar.json', 'sonar.md', 'sonar.png']
+    assert sorted(p.name for p in out.iterdir()) == [
+        f'sonar.{kind}' for kind in ('html', 'json', 'md', 'png')
+    ]
     record = json.loads((out / 'sonar.json').read_text())
     assert [row['name'] for row in record['cases']] == [case.name for case in CASES]
     assert all(case.name in (out / 'sonar.md').read_text() for case in CASES)
