@@ -1,9 +1,12 @@
-"""Docstrings begin with a term, never with a question; the glossary names what there is."""
+"""Docstrings, their descriptions and comments begin with a term, never with a question."""
 
 import ast
 import re
 from collections.abc import Iterator
+from io import StringIO
+from itertools import pairwise
 from pathlib import Path
+from tokenize import COMMENT, generate_tokens
 
 import trawl_ros
 
@@ -11,6 +14,9 @@ PACKAGE = Path(trawl_ros.__file__).parent
 GLOSSARY = Path(__file__).parents[1] / 'docs' / 'glossary.md'
 QUESTION = re.compile(r'(What|How|Whether|Where|Who|Whom|Whose|Which|That|When|Why)\b')
 DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+
+
+ASKING = re.compile(r'# *(What|How|Whether|Who|Whom|Whose|Which|Why)\b')
 
 
 def docstrings(source: str) -> Iterator[tuple[int, str]]:
@@ -22,13 +28,38 @@ def docstrings(source: str) -> Iterator[tuple[int, str]]:
                     yield statement.lineno, text
 
 
+def descriptions(line: int, text: str) -> Iterator[tuple[int, str]]:
+    """Line and text of the first lines of a docstring, of it and of its indented descriptions."""
+    lines = text.split('\n')
+    yield line, lines[0].lstrip()
+    for number, (before, here) in enumerate(pairwise(lines), start=line + 1):
+        if before.strip() and indent(here) > indent(before) > 0:
+            yield number, here.strip()
+
+
+def indent(line: str) -> int:
+    return len(line) - len(line.lstrip())
+
+
+def comments(source: str) -> Iterator[tuple[int, str]]:
+    """Line and text of the first lines of comments."""
+    lines = source.splitlines()
+    for token in generate_tokens(StringIO(source).readline):
+        row = token.start[0]
+        goes_on = row > 1 and lines[row - 2].lstrip().startswith('#')
+        if token.type == COMMENT and not goes_on:
+            yield row, token.string
+
+
 def offenders(source: str) -> list[tuple[int, str]]:
-    """Line and first line of docstrings that begin with a word of a question."""
-    return [
-        (line, text.lstrip().split('\n', 1)[0])
-        for line, text in docstrings(source)
-        if QUESTION.match(text.lstrip())
+    """Line and text of what begins with a word of a question."""
+    asking = [
+        (line, words)
+        for first, text in docstrings(source)
+        for line, words in descriptions(first, text)
+        if QUESTION.match(words)
     ]
+    return asking + [(line, text) for line, text in comments(source) if ASKING.match(text)]
 
 
 def test_a_question_is_found_wherever_a_docstring_may_stand() -> None:
@@ -40,15 +71,24 @@ def test_a_question_is_found_wherever_a_docstring_may_stand() -> None:
         '    """Whatever is kept, and where."""\n'
         '    def is_kept(self):\n'
         '        """Whether it is kept.\n\n        Nothing more.\n        """\n'
+        '    def keep(self, times):\n'
+        '        """Keep it.\n\n'
+        '        Parameters\n        ----------\n'
+        '        times\n            How often.\n'
+        '        """\n'
+        '        # What is kept twice.\n'
+        '        # What goes on is no beginning.\n'
     )
     assert offenders(source) == [
         (1, 'What is kept.'),
         (3, 'How many there are.'),
         (7, 'Whether it is kept.'),
+        (17, 'How often.'),
+        (19, '# What is kept twice.'),
     ]
 
 
-def test_docstrings_begin_with_a_term_or_a_verb() -> None:
+def test_docstrings_descriptions_and_comments_begin_with_a_term_or_a_verb() -> None:
     found = [
         f'{path.relative_to(PACKAGE)}:{line}: {text}'
         for path in sorted(PACKAGE.rglob('*.py'))

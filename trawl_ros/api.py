@@ -57,9 +57,9 @@ class TowedBag:
     messages
         Full topic name → number of messages.
     duration_s, planned_s
-        How long was towed, and how long the scenario is, s.
+        Length of the tow, and of the scenario, s.
     complete
-        Whether the scenario was towed to its end.
+        True if the scenario was towed to its end.
     """
 
     path: Path
@@ -205,15 +205,15 @@ def identify(
     truth
         Scenario that made the bags, whose coefficients are set beside the estimates.
     prior
-        Whether the gear file's prior takes part; else the data decide, within the bounds.
+        True if the gear file's prior takes part; else the data decide, within the bounds.
     net
-        Whether drag and weight of the net are estimated along.
+        True if drag and weight of the net are estimated along.
     namespace
         Of the topics.
     scheduler
         Address of a Dask cluster that reads the bags. A scheduler runs code: it must be trusted.
     force
-        Whether results of an earlier run in ``out`` are replaced.
+        True if results of an earlier run in ``out`` are replaced.
     on_note, on_progress
         Called with what is damaged or not used, and as the work goes on.
 
@@ -321,14 +321,14 @@ def plan_trial(
     out
         Folder for ``plan.json``, the scenario ``trial.yaml`` and a picture.
     force
-        Whether results of an earlier run in ``out`` are replaced.
+        True if results of an earlier run in ``out`` are replaced.
     on_progress
         Called as manoeuvres are explored.
 
     Raises
     ------
     TrawlError
-        When there is nothing to choose from, or no time for two legs.
+        If there is nothing to choose from, or no time for two legs.
     """
     if out is not None:
         empty_folder(Path(out), force=force)

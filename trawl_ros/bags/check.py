@@ -61,7 +61,7 @@ def check_bag(
     path
         A bag's folder, or one file of it; may be damaged.
     namespace
-        Where the project's topics live in this bag.
+        Of the project's topics in this bag.
     required
         Groups (see `GROUPS`) or topics, relative or in full, that must be there. What else the
         contract has and the bag has not is no finding: nobody records everything.

@@ -65,7 +65,7 @@ def export_bag(
     topics
         Names of those wanted, relative or in full; by default all.
     namespace
-        Where the project's topics live in this bag.
+        Of the project's topics in this bag.
     array_limit
         Longer arrays do not go into columns.
     on_progress

@@ -59,7 +59,7 @@ class FlatLayout:
     limit
         Elements up to which an array is spread over columns.
     left_out
-        Why not, by the array's path.
+        Reason by the path of each array that is left out.
     """
 
     limit: int

@@ -54,7 +54,7 @@ class SourceWatch:
         channel
             Number of the channel by which it came.
         sample
-            What it says.
+            Reading of the message.
         """
         values = _values(sample)
         if values is None:

@@ -53,9 +53,9 @@ class Bag:
     path
         A bag's folder, or one MCAP file.
     namespace
-        Where the project's topics live in this bag.
+        Of the project's topics in this bag.
     lenient
-        Whether to live with metadata and content that disagree, and with topics of the project
+        True to live with metadata and content that disagree, and with topics of the project
         whose type or definition is wrong, and say so in `problems`.
 
     Attributes
@@ -63,7 +63,7 @@ class Bag:
     topics : dict
         Type by full topic name.
     problems : list of str
-        What was found wrong so far, one sentence each; complete once messages were read.
+        Faults found so far, one sentence each; complete once messages were read.
     custom_data : dict
         Text by key from ``metadata.yaml``.
 

@@ -204,7 +204,7 @@ def open_source(path: Path, report: Report, *, lenient: bool = False) -> BagSour
     report
         Takes a sentence for each thing that is wrong but can be lived with.
     lenient
-        Whether to live with more: metadata that are missing in part, unreadable or disagree
+        True to live with more: metadata that are missing in part, unreadable or disagree
         with the content, and files that are not there.
 
     Raises

@@ -23,7 +23,7 @@ class BagWriter:
     path
         Folder to be made. Nothing may be there yet.
     namespace
-        Where the project's topics live, to tell which of them are latched.
+        Of the project's topics, of which some are latched.
     custom_data
         Text by key, kept in ``metadata.yaml``.
     compression
@@ -125,7 +125,7 @@ class BagWriter:
         data
             The message as CDR.
         log_time, publish_time
-            When it was received and sent, ns; by default the same.
+            Times of reception and sending, ns; by default the same.
 
         Raises
         ------
@@ -189,7 +189,7 @@ class BagWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        # What was recorded before an error is worth as much as without one.
+        # A recording up to an error is worth as much as without one.
         self.close()
 
     def _is_full(self, log_time: int) -> bool:

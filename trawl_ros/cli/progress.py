@@ -22,7 +22,7 @@ class ProgressDisplay:
     Parameters
     ----------
     console
-        Where to show it.
+        Of the display.
     """
 
     def __init__(self, console: Console) -> None:

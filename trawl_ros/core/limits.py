@@ -18,7 +18,7 @@ class Limit:
     unit
         Of the value; empty for a count that ``what`` names.
     what
-        What is bounded.
+        The bounded quantity, in words.
     """
 
     value: int

@@ -157,7 +157,7 @@ def _connected(address: str) -> Client:
         asyncio.run(asyncio.wait_for(_shake_hands(address, keys), PATIENCE_S + 1.0))
         return Client(address, timeout=PATIENCE_S, set_as_default=False)
     except Exception as reason:
-        # What Dask raises here is of many kinds; none of them is this program's fault.
+        # Errors of Dask here are of many kinds; none of them is this program's fault.
         said = str(reason).splitlines()[:1] or [type(reason).__name__]
         raise TrawlError(
             f'{address}: no Dask scheduler answers there ({said[0]}), expected an address such as '

@@ -14,7 +14,7 @@ class WorkProgress:
     stage
         Of the work, in a word or two: ``'towing'``.
     done, total
-        How much of this stage is done, and of how much; None where that is not known.
+        Amount of this stage that is done, and in all; None where that is not known.
     unit
         Of both: ``'s'`` for simulated or recorded time, or a noun such as ``'bags'``.
     detail

@@ -119,13 +119,13 @@ def validated(
     cls
         The record's class, a `Record` as a rule.
     data
-        What `load_yaml` gave, or a part of it. Lists are handed on as tuples.
+        Result of `load_yaml`, or a part of it. Lists are handed on as tuples.
     path
         Named in the error.
     error
         Class of the error to raise.
     prefix
-        Where in the file ``data`` stands (``'instruments'``), put before each key.
+        Key of ``data`` in the file (``'instruments'``), put before each key.
 
     Raises
     ------

@@ -80,11 +80,11 @@ def validation_messages(
     cls
         The record that was wanted.
     data
-        What the file says; mappings and tuples.
+        Content of the file; mappings and tuples.
     errors
-        What pydantic found.
+        Errors of pydantic.
     prefix
-        Where in the file ``data`` stands, put before each key.
+        Key of ``data`` in the file, put before each key.
 
     Returns
     -------

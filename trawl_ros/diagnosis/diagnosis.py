@@ -75,7 +75,7 @@ class Diagnosis:
     remarks
         On instruments that need no model to be seen at fault.
     checks, proposals
-        What to do next where something cannot be told apart: without towing, in sentences, and
+        Next steps where something cannot be told apart: without towing, in sentences, and
         tows.
     empirical
         The term that explains what no effect does, where there is one.
@@ -147,7 +147,7 @@ def diagnose(
     """
     parts = split(windows, baseline)
     model = build_model(gear)
-    # What an earlier diagnosis has found is what the gear in order did not have.
+    # Effects found by an earlier diagnosis are those that the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
     predictor = Predictor(model, effects_of(gear), without=baseline, new=new)
     known = Diagnosis(

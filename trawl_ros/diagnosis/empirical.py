@@ -36,7 +36,7 @@ class Empirical:
     placebo
         The largest χ² that any term of `PLACEBOS` placebo dictionaries explains.
     left_over
-        What it leaves over.
+        Residuals beyond their errors after it.
     """
 
     weighed: Weighed
@@ -59,7 +59,7 @@ def empirical(predictor: Predictor, base: Refit, seen: ScoreTest) -> Empirical |
     base
         Boards alone.
     seen
-        What was detected.
+        Result of the score test.
     """
     depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
     wanted = candidates(dictionary(), predictor, depths)

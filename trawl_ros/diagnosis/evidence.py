@@ -108,7 +108,7 @@ def evidence(
     Parameters
     ----------
     fit
-        Whose noise is used; its windows may have more than the twelve columns of the boards.
+        Source of the noise; its windows may have more than the twelve columns of the boards.
     columns
         For each window (channels of the window, n): what a unit of each value changes.
     units

@@ -52,7 +52,7 @@ class Named:
     rivals
         Effects that are not excluded.
     left_over
-        What the best leaves over.
+        Residuals beyond their errors after the best.
     lost
         Windows that have no steady state with what was the best to first order: then nothing was
         weighed, and they are better left out.
@@ -82,7 +82,7 @@ def name(
     base
         Boards alone.
     seen
-        What was detected.
+        Result of the score test.
     on_progress
         Called before each refit.
     """
@@ -183,7 +183,7 @@ def _seconds(seen: ScoreTest, weighed: Sequence[Weighed], left: LeftOver) -> tup
     others = [one for one in seen.wanted if one.name != first.name]
     others.sort(key=lambda one: seen.penalised(one, rest), reverse=True)
     near, own = _near(seen, weighed), _of_one_instrument(seen, best)
-    # What the best leaves to its like is seen badly to first order.
+    # Residuals of the best in the direction of its like are seen badly to first order.
     chosen = _once(one for one in others if one.name in near)[:SECONDS]
     if not chosen:
         chosen = tuple(

@@ -150,11 +150,11 @@ def refit(
     wanted
         The effects.
     values
-        Where to start them, in their order.
+        Start values, in their order.
     parts
         Windows of ``base`` with what these effects change behind the twelve columns of the boards.
     options
-        How the estimate is found.
+        Options of the estimator.
 
     Returns
     -------

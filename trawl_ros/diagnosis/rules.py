@@ -88,7 +88,7 @@ class Grounds:
     share
         Part of the resampled trials in which it is the best.
     at_bound
-        Whether a value rests on the bound of what is possible.
+        True if a value rests on the bound of what is possible.
     left_over, left_share
         Probability of what is left over, and its part of what is explained.
     rivals

@@ -32,11 +32,11 @@ class Weighed:
     doubted_bic
         The second with all errors `DOUBT` times as large.
     gains
-        What each left-out unit gains by it, χ².
+        Gain of each left-out unit by it, χ².
     share
         Part of resampled trials in which it is the best, or one of its class.
     others
-        What is the best in the rest of them.
+        Best candidates of the others.
     cosine
         The largest with any other effect that is not of its class.
     """

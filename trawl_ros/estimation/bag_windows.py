@@ -31,7 +31,7 @@ def read_tow(task: BagTask, on_progress: OnProgress = ignore) -> FoundWindows:
     Parameters
     ----------
     task
-        Which bag.
+        The bag, its topics and its gear.
     on_progress
         Called after each sample, with the part of the tow (s) that is read.
     """

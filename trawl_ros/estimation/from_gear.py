@@ -61,7 +61,7 @@ def identification_for(
     gear
         From `load_gear`: the model as it is believed, not the plant.
     window_options, estimator_options
-        When a window is steady; how the estimate is found.
+        Criteria of a steady window; options of the estimator.
     """
     return Identification(
         predictor_for(gear),

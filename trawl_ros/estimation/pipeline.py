@@ -47,7 +47,7 @@ class Identification:
     pressure_to_depth
         Depth (m) for an absolute pressure (Pa).
     window_options, estimator_options
-        When a window is steady; how the estimate is found.
+        Criteria of a steady window; options of the estimator.
 
     Attributes
     ----------

@@ -21,9 +21,9 @@ class FoundWindows:
     arrived, readings
         Channel → readings that came, and those of them that were accepted.
     rejections
-        What was refused.
+        Refused readings and windows.
     why_not
-        Where there is no window, one sentence on why.
+        Reason for the lack of windows, in a sentence; None with windows.
     problems
         A sentence for each thing that was damaged.
     """

@@ -32,7 +32,7 @@ class InstrumentSuite:
     Attributes
     ----------
     panel : FaultPanel
-        Where faults are switched.
+        Switches of faults.
     """
 
     def __init__(

@@ -116,7 +116,7 @@ def pull_slopes_at(
     elastic = (slope + damping_time * curve * rate) / rest
     viscous = stiffness * damping_time * slope / rest
     for j in range(3):
-        # How force changes as the far end moves along axis j.
+        # Change of force as the far end moves along axis j.
         turning = (stretching[j] - closing * along[j]) / span
         rate_j = (turning - rest_rate / rest * along[j]) / rest
         force_j = stiffness * (elastic * along[j] + damping_time * slope * rate_j)

@@ -89,7 +89,7 @@ class BagRecorder(TrawlNode):
             max_file_ns=round(self.parameters['max_bag_duration'] * SECOND),
         )
         self._progress = ConsumerProgress(self)
-        # What paces the progress: truth comes at every instant, markers now and then.
+        # Topics that pace the progress: truth comes at every instant, markers now and then.
         self._pacing = {
             absolute(topic.name, namespace): topic.name for topic in TRUTH if topic.rate != 1.0
         }
@@ -140,14 +140,14 @@ class BagRecorder(TrawlNode):
         if again:
             self.stop_listening(topic)
         taker = self._taker(topic, type_name)
-        # What is declared of a first subscription would be forced upon the second.
+        # Parameters of a first subscription would be forced upon the second.
         self.listen_raw(topic, type_name, taker, profile, overridable=not again)
         self._profiles[topic] = profile
         self._types[topic] = type_name
 
     def _taker(self, topic: str, type_name: str) -> Callable[[bytes], None]:
         timed = topic in self._timed
-        # Who reports of itself may go by another clock than the tow.
+        # A node that reports of itself may go by another clock than the tow.
         by_header = self._by_header and topic != DIAGNOSTICS
 
         def take(data: bytes) -> None:

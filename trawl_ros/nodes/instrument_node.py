@@ -179,7 +179,7 @@ class InstrumentNode(TrawlNode, ABC):
 
     def _look_at(self, topic: str) -> None:
         def take(message: Any) -> None:
-            # What is huge and finite is infinite in the shorter numbers of a reading.
+            # A huge finite number is infinite in the shorter numbers of a reading.
             if wrong := beyond(message, TRUTH.value, unknown=topic == SEABED):
                 raise MessageError(
                     f'{topic}: {min(wrong)} is not finite, or beyond ±{TRUTH.value:g}; expected '

@@ -49,7 +49,7 @@ class CommandedTow:
     heading
         First heading, ENU yaw, rad.
     truth_rate_hz
-        How often truth is asked for: `MAX_TRUTH_HZ` divided by a whole number.
+        Rate of truth, Hz: `MAX_TRUTH_HZ` divided by a whole number.
     acting
         Effects that the plant has beyond the model.
 

@@ -46,7 +46,7 @@ class DrawnTow:
     notes
         Sentences on what could not be drawn.
     complete
-        Whether the film, if one was wanted, goes to the end.
+        True if the film, if one was wanted, goes to the end.
     """
 
     page: Path
@@ -76,16 +76,16 @@ def plot(
     out
         Folder for the pictures and the page ``index.html``.
     times
-        When to draw the gear and the sonar's picture, s after the start of the bag; by default
+        Times of the pictures of gear and sonar, s after the start of the bag; by default
         early, in the middle and late.
     animate
-        Whether to make a film as well.
+        True to make a film as well.
     gear
         A file or a name; its water turns pressure into depth.
     namespace
         Of the topics.
     force
-        Whether pictures of an earlier run in ``out`` are replaced.
+        True if pictures of an earlier run in ``out`` are replaced.
     stopped
         Asked between the frames of the film, which ends where it says yes.
     on_progress

@@ -53,7 +53,7 @@ def write_film(path: Path, name: str, frames: Sequence[Frame], go_on: Callable[[
     Returns
     -------
     int
-        How many frames were drawn.
+        Number of frames drawn.
     """
     shapes = [frame.shape for frame in frames]
     views = gear.lay_out(gear.extent(shapes), width=6.0, right=2.7)

@@ -182,7 +182,7 @@ def read_tow(path: Path, depth_at: Callable[[float], float], namespace: str) -> 
     depth_at
         Depth (m) at an absolute pressure (Pa).
     namespace
-        Where the project's topics live in it.
+        Of the project's topics in it.
 
     Raises
     ------

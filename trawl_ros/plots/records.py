@@ -43,7 +43,7 @@ class TowHistory:
     Attributes
     ----------
     name : str
-        What it is called in titles.
+        Of the tow in titles.
     start : int
         Stamp of time 0, ns.
     duration_s : float

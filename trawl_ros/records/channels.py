@@ -25,7 +25,7 @@ class Channel:
     name
         The observable it is compared with, or an input (warp lengths, speed).
     topic
-        Where it comes from, for sentences to the user.
+        Source of the readings, for sentences to the user.
     unit
         SI unit of values, ``low``, ``high``, ``noise`` and ``bias``.
     low, high

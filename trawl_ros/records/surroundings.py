@@ -48,7 +48,7 @@ class Surroundings:
     def mean_sound_speed(self, upper: float, lower: float) -> float:
         """Return the mean speed of sound (m/s) straight from one depth (m) to another."""
         levels = np.linspace(upper, lower, 11)
-        # What adds up along the way is time, so it is the slowness whose mean counts.
+        # Time adds up along the way, so it is the slowness whose mean counts.
         return float(1.0 / np.mean([1.0 / self.sound_speed(level) for level in levels]))
 
 

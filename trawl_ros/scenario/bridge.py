@@ -32,7 +32,7 @@ class Bridge:
     Parameters
     ----------
     scenario
-        Whose steps say what is steered and how the winches are worked.
+        With the steps of helm and winches.
     """
 
     def __init__(self, scenario: Scenario) -> None:

@@ -129,9 +129,9 @@ class Simulation:
         Raises
         ------
         StepFailed
-            When the motion cannot be computed even with short steps.
+            If the motion cannot be computed even with short steps.
         SeabedTouched
-            When the gear comes to the bottom; it stays where it was.
+            If the gear comes to the bottom; it stays where it was.
         """
         if self._reached is None:
             start = self.now

@@ -71,7 +71,7 @@ def find_equilibrium(
     Raises
     ------
     NoSteadyState
-        When none is found, or only a collapsed one.
+        If none is found, or only a collapsed one.
     """
     tow = steady_tow(model, point)
     if near is not None:

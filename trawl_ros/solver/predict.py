@@ -159,7 +159,7 @@ class Predictor:
         Raises
         ------
         NoSteadyState
-            When the gear has none there.
+            If the gear has none there.
         """
         question = np.array([*coefficients, port_length, starboard_length, speed]).tobytes()
         last = self._last.pop(question, None)

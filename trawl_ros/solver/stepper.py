@@ -72,7 +72,7 @@ class Stepper:
         Raises
         ------
         StepFailed
-            When the iteration does not converge.
+            If the iteration does not converge.
         """
         if self._factor_step != h:
             self._factor = None

@@ -82,7 +82,7 @@ def trim(
     Raises
     ------
     NoSteadyState
-        When no points balance the boards there, or the state they give cannot be used.
+        If no points balance the boards there, or the state they give cannot be used.
 
     Examples
     --------

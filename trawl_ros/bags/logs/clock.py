@@ -120,9 +120,9 @@ class ClockReader:
     Parameters
     ----------
     clock
-        What the mapping says.
+        Entry of the mapping.
     decimal
-        What stands between a number and its fraction.
+        Sign between a number and its fraction.
     """
 
     def __init__(self, clock: Clock, decimal: Literal['.', ','] = '.') -> None:

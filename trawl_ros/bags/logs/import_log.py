@@ -82,7 +82,7 @@ def import_log(
     bag_path
         Folder to be made.
     leave_out
-        Whether rows that cannot be understood are left out and counted; by default the first
+        True if rows that cannot be understood are left out and counted; by default the first
         of them is an error.
 
     Returns
@@ -117,7 +117,7 @@ def write_samples(
     path
         The log, which the bag's metadata name.
     samples
-        What it says.
+        Readings of the log.
     bag_path
         Folder to be made.
     row_counts

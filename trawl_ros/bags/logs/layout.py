@@ -107,7 +107,7 @@ def read_rows(
     path
         The log.
     layout
-        How it lies in its file.
+        Layout of the table in its file.
     needed
         Columns that must be there, each with what wants it.
     keys

@@ -49,7 +49,7 @@ def import_nmea(
     bag_path
         Folder to be made.
     leave_out
-        Whether lines whose recorder's time cannot be understood are left out and counted; by
+        True if lines whose recorder's time cannot be understood are left out and counted; by
         default the first of them is an error. Damaged sentences always are left out: serial
         lines lose bytes.
 

@@ -33,7 +33,7 @@ def reading(topic: str, sentence: Any, entry: NmeaTopic, mapping: NmeaMapping) -
     sentence
         As `pynmeagps` gives it.
     entry, mapping
-        What is to be stated with it.
+        Entry of the mapping for it, and the whole mapping.
 
     Raises
     ------

@@ -57,7 +57,7 @@ def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
     record
         The whole record with opcode and length.
     allowed
-        What may be taken out of the file.
+        Bytes that may still be taken out of the file.
 
     Raises
     ------

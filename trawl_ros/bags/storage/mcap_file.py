@@ -53,12 +53,12 @@ class McapFile:
     report
         Takes a sentence for each thing that is wrong but can be lived with.
     stated
-        What the bag's metadata say of topics, should the file have lost it.
+        Topics by the bag's metadata, for a file that has lost their descriptions.
 
     Attributes
     ----------
     indexed : bool
-        Whether messages are found by the index at its end, and not by going through the file.
+        True if messages are found by the index at its end, and not by going through the file.
 
     Raises
     ------

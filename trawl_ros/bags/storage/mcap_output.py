@@ -28,7 +28,7 @@ class McapOutput:
     Parameters
     ----------
     path
-        Where nothing may be yet.
+        Of the new file.
     compression
         One of `COMPRESSIONS`.
 

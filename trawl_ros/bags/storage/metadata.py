@@ -159,7 +159,7 @@ def dump_metadata(
     topics
         Those with messages.
     custom_data
-        What else is to be known of the bag.
+        Further text by key.
     """
     extent = _extent(files)
     information = {

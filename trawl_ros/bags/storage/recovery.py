@@ -58,14 +58,14 @@ def recover(
     taken
         Topics by channel of those that are described.
     stated
-        What ``metadata.yaml`` says; without it, the project's own topics are what there may be.
+        Topics by ``metadata.yaml``; without it, the project's own are the candidates.
     in_order
-        Whether the writer counts channels in the order in which it names topics there.
+        True if the writer counts channels in the order in which it names topics there.
 
     Returns
     -------
     dict
-        What was found, by channel; the others may be several topics, or none that is known.
+        Topic by channel; channels left out may be several topics, or none that is known.
     """
     return _Recovery(samples, list(claims), dict(taken), stated, in_order).solve()
 

@@ -105,7 +105,7 @@ def lacking(information: Any) -> list[str]:
     Parameters
     ----------
     information
-        What stands under ``rosbag2_bagfile_information``.
+        Content of ``rosbag2_bagfile_information``.
     """
     version = information.get('version') if isinstance(information, dict) else None
     return list(_bag(information, version if isinstance(version, int) else 0))

@@ -21,7 +21,7 @@ def write_diagnosis(found: Diagnosis, sources: Sequence[SourceBag], folder: Path
     Parameters
     ----------
     found
-        What to write.
+        The diagnosis.
     sources
         The bags.
     folder

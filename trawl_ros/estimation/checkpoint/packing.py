@@ -40,7 +40,7 @@ class Packer:
     numbers : bytearray
         The numbers of all arrays.
     given : dict
-        What stayed out, by its path of attributes.
+        Parts that stayed out, by their path of attributes.
     attributes : dict
         Names of the attributes of each class that was met.
     """

@@ -104,24 +104,24 @@ class TowErrors:
     Attributes
     ----------
     rows : (n,) int array
-        Which of all windows these are.
+        Indices into all windows.
     present : (n, k) bool array
-        Whether a window has the channel; all else is 0 where it has not.
+        True if a window has the channel; all else is 0 where it has not.
     noise : (n, k) array
         Std of the single reading's own error as stated, 1 where absent.
     numbers : (n, k) array
-        How many independent readings each stands for: all windows of a state share what
+        Number of independent readings of each: all windows of a state share what
         changes with the state.
     inputs : (n, k, 4) array
-        What one std in warp lengths, speed and rest of this window does.
+        Change by one std in warp lengths, speed and rest of this window.
     input_std : (n, 3) array
-        That std of warp lengths (m) and speed (m/s).
+        The std of warp lengths (m) and speed (m/s).
     calibration : (n, k, p) array
-        What one std of each of `TERMS` does.
+        Change by one std of each of `TERMS`.
     input_calibration : (n, 3, p) array
         By how much one std of each of `TERMS` makes warp lengths and speed read too large.
     model : (n, k, m) array
-        What one std of the model's errors does, one per group, then of their trends, and of the
+        Change by one std of the model's errors, one per group, then of their trends, and of the
         net's drag and weight where they are not held.
     """
 
@@ -159,7 +159,7 @@ def tow_errors(parts: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, 
     parts
         Linearised windows of any tows.
     scheme
-        How errors are divided.
+        Scheme of the errors.
     """
     states = [part.window.state for part in parts]
     in_state = {state: states.count(state) for state in set(states)}

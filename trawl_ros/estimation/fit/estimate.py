@@ -116,7 +116,7 @@ class Estimate:
     shrink
         1 − std/prior std (12,): 0 where the data said nothing, 1 where they said all.
     determined
-        Whether the data determine each coefficient: std at most 20 % of the value or of the
+        True if the data determine each coefficient: std at most 20 % of the value or of the
         prior's std, whichever is more, and at most half the prior's std, so that a narrow
         prior alone determines nothing.
     active_bounds
@@ -129,7 +129,7 @@ class Estimate:
         Group of channels → factor by which residuals say that its stated noise is wrong; a few
         imagined readings as stated steady it, and intervals are set by it.
     tow_biases
-        What the instruments of each tow read too high by.
+        Biases of the instruments of each tow.
     net
         Drag and weight of the net; empty where they are held.
     degrees_of_freedom
@@ -142,7 +142,7 @@ class Estimate:
     innovation
         Of the newest window; None after a fit of all windows together.
     converged, reason
-        Whether the iteration has come to rest, and how one knows.
+        True if the iteration has come to rest, and the criterion.
     """
 
     revision: int

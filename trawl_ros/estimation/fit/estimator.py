@@ -74,7 +74,7 @@ class Estimator:
     observables
         Names of the predictor's values, in their order.
     options
-        How the estimate is found.
+        Options of the estimator.
 
     Attributes
     ----------
@@ -288,7 +288,7 @@ class Estimator:
                 if step.gain > NEGLIGIBLE_GAIN:
                     return False, f'{step.obstacle}, {step.size:.2g} std from rest'
                 return True, f'after {iteration} iterations no step can lower the cost noticeably'
-            # What errors do changes with a step, and may change back with the next.
+            # The share of the errors changes with a step, and may change back with the next.
             part = SHORTER if step.size > GETTING_ON * last else 1.0
             last = step.size
         return False, f'still moving by {step.size:.2g} std after {limit} iterations'

@@ -24,19 +24,19 @@ class EstimatorOptions:
     prior_weight
         1 uses the prior as stated, 0 leaves it out.
     stated_noise_readings
-        How many imagined readings speak for the stated noise when the noise is found.
+        Number of imagined readings that speak for the stated noise when the noise is found.
     alike_readings
-        How many imagined readings of each channel group speak for the noise being wrong by the
+        Number of imagined readings of a channel group that speak for the noise being wrong by the
         same factor in all of them.
     state_share, model_error, model_trend, unsettled
-        How errors are divided, as in `trawl_ros.estimation.fit.error_terms.Scheme`.
+        Scheme of the errors, as in `trawl_ros.estimation.fit.error_terms.Scheme`.
     net_drag, net_weight
         Std of factors on drag and weight in water of the net, which are then estimated along; where
         both are 0 the net is held as the gear file has it.
     iterations_per_window, iterations_final
         Gauss–Newton steps at most after each window and at the end.
     halvings
-        How often a step that fails is halved before giving up.
+        Number of times that a failing step is halved before giving up.
     largest_step
         Largest change of a coefficient in one step, in prior std.
     relinearise, relinearise_final
@@ -48,7 +48,7 @@ class EstimatorOptions:
     tolerance
         A step below this part of every coefficient's std is the end.
     second_start
-        Whether a fit that explains its readings badly, or does not come to rest, is made again
+        True if a fit that explains its readings badly, or does not come to rest, is made again
         from the prior's start.
     """
 

@@ -26,7 +26,7 @@ def gauss_newton_step(fit: Fit, low: np.ndarray, high: np.ndarray) -> Fit:
     Parameters
     ----------
     fit
-        Where to begin, inside the box.
+        Start of the step, inside the box.
     low, high
         The box (12,).
 

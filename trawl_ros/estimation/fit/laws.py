@@ -62,7 +62,7 @@ class LawQuantities:
     sd : (12,) array
         Standard deviations of these.
     span : (12,) array
-        What each quantity's law spans over 15°, without a sign.
+        Span of each quantity's law over 15°, without a sign.
     """
 
     values: np.ndarray
@@ -123,7 +123,7 @@ def law_spans(coefficients: np.ndarray, std: np.ndarray | None = None) -> np.nda
     coefficients
         Of the board, (12,).
     std
-        How uncertain these are (12,): then the root mean square of what the laws may span, so
+        Their std (12,): then the root mean square of what the laws may span, so
         that a law whose slope is not known yet has a span too.
     """
     variance = np.zeros(len(coefficients)) if std is None else std**2
@@ -145,7 +145,7 @@ def law_quantities(
     coefficients, covariance
         Of the board, (12,) and (12, 12), in the order of eq. 36.
     angles
-        Where the boards work in the mean.
+        Mean working angles of the boards.
     span
         From `law_spans`, where it is not to be that of these coefficients.
     """

@@ -71,23 +71,23 @@ def linearise(
     predictor, observables
         The model and the names of its values.
     window
-        What was measured.
+        Steady window with the measured means.
     coefficients
-        Where (12,).
+        Point of linearisation (12,).
     starts
-        Where to start from, each tried in turn; None is a cold start.
+        Start states, each tried in turn; None is a cold start.
     inputs
         Warp lengths (m) and speed (m/s); as measured if None.
     net
         Factors (2,) on drag and weight of the net where these are estimated along.
     even
-        Whether a steady state may be one with both warps of their mean length, where there is
+        True if a steady state may be one with both warps of their mean length, where there is
         none else: counters may read so unequal that no gear could be towed so.
 
     Raises
     ------
     NoSteadyState
-        When none of the starts leads to one.
+        If none of the starts leads to one.
     """
     channels = tuple(name for name in MEASURED if name in window.means and name in observables)
     rows = [observables.index(name) for name in channels]

@@ -47,7 +47,7 @@ class SteadyPredictor(Protocol):
         Raises
         ------
         NoSteadyState
-            When there is none.
+            If there is none.
         """
         ...
 

@@ -20,7 +20,7 @@ class BoardPrior:
     Raises
     ------
     GearError
-        When an array has the wrong length, is not finite or contradicts the others.
+        If an array has the wrong length, is not finite or contradicts the others.
     """
 
     start: np.ndarray

@@ -28,8 +28,8 @@ def far(
     part
         The window as it was solved.
     coefficients, inputs, net
-        Where it is wanted: (12,), warp lengths and speed (3,), factors on the net's drag and weight
-        (2,) or None where these are held.
+        Point of linearisation: (12,), warp lengths and speed (3,), factors on the net's drag and
+        weight (2,) or None where these are held.
     threshold
         Standard deviations of a window's mean.
     """

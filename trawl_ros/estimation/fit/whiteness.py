@@ -42,7 +42,7 @@ def ljung_box(series: Sequence[np.ndarray], lags: int | None = None) -> Whitenes
     series
         Residuals (n_i,) in order of time, one array per tow.
     lags
-        How many; by default a fifth of the residuals, at most `LONGEST_LAG` [2]_.
+        Number of lags; by default a fifth of the residuals, at most `LONGEST_LAG` [2]_.
 
     Returns
     -------

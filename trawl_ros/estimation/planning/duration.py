@@ -150,7 +150,7 @@ def holding_time(manoeuvre: Manoeuvre, options: WindowOptions, rest: float = 0.0
     manoeuvre
         Warp lengths and speed.
     options
-        When a window is steady.
+        Criteria of a steady window.
     rest
         Time (s) until the gear drifts no more than a window may.
     """
@@ -192,7 +192,7 @@ class Timetable:
     ability
         Of ship and winches.
     options
-        When a window is steady.
+        Criteria of a steady window.
     candidates
         All manoeuvres that are asked for, but for the first.
     """

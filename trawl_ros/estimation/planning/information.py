@@ -37,7 +37,7 @@ def information_of(
     prior
         Its std is the coefficients' scale.
     options
-        How errors are divided.
+        Scheme of the errors.
     scales
         Factors on the stated noise, by group of channels.
     """

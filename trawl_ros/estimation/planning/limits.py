@@ -31,7 +31,7 @@ def limits_of(
     manoeuvres
         The trial.
     known
-        What is known after it.
+        Quantities of the laws after it.
     """
     once, often = (designer.information(manoeuvres, times) for times in (1.0, WITHOUT_END))
     every = set(range(len(once)))

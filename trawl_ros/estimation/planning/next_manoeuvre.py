@@ -53,7 +53,7 @@ class Advice:
     minutes
         From now until its windows are taken.
     before, after
-        What is known of the laws now, and would be then.
+        Quantities of the laws now, and then.
     nats
         Information gained: half the fall of the covariance's log determinant.
     looked_up
@@ -99,7 +99,7 @@ class Adviser:
     limits
         Among which manoeuvres one may choose.
     windows
-        When a window is steady.
+        Criteria of a steady window.
     """
 
     def __init__(
@@ -181,7 +181,7 @@ class Adviser:
         fit
             With one window at least.
         manoeuvre
-            What is done next.
+            The next manoeuvre.
         """
         question = _Question.of(fit, self._gear)
         number = self._windows.max_windows_per_state

@@ -60,17 +60,17 @@ class TrialPlan:
     gear
         Its name.
     question
-        What was asked.
+        The question of the plan.
     choice
         The manoeuvres among which was chosen, and those that are not to be had.
     trial
         The plan.
     gains
-        What each of its legs adds.
+        Gain of each of its legs.
     limits
         Quantity that is not well known after it → what keeps it from that.
     before
-        What is known before any tow.
+        Quantities of the laws before any tow.
     sweeps
         The paper's sweep in the same time, with all planned channels and with the paper's.
     """
@@ -108,14 +108,14 @@ def plan_trial(
     limits
         Among which manoeuvres one may choose.
     windows, estimator
-        When a window is steady; how the estimate is found.
+        Criteria of a steady window; options of the estimator.
     on_progress
         Called after each steady state.
 
     Raises
     ------
     TrawlError
-        When there is nothing to choose from, or no time for two legs.
+        If there is nothing to choose from, or no time for two legs.
     """
     prior = board_prior(gear)
     predictor = predictor_for(gear)

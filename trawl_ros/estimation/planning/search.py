@@ -73,9 +73,9 @@ class Designer:
     Parameters
     ----------
     question
-        What is asked.
+        The question of the plan.
     candidates
-        What may be chosen from.
+        Manoeuvres to choose from.
     noise
         Standard error of each channel's mean; channels that are not in it are not heard.
     """

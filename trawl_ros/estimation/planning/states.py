@@ -68,7 +68,7 @@ class Limits:
     seabed
         Depth of the water (m).
     clearance
-        How far (m) the gear stays above the seabed.
+        Least distance (m) of the gear from the seabed.
     """
 
     lengths: tuple[float, ...] = (200.0, 300.0, 400.0, 500.0, 700.0, 900.0)
@@ -221,14 +221,14 @@ def explore(explorer: Explorer, on_progress: OnProgress = ignore) -> ManoeuvreCh
     Parameters
     ----------
     explorer
-        Which ones.
+        Iterator over them.
     on_progress
         Called after each of them.
 
     Raises
     ------
     TrawlError
-        When the gear can be towed in none of them.
+        If the gear can be towed in none of them.
     """
     candidates, refused = [], []
     for done, found in enumerate(explorer, 1):

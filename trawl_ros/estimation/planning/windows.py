@@ -39,13 +39,13 @@ def imagined_windows(
     Parameters
     ----------
     candidate
-        Where.
+        Manoeuvre with its steady state.
     coefficients
         Of the board, (12,), as they are believed to be.
     state, tow
         Numbers they get.
     number
-        How many windows.
+        Number of windows.
     noise
         Standard error of each channel's mean; channels that are not in it are not heard.
     to_come

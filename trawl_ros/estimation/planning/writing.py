@@ -25,7 +25,7 @@ def write_plan(plan: TrialPlan, gear: str, folder: Path) -> None:
     Parameters
     ----------
     plan
-        What to write.
+        The plan of the trial.
     gear
         The gear as the user named it: the name of one that comes with the package, or a file,
         which is copied beside the scenario so that this can be moved.

@@ -26,7 +26,7 @@ class HeldOut:
     by
         'tow' or 'state'.
     groups
-        How many tows or states there are.
+        Number of tows or states.
     predicted : (n, 4) array
         In the order of `PAPER_CHANNELS`, NaN where a fit or a steady state is missing.
     """

@@ -24,7 +24,7 @@ def page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()
     Parameters
     ----------
     report
-        What it is about.
+        Report of the identification.
     pictures
         Its figures, embedded.
     advice

@@ -61,7 +61,7 @@ class Report:
     Attributes
     ----------
     estimate, prior
-        Where it ended and where it started.
+        End and start of the fit.
     prior_weight
         1 where the prior was used, 0 where the data alone decided.
     truth : (12,) array or None
@@ -76,21 +76,21 @@ class Report:
         The channels of eq. 35: measured, and solved at the start and at the estimate. NaN
         where there is no steady state.
     held_out
-        What fits predict of the tows, or states, they have not seen.
+        Predictions of the tows, or states, that a fit has not seen.
     at_truth : (n, 4) array or None
         Solved at the truth.
     residuals
-        What each channel's readings differ by from the model at the estimate.
+        Differences of each channel's readings from the model at the estimate.
     innovations
-        What they differed by before their window was used.
+        Differences before their window was used.
     course
         The windows, each with the estimate after it, as they came.
     history
         The steps of the iteration.
     spectrum
-        How much the data know of which direction.
+        Information of the data by direction.
     laws
-        What is known of the boards' laws; None where the gear is not at hand.
+        Quantities of the boards' laws; None where the gear is not at hand.
     """
 
     estimate: Estimate
@@ -183,14 +183,14 @@ def report(
     tows
         Names of the tows; numbered where none are given.
     gear
-        Whose boards these are, to say what is known of their laws at the angles they work at.
+        Gear of the boards, for their laws at the angles they work at.
     on_progress
         Called before each fit of the hold-out.
 
     Raises
     ------
     TrawlError
-        When there is no estimate, with the reason.
+        If there is no estimate, with the reason.
     """
     estimator, estimate = identification.estimator, identification.estimate
     if estimate is None:

@@ -21,9 +21,9 @@ class ChannelResiduals:
     Attributes
     ----------
     channel, unit
-        Which, and the SI unit of ``values`` and ``stds``.
+        Name of the channel, and the SI unit of ``values`` and ``stds``.
     windows, tows : (n,) int arrays
-        Which of the report's windows these are, and the tows they belong to.
+        Indices into the report's windows, and the tows they belong to.
     values, stds : (n,) arrays
         Residuals, and the standard deviations stated for them: of the reading, its
         calibration, and what errors of warp lengths and speed do to the prediction.

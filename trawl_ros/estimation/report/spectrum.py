@@ -43,7 +43,7 @@ def spectrum(covariance: np.ndarray, prior: BoardPrior, prior_weight: float) -> 
     covariance
         Of the coefficients (12, 12).
     prior
-        Whose std (12,) is the scale.
+        Prior with the std (12,) that is the scale.
     prior_weight
         w: 1 where the prior was used, 0 where not.
     """

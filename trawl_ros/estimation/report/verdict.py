@@ -30,14 +30,14 @@ class Verdict:
     Attributes
     ----------
     fit
-        How well what was left out is predicted.
+        Quality of the hold-out predictions.
     holds
-        Whether that is at least as good as the paper's own fit in every channel, and the
+        True if that is at least as good as the paper's own fit in every channel, and the
         iteration at rest.
     knowledge
-        How many coefficients the data determine, and which combinations they do not.
+        Number of coefficients that the data determine, and the combinations they do not.
     concerns
-        What speaks against trusting it, most weighty first; empty where nothing does.
+        Reasons against trusting it, most weighty first; empty without any.
     """
 
     fit: str

@@ -17,7 +17,7 @@ def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> Non
     Parameters
     ----------
     found
-        What to write.
+        Report of the identification.
     folder
         Made if it does not exist.
     advice

@@ -24,7 +24,7 @@ class ChannelBuffer:
     order
         Judge of the stamps.
     rejections
-        Where refused readings are counted by reason.
+        Counts of refused readings by reason.
 
     Attributes
     ----------

@@ -63,7 +63,7 @@ def channel_mean(
                 f'{where} drifts by {change.drift:.3g} {channel.unit} in one window, '
                 f'at most {limit:.3g} {channel.unit} is steady',
             )
-        # What decays slowly has as much still to come as its slope brings in that time.
+        # A slow decay has as much still to come as its slope brings in that time.
         to_come = change.beyond_noise * options.slow_s / options.window_s
     return ChannelMean(mean, noise, len(values), excluded, to_come)
 

@@ -39,7 +39,7 @@ class SteadyWindowFinder:
     pressure_to_depth
         Depth (m) for an absolute pressure (Pa).
     options
-        When a window is steady.
+        Criteria of a steady window.
 
     Attributes
     ----------
@@ -237,7 +237,7 @@ class SteadyWindowFinder:
     def _reject(
         self, why: Unheld, held: bool, start_ns: int, end_ns: int
     ) -> list[SteadyWindow | RejectedWindow]:
-        # What goes on for the same reason counts once, however many windows it would fill.
+        # A rejection that goes on for the same reason counts once, however long it lasts.
         stretch = (why.reason, held)
         if stretch == self._stretch:
             return []

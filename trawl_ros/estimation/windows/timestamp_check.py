@@ -39,7 +39,7 @@ class TimestampCheck:
     timeline
         Of the winches, kept by their own readings.
     rejections
-        Where refused readings are counted.
+        Counts of refused readings.
 
     Attributes
     ----------

@@ -30,9 +30,9 @@ class Bursts:
     Parameters
     ----------
     model
-        How often and how long.
+        Frequency and duration of spells.
     generator
-        Where spells are drawn from.
+        Generator of random numbers for spells.
     """
 
     def __init__(self, model: BurstModel, generator: np.random.Generator) -> None:

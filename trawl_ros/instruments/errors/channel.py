@@ -60,7 +60,7 @@ class ErrorChannel:
     name
         Unique among all channels; by convention topic and quantity.
     errors
-        What is done to truth.
+        Errors added to truth.
     seed
         Not negative; shared by all channels.
     """
@@ -118,7 +118,7 @@ class ErrorChannel:
         value
             The truth, in the channel's unit.
         stamp
-            When (ns); not before the last one.
+            Time (ns); not before the last one.
         state
             Number of the tow's state, which decides on the bias.
         """

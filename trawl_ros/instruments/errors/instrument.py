@@ -139,7 +139,7 @@ class Instrument(ABC, Generic[PartT, SampleT]):
     name
         Unique among all instruments: its topic.
     timing
-        When it samples and sends.
+        Timing of sampling and sending.
     errors
         Errors of each of its channels, by the channel's name.
     draws
@@ -202,14 +202,14 @@ class Instrument(ABC, Generic[PartT, SampleT]):
         Parameters
         ----------
         part
-            What this instrument sees of the truth; the class says what.
+            Part of the truth that this instrument sees; of its class's type.
         stamp
             Of that truth, ns.
 
         Returns
         -------
         list of Sample
-            What is sent now: a sample of this stamp where one is due, or, where sending takes
+            Samples sent now: one of this stamp where one is due, or, where sending takes
             time, one of an earlier stamp.
         """
         if self._beat.started_anew(stamp):

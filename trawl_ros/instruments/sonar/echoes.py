@@ -112,7 +112,7 @@ def echoes(
     pings
         One per beam.
     generator
-        Where the number of fish in a cell is drawn from; not used without a school.
+        Generator for the number of fish in a cell; not used without a school.
 
     Returns
     -------
@@ -157,12 +157,12 @@ def _seabed(
     angle = np.arange(-0.5 * np.pi, 0.5 * np.pi, step)
     down = np.array([-ping.axes[2] for ping in pings])
     altitude = np.array([ping.altitude for ping in pings])
-    # How steeply each direction in the sonar's plane goes down.
+    # Descent of each direction in the sonar's plane.
     slope = np.outer(down[:, 0], np.cos(angle)) + np.outer(down[:, 1], np.sin(angle))
     row, column = np.nonzero(slope * grid.max_range > stretch * altitude[:, None])
     slope = slope[row, column]
     distance = altitude[row] / slope
-    # What is r dφ wide as seen from the sonar is longer along the seabed, over its slope.
+    # A width of r dφ seen from the sonar is longer along the seabed, over its slope.
     area = distance * step * distance * beam.thickness / slope
     strength = strengths.seabed * slope**2 * area * beam.two_way(angle[column] - axis[row])
     return _gathered(row, stretch * distance, strength, grid)

@@ -67,7 +67,7 @@ def read_openings(image: np.ndarray, grid: Grid) -> Openings:
     image
         Shape (beams, cells), uint8.
     grid
-        What its rows, columns and brightness stand for.
+        Meaning of its rows, columns and brightness.
     """
     level = contrast(image, grid)
     level = np.where(grid.ranges < _seabed(image, level, grid)[:, None], level, 0.0)

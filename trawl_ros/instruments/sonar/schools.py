@@ -17,7 +17,7 @@ def inside(
     school
         An ellipsoid with axes along those of ``map``.
     position : (3,) array
-        Where all lines start, m.
+        Common start of the lines, m.
     ways : (n, 3) array
         Unit vectors.
 

@@ -79,7 +79,7 @@ def image_of(
     surroundings
         The water.
     luck
-        Where chance is drawn from.
+        Generator of random numbers.
 
     Returns
     -------

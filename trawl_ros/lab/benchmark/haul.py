@@ -69,7 +69,7 @@ class HaulManoeuvre:
         Raises
         ------
         StepFailed
-            When not even the shortest steps converge.
+            If not even the shortest steps converge.
         """
         stride = round(step_s / FINEST_S)
         looks = round(LOOK_EVERY_S / step_s)

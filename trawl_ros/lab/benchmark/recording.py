@@ -56,7 +56,7 @@ def record(folder: Path, rate: float, seconds: float) -> Recorded:
     rate
         Messages per second in total.
     seconds
-        How long.
+        Duration.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def measure(small: bool) -> Findings:
 
 def _cpu_s(pid: int) -> float:
     """CPU time (s) used by a process so far."""
-    # What stands behind the name, which may have spaces, begins with the third field.
+    # The rest behind the name, which may have spaces, begins with the third field.
     fields = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()
     user, system = int(fields[11]), int(fields[12])
     return (user + system) / os.sysconf('SC_CLK_TCK')

@@ -34,7 +34,7 @@ class Commands:
     Parameters
     ----------
     folder
-        Where they run; what they are given is relative to it.
+        Working folder, to which their arguments are relative.
     """
 
     def __init__(self, folder: Path) -> None:

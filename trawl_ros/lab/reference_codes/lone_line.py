@@ -50,7 +50,7 @@ def lone_line(
     segments
         Bars it is cut into, at least 3.
     held
-        Which ends hang on the towing blocks, the start on the first and the end on the second.
+        Ends that hang on the towing blocks, the start on the first and the end on the second.
         Ends that are free are nodes; nodes are numbered from the start.
     """
     gear = load_gear('kaifuha')

@@ -30,7 +30,7 @@ class MoorDynWire:
     scheme, step
         MoorDyn's name of its time scheme, and its step (s).
     lump
-        Where the lump starts, m behind and below the block.
+        Start of the lump, m behind and below the block.
     coupling
         Longest time (s) over which the block is in uniform motion.
     """

@@ -19,7 +19,7 @@ class TargetRange:
     rule
         Of the comparison.
     expected
-        What the value is held against; a pair (low, high) for the rule ``between``.
+        Reference of the value; a pair (low, high) for the rule ``between``.
     tolerance
         ``within``: the largest absolute difference; ``relative``: the largest difference as
         a share of ``expected``. Unused, and zero, with the other rules.
@@ -96,7 +96,7 @@ class MeasuredValue:
     target
         The range it is asked to lie in; None where it only informs.
     note
-        How it was measured, or where the target is from; where it is missed, why.
+        Method of measurement, or source of the target; where it is missed, the reason.
     low, high
         Ends of the interval it lies in, by what `note` says; NaN where there is none.
     key

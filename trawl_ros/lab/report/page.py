@@ -41,7 +41,7 @@ class Section:
     title
         Its heading.
     rows, pictures, tables, text
-        What stands in it; ``text`` is a paragraph.
+        Content of the section; ``text`` is a paragraph.
     group
         Heading that it shares with those beside it; '' for none.
     name, command, seconds
@@ -73,7 +73,7 @@ class Page:
     name
         Of the files, without their endings.
     title, command, method
-        What was asked, how the report is made anew, and how values were found.
+        Subject, command that makes the report anew, and method of the values.
     data
         Of the JSON file, without its ending; by default as the others.
     """
@@ -101,7 +101,7 @@ def write_page(
     page
         Its texts.
     sections
-        What stands on it. Their pictures are in the folder already, and the page refers to them.
+        Content of the page. Pictures are in the folder already, and the page refers to them.
     drawings
         To be drawn, for the end of the page; the HTML page has them in it.
     record

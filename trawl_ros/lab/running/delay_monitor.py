@@ -21,7 +21,7 @@ class DelayMonitor(Monitor):
     Parameters
     ----------
     environment
-        What the nodes of that graph have in their environment, such as ``ROS_DOMAIN_ID``.
+        Environment variables of the graph's nodes, such as ``ROS_DOMAIN_ID``.
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:

@@ -21,7 +21,7 @@ class JournalMonitor(DelayMonitor):
     Parameters
     ----------
     environment
-        What the nodes of that graph have in their environment, such as ``ROS_DOMAIN_ID``.
+        Environment variables of the graph's nodes, such as ``ROS_DOMAIN_ID``.
 
     Attributes
     ----------

@@ -54,7 +54,7 @@ class Monitor:
     Parameters
     ----------
     environment
-        What the nodes of that graph have in their environment, such as ``ROS_DOMAIN_ID``.
+        Environment variables of the graph's nodes, such as ``ROS_DOMAIN_ID``.
     """
 
     NAME = 'monitor'
@@ -121,7 +121,7 @@ class Monitor:
             context=self._context,
             parameter_overrides=[in_simulated_time],
         )
-        # What it notices of clocks and types the nodes themselves have in their logs.
+        # Its remarks on clocks and types are in the logs of the nodes themselves.
         self._node.get_logger().set_level(LoggingSeverity.FATAL)
         self._node.listen(DIAGNOSTICS, self._heard.take, CONSUMER)
         self.listen_to_more(self._node)

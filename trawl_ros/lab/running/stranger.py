@@ -84,7 +84,7 @@ class Stranger(Monitor):
 
     def _hear(self, data: bytes) -> None:
         stamp = stamp_of(deserialize(data, self._type))
-        # What it said itself comes back with a stamp that it has had.
+        # Its own messages come back with a stamp that it has had.
         if stamp <= self._latest or stamp >= LATEST_S * SECOND:
             return
         self._latest, self._newest = stamp, data

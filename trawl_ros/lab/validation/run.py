@@ -43,11 +43,11 @@ def validate(
     cases
         Names of the cases; by default all.
     small
-        Whether each case runs on less, in seconds.
+        True if each case runs on less, in seconds.
     workers
         Processes at a time.
     force
-        Whether an earlier report in ``out`` is replaced.
+        True if an earlier report in ``out`` is replaced.
     on_case
         Called with each case as it ends.
     on_progress

@@ -27,7 +27,7 @@ _RELIABILITIES = (QosReliability.RELIABLE, QosReliability.BEST_EFFORT)
 _DURABILITIES = (QosDurability.TRANSIENT_LOCAL, QosDurability.VOLATILE)
 _LIVELINESSES = (QosLiveliness.AUTOMATIC, QosLiveliness.MANUAL_BY_TOPIC)
 
-# What Fast DDS and Connext called infinite in bags of Foxy (rosbag2_storage, qos.cpp).
+# Infinity of Fast DDS and Connext in bags of Foxy (rosbag2_storage, qos.cpp).
 _FOREVER_OF_FOXY = (
     QosTime(0x7FFFFFFF, 0xFFFFFFFF),
     QosTime(0x7FFFFFFF, 0x7FFFFFFF),
@@ -49,9 +49,9 @@ def matching(publishers: Sequence[TopicEndpointInfo], profile: QoSProfile) -> Qo
     Parameters
     ----------
     publishers
-        Who they are.
+        Publishers of the topic.
     profile
-        What is asked for as far as they all offer it; its depth is kept.
+        Profile to ask for as far as they all offer it; its depth is kept.
     """
     found = QoSProfile(
         history=profile.history,
@@ -73,7 +73,7 @@ def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | 
     Parameters
     ----------
     recorded
-        What they offered.
+        Profiles of the publishers.
     default
         Stands in for what is not known of it.
 

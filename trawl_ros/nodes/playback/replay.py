@@ -36,7 +36,7 @@ def replayed(
     wanted
         Full names of the topics in the bag; none for all that can be played.
     namespace
-        Where the project's topics live.
+        Of the project's topics.
 
     Returns
     -------

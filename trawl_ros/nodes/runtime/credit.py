@@ -47,9 +47,9 @@ class ConsumerProgress:
     Parameters
     ----------
     node
-        Whose progress it is.
+        The consumer.
     ready
-        Whether the node may announce itself; a source that waits for it starts then.
+        True if the node may announce itself; a source that waits for it starts then.
     idle
         For one that deals with what other consumers of the source give out, which may fall
         silent: whether nothing is left to deal with. Having heard nothing for a while it is then

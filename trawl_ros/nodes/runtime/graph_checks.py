@@ -53,9 +53,9 @@ def connection_problems(
     Parameters
     ----------
     node
-        Whose connections they are.
+        The node.
     subscribed
-        What it listens to, by full topic name.
+        Its subscriptions, by full topic name.
     offered
         With which quality of service it publishes, by full topic name.
     """

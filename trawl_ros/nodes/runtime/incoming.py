@@ -39,7 +39,7 @@ class Incoming:
     topic
         For what is said.
     use
-        What is done with a message.
+        Handler of a message.
     refuse
         Told why a message is not used.
     end
@@ -47,7 +47,7 @@ class Incoming:
     source
         Judge of who has sent a message; it counts what gets lost.
     single
-        Whether only what its source has sent is used.
+        True if only what its source has sent is used.
     """
 
     # Asked for both arguments, rclpy gives the message's number along with it.
@@ -95,7 +95,7 @@ class Leaps:
     Parameters
     ----------
     far_ns
-        What is far, ns.
+        Largest difference of stamps that is not far, ns.
     """
 
     def __init__(self, far_ns: int = FAR_NS) -> None:
@@ -111,7 +111,7 @@ class Leaps:
         list
             The messages that can be used now, in the order in which they came.
         int
-            How many of those held back turned out to be stamped falsely.
+            Number of held-back messages that turned out to be stamped falsely.
         """
         held, self._held = self._held, []
         if self._newest is None or abs(stamp - self._newest) <= self._far:

@@ -63,9 +63,9 @@ class TrawlNode(Node):
     parameters : Parameters
         The node's declared parameters.
     traffic : Traffic
-        What went in and out.
+        Counts of messages in and out.
     headway : Headway
-        How far the stamps of its data have come.
+        Newest stamps of its data.
     exit_code : int or None
         Set by `end`; whoever spins the node then stops.
 
@@ -392,7 +392,7 @@ class TrawlNode(Node):
         if refused := self.traffic.total('refused'):
             last = next(reversed(self._refused.values()))
             problems.append(f'{refused} messages left out, the last because {last}')
-        # What a latched topic gives up for its newest message is meant to be given up.
+        # Older messages of a latched topic are meant to be given up for its newest.
         for full, (subscription, _) in self._listeners.items():
             if subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
                 self.traffic.lost(full, self._sources[full].lost)

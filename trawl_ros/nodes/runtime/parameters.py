@@ -148,9 +148,9 @@ class Parameters:
     Parameters
     ----------
     node
-        Whose they are.
+        The node.
     specs
-        What they are.
+        Their specifications.
     objection
         Says why a new value of a live parameter cannot be taken, or None.
     changed

@@ -42,9 +42,9 @@ class Rewinding:
         Returns
         -------
         bool
-            Whether the stream begins anew before these samples.
+            True if the stream begins anew before these samples.
         list of Sample
-            What can be dealt with now, in the order in which it came.
+            Samples to deal with now, in order of arrival.
         """
         before, stamp = self._newest, sample.stamp
         back = before is not None and stamp < before - BACK_NS

@@ -98,7 +98,7 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
 
 
 def _open_ros(arguments: Sequence[str]) -> None:
-    # What it would log of wrong arguments it raises as well.
+    # Its log of wrong arguments is raised as well.
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
         with _refusals():
@@ -134,7 +134,7 @@ def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
     try:
         while not stop.wishes and node.exit_code is None:
             executor.spin_once(timeout_sec=WAKE_S)
-        # Who has failed, as at a full disk, would only fail at what is under way as well.
+        # After a failure, as at a full disk, messages under way would only fail as well.
         if node.DRAINS and not node.exit_code:
             _drain(executor, node, stop)
     finally:

@@ -45,7 +45,7 @@ class Source:
     Attributes
     ----------
     lost : int
-        How many messages of the source have not arrived.
+        Number of the source's messages that have not arrived.
     """
 
     def __init__(

@@ -24,7 +24,7 @@ class AdvisingThread(Thread):
     adviser
         Nobody else may use it, or its predictor, from now on.
     at_rest
-        Whether the estimator has nothing to do: it comes first.
+        True if the estimator has nothing to do: it comes first.
     on_advice
         Called in this thread with the advice, or None where there is none, and with what went
         wrong, '' for nothing.

@@ -38,11 +38,11 @@ class EstimatorOutcome:
     whiteness
         Channel → the test of its innovations; None with too few.
     fit
-        What the estimate comes from.
+        Fit of the estimate.
     why_not
-        Why there is no estimate yet.
+        Reason for the lack of an estimate; None with one.
     troubles
-        What went wrong, by what was being done.
+        Errors by the work in which they came.
     finished, failed
         The sentence with which a finished identification ends, None while it goes on; and
         whether it is one on why there is no result.

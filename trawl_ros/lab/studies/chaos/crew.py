@@ -45,13 +45,13 @@ class Crew:
     Parameters
     ----------
     processes
-        What runs them.
+        Runs the nodes.
     scenario, gear
-        What is towed.
+        Of the tow.
     folder
         Takes bags and the state of the estimate.
     identify
-        Whether `identification_node` is one of them.
+        True if `identification_node` is one of them.
     """
 
     def __init__(

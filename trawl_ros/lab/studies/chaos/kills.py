@@ -42,7 +42,7 @@ def run_kills(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
     Parameters
     ----------
     plan
-        How often.
+        With the number of kills.
     folder
         Takes what the nodes say; bags lie there for a while.
     on_progress, stop

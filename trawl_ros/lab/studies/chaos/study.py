@@ -27,7 +27,7 @@ def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
     Parameters
     ----------
     plan
-        How long and how often.
+        With the hours of a tow and the number of kills.
     folder
         Takes what the nodes say; bags lie there for a while.
     on_progress

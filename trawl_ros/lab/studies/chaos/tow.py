@@ -68,9 +68,9 @@ def run_tow(
     Parameters
     ----------
     plan
-        How long.
+        With the hours of a tow.
     faults
-        What happens, in order; none is the tow that others are held against.
+        Faults in order; none for the tow that others are held against.
     title
         Of the tow, for progress and what the nodes say.
     folder

@@ -74,7 +74,7 @@ def make_case(trial: Blind) -> None:
     """Make a trial, and write its visible data and its key apart from each other."""
     plan = trial.plan
     if trial.spec.form != 'windows':
-        # What an interruption left is not whole.
+        # The rest of an interrupted run is not whole.
         rmtree(trial.seen, ignore_errors=True)
         key = make_bags(trial.spec, plan.gear, plan.cut, plan.seed, trial.seen)
     else:
@@ -122,7 +122,7 @@ def run_blind(
     Parameters
     ----------
     plan
-        How many.
+        Numbers of trials.
     folder
         Takes `FOLDERS`, the plan and the classes.
     on_progress
@@ -130,7 +130,7 @@ def run_blind(
     scheduler, workers
         As in `core.parallel.run_tasks`; a cluster must see the folder under the same path.
     force
-        Whether to begin anew.
+        True to begin anew.
 
     Raises
     ------

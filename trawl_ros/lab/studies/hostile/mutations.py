@@ -83,7 +83,7 @@ def _other_values(data: bytes, type_name: str, rng: Generator) -> bytes:
     try:
         return serialize(message)
     except Exception:
-        # What was drawn does not fit the type, so nobody could send it.
+        # The draw does not fit the type, so nobody could send it.
         return data
 
 

@@ -22,9 +22,9 @@ def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> np.ndarray:
     Parameters
     ----------
     tows
-        What the plant shows at the truth.
+        Observables of the plant at the truth.
     sensors
-        How good instruments truly are.
+        True errors of the instruments.
     """
     total = np.zeros((12, 12))
     for looks in tows:

@@ -116,7 +116,7 @@ def live(
     Parameters
     ----------
     seconds
-        How much of it.
+        Length of the stretch.
     logs
         Takes what the nodes say.
     on_progress

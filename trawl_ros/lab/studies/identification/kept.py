@@ -19,11 +19,11 @@ class KeptTrials:
     Parameters
     ----------
     folder
-        Where the file lies, or will.
+        Folder of the file.
     asked
         Settings on which each trial depends; plain values.
     force
-        Whether a file of other settings is written over, and one of the same begun anew.
+        True if a file of other settings is written over, and one of the same begun anew.
 
     Raises
     ------

@@ -117,7 +117,7 @@ def draw_board(
         The steady states in which the gear must be usable: stable, under water, and its boards
         within the range of their law.
     chance
-        Where randomness comes from.
+        Generator of random numbers.
 
     Raises
     ------

@@ -128,11 +128,11 @@ def steady_windows(
     Parameters
     ----------
     tows
-        What the plant shows, tow by tow.
+        Observables of the plant, tow by tow.
     sensors
-        How good instruments are.
+        True errors of the instruments.
     chance
-        Where randomness comes from.
+        Generator of random numbers.
     first_tow
         Number of the first tow.
     """

@@ -63,13 +63,13 @@ class EstimationStudyPlan:
     seed
         Of all trials.
     coverage, bound, mouth
-        How many trials of each series.
+        Number of trials of each series.
     around
         Meshes around the mouth of the model's net.
     tows
-        How many of `TOWS` a trial fits.
+        Number of `TOWS` that a trial fits.
     live_s
-        How long (s) the node is watched in real time; 0 leaves it out.
+        Wall time (s) for which the node is watched; 0 leaves it out.
     """
 
     gear: str = 'kaifuha'
@@ -117,7 +117,7 @@ def run_study(
     Parameters
     ----------
     plan
-        How large it is.
+        Size of the study.
     folder
         Takes the trials, and what nodes say.
     on_progress
@@ -125,9 +125,9 @@ def run_study(
     scheduler
         Address of a Dask cluster for the trials; what is timed runs on this machine.
     force
-        Whether to begin anew.
+        True to begin anew.
     small
-        Whether to leave out all but the trials.
+        True to leave out all but the trials.
     """
     kept = run_trials(plan, folder, on_progress, scheduler=scheduler, force=force)
     coverage, bound, mouth = (trials_of(plan, kept, series) for series in SERIES)
@@ -170,15 +170,15 @@ def run_trials(
     Parameters
     ----------
     plan
-        How many.
+        Numbers of trials.
     folder
-        Where they are kept, one by one.
+        Takes the trials, one by one.
     on_progress
         Called after each of them.
     scheduler, workers
         As in `trawl_ros.core.parallel.run_tasks`.
     force
-        Whether to begin anew.
+        True to begin anew.
 
     Raises
     ------

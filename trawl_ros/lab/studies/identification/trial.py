@@ -38,11 +38,11 @@ class Task:
     gear
         File or name.
     cut
-        How fine model and plant are.
+        Meshes of model and plant.
     tows
-        How many of `TOWS` are fitted.
+        Number of `TOWS` that are fitted.
     stated
-        Whether noise is as stated and the estimator knows that model and plant are the same, as
+        True if noise is as stated and the estimator knows that model and plant are the same, as
         a bound on the spread presumes.
     """
 
@@ -73,9 +73,9 @@ class EstimationTrial:
     truth, values, std, low, high : 12 numbers each
         Coefficients that made the data; the estimate, its standard deviations and intervals.
     converged
-        Whether the fit came to rest.
+        True if the fit came to rest.
     windows
-        How many were fitted, of those there were.
+        Numbers of windows fitted and found.
     rejected
         Boards drawn before that cannot be towed, by reason.
     information : 12 × 12 numbers

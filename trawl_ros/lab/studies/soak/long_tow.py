@@ -45,7 +45,7 @@ def write_long_tow(folder: Path, gear: str, hours: float, truth_rate_hz: float =
     hours
         Length of the tow.
     truth_rate_hz
-        How often truth is published.
+        Rate of truth, Hz.
 
     Returns
     -------

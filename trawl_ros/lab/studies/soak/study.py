@@ -58,7 +58,7 @@ def run_soak(
     Parameters
     ----------
     plan
-        How long.
+        With hours and rates.
     folder
         Takes what the nodes say; bags lie there for a while.
     on_progress

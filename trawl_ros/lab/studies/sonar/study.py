@@ -133,7 +133,7 @@ class SonarStudy:
     Parameters
     ----------
     sweeps
-        How many per case.
+        Number per case.
     gear, instruments
         Files or names.
     seed

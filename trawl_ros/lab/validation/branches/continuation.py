@@ -107,7 +107,7 @@ def walk(
     places
         The lattice.
     first
-        Where the walk starts, cold.
+        Cold start of the continuation.
     also_cold
         Spots that are solved cold in any case. Places no neighbour leads to are, too.
     """

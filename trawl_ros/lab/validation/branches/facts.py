@@ -45,7 +45,7 @@ def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[MeasuredValue]
     Raises
     ------
     NoSteadyState
-        When nothing on the map is usable.
+        If nothing on the map is usable.
     """
     good = usable(lattices)
     if not good:

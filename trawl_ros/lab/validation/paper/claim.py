@@ -18,7 +18,7 @@ class Claim:
     where
         Section and figures it speaks of.
     says
-        What it says, shortened.
+        Text of the claim, shortened.
     checks
         Each of its parts that can be measured.
     """

@@ -49,14 +49,14 @@ def point_observables(
     near
         The gear with boards of six degrees of freedom: where the search starts.
     attack
-        Where the boards are held, rad, inside the range of their law; it has no effect.
+        Attack angle of the boards, rad, inside the range of their law; it has no effect.
     lean
         Angle (rad) by which lift is tipped up; a point has none, its lift is level.
 
     Raises
     ------
     NoSteadyState
-        When no root is found.
+        If no root is found.
     """
     start = replace(near.state, board_rotations=attitudes(attack, 0.0, lean))
     state, iterations, residual = relax(

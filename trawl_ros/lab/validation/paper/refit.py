@@ -95,7 +95,7 @@ def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> PaperRefit:
     Raises
     ------
     NoSteadyState
-        When the gear has no steady state at the start in any window.
+        If the gear has no steady state at the start in any window.
     """
     prior = board_prior(record)
     predictor = _Remembering(build_model(record))

@@ -40,13 +40,13 @@ class Hidden:
     Attributes
     ----------
     name
-        That of the effect of the catalogue that should be named, or of something not in it.
+        Name of the effect of the catalogue that should be named, or of something not in it.
     unit, probe
         Of the size, and one by which it is seen how much it shows.
     most
         Largest size that is possible, to both sides; 0 where a side is none.
     towed, gear, shown
-        What the gear is towed with where instruments show other inputs; the gear with the effect;
+        True inputs of the gear beside those the instruments show; the gear with the effect;
         what sensors show.
     """
 

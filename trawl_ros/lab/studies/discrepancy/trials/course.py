@@ -36,7 +36,7 @@ class Course:
     heading
         ENU yaw, rad.
     moments
-        When (s) each state is looked at.
+        Time (s) of each state.
     """
 
     times: np.ndarray

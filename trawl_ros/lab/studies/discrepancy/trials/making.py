@@ -148,13 +148,13 @@ def windows_of(
     Parameters
     ----------
     tows
-        What the plant shows.
+        Observables of the plant.
     chance
-        Where randomness comes from.
+        Generator of random numbers.
     plan
-        What is towed.
+        Tows of the trial.
     sensors
-        How good instruments are.
+        True errors of the instruments.
     first, first_tow
         Numbers of the first window and the first tow.
     """

@@ -56,15 +56,15 @@ def record_tows(
     folder
         To be made.
     courses
-        What there is to see.
+        Observables over time, tow by tow.
     water
         Turns depth into pressure.
     sensors
-        How good instruments are.
+        True errors of the instruments.
     dropouts
         Part of the states in which an optional channel falls silent.
     chance
-        Where randomness comes from.
+        Generator of random numbers.
     """
     folder.mkdir()
     for number, course in enumerate(courses, start=1):

@@ -58,7 +58,7 @@ class Likelihood:
         hidden, sign
             The effect, and to which side.
         beside_catalogue
-            Whether what the best effect of the catalogue could mimic does not count.
+            True if what the best effect of the catalogue could mimic does not count.
         """
         most = hidden.most[0] if sign < 0.0 else hidden.most[1]
         size, low, high = min(hidden.probe, most), 0.0, np.inf
@@ -133,12 +133,12 @@ def likelihood(
     plant
         The plant.
     prior
-        What is known of the boards before.
+        Prior of the boards.
     windows
         All windows of the plan, with nothing hidden and without noise, their indices in the order
         of the plan; those that decide are used.
     plan
-        What is towed.
+        Tows of the trial.
     """
     deciding = {window.index for window in split(windows, frozenset(range(plan.baseline))).deciding}
     rows = [OBSERVABLES.index(name) for name in MEASURED]

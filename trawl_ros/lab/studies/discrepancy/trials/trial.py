@@ -28,9 +28,9 @@ class Spec:
     plant
         Number of the plant.
     plan
-        Which of `PLANS` is towed.
+        Name of one of `PLANS`.
     form
-        What the diagnosis reads: windows worked out from steady states, or bags of one steady state
+        Input of the diagnosis: windows worked out from steady states, or bags of one steady state
         after the other, or of tows in time.
     like
         Number of the trial in which the same is hidden, where there is one.
@@ -87,7 +87,7 @@ class Scored:
     diagnosis
         ``diagnosis.json``; None where the trial is not testable.
     quiet
-        What readings without errors are best fitted with, the right effect among it; only of some
+        Best fit of readings without errors, the right effect among it; only of some
         of the trials in which it was named.
     """
 
