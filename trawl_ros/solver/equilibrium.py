@@ -28,9 +28,9 @@ from trawl_ros.solver.stability import Stability, stability
 COLLAPSED_NORMAL = -0.35
 """Vertical part of a board's outward normal below which it has fallen on its face."""
 
-FAR = 0.15
-"""Part of the warps' length from which a change is drifted through rather than leapt over: that
-takes half the time, and where the one way fails, the other still is quicker than a cold start."""
+FAR = 0.3
+"""Part of the warps' length from which a change is drifted through rather than leapt over, which
+takes longer. Where the one way fails, the other still is quicker than a cold start."""
 
 
 @dataclass(frozen=True)
