@@ -8,15 +8,13 @@ amplitude times one shape.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
-from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.modes import linearised_motion
 
 SHIFT = 1e-3
 """Point (1/s) around which eigenvalues are sought."""
@@ -43,30 +41,13 @@ class SlowMode:
 
 def slow_mode(model: GearModel, found: Equilibrium) -> SlowMode:
     """Find the slowest symmetric motion of M ẍ + C ẋ + K x = 0 by shift and invert."""
-    here = linearised(model, found.state, found.tow)
-    inertia = mass(model, found.state, found.tow)
-    m, c = model.pattern.matrix(inertia), model.pattern.matrix(here.damping)
-    n = model.dof
-    data = SHIFT**2 * inertia + SHIFT * here.damping + here.stiffness
-    solve = factorised(model.pattern, data).solve
-
-    def apply(y: np.ndarray) -> np.ndarray:
-        x, v = y[:n], y[n:]
-        new = -solve(m @ (SHIFT * x + v) + c @ x)
-        return np.concatenate([new, SHIFT * new + x])
-
-    operator = LinearOperator((2 * n, 2 * n), matvec=apply, dtype=float)
-    start = np.concatenate([np.ones(n), np.zeros(n)])
-    try:
-        values, vectors = eigs(operator, MODES, which='LM', v0=start, tol=1e-4)
-    except ArpackNoConvergence as partial:
-        values, vectors = partial.eigenvalues, partial.eigenvectors
+    motion = linearised_motion(model, found.state, found.tow)
+    rates, shapes = motion.nearest(SHIFT, MODES, tolerance=1e-4)
     best = SlowMode(0.0, np.zeros(len(OBSERVABLES)))
-    for value, vector in zip(values, vectors.T, strict=True):
-        rate = SHIFT + 1.0 / value
+    for rate, vector in zip(rates, shapes.T, strict=True):
         if abs(rate.imag) > 1e-6 * abs(rate) or rate.real >= 0.0:
             continue
-        along = found.state.moved(1j * STEP * vector[:n].real)
+        along = found.state.moved(1j * STEP * vector.real)
         shape = observe(model, along, found.tow).array().imag / STEP
         lopsided = abs(shape[PORT] - shape[STARBOARD]) > LOPSIDED * abs(shape[NET])
         if not lopsided and shape[NET] != 0.0 and -1.0 / rate.real > best.decay_s:

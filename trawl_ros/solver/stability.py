@@ -1,23 +1,33 @@
 """Stability of a steady state by the eigenvalues of its linearised motion."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
-from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.modes import linearised_motion
 
-SHIFTS = (2.0 + 0.0j, 0.02 + 0.0j, 0.3 + 1.0j, 1.0 + 3.0j, 1.0 + 8.0j, 0.5 + 15.0j)
-"""Points (1/s) around which eigenvalues are sought: a board that falls over in a second, slow
-drifts of the whole gear, and the swings of boards on their ropes."""
+FALLING = (2.0, 0.5, 0.1)
+"""Points (1/s) around which a board that falls over is sought, in a second or in some. Without one
+the nearest eigenvalues are a crowd of slow ones, all as far away, which are not waited for."""
 
-PER_SHIFT = 6
+FALLING_RESTARTS = 2
 
-Solve = Callable[[np.ndarray], np.ndarray]
+DRIFTING = 0.02
+"""Point around which slow drifts of the whole gear are sought."""
+
+SWINGING = (0.3 + 1.0j, 1.0 + 3.0j, 1.0 + 8.0j, 0.5 + 15.0j)
+"""Points around which the swings of boards on their ropes are sought."""
+
+MODES, SWINGS = 6, 4
+"""Number of modes around a point."""
+
+TOLERANCE, SWING_TOLERANCE = 1e-5, 1e-3
+"""Error of an eigenvalue, relative to its distance from the point, at which it is found."""
+
+SLOWEST_SWING = 0.05
+"""Frequency (rad/s) below which a motion is a drift, and found more precisely as such."""
 
 
 @dataclass(frozen=True)
@@ -43,34 +53,14 @@ class Stability:
 
 
 def stability(model: GearModel, state: State, tow: Tow) -> Stability:
-    """Eigenvalues of M ẍ + C ẋ + K x = 0 near the imaginary axis, by shift and invert.
-
-    Each shift takes one factorisation of s² M + s C + K, half the size of the first-order
-    form: with y = (x, ẋ), (A - s B)⁻¹ B y follows from it by substitution.
-    """
-    here = linearised(model, state, tow)
-    inertia = mass(model, state, tow)
-    matrix = model.pattern.matrix
-    m, c = matrix(inertia), matrix(here.damping)
-    n = model.dof
-    found = []
-    for shift in SHIFTS:
-        data = shift**2 * inertia + shift * here.damping + here.stiffness
-        solve = factorised(model.pattern, data).solve
-
-        def apply(y: np.ndarray, s: complex = shift, solve: Solve = solve) -> np.ndarray:
-            x, v = y[:n], y[n:]
-            # From ẋ = s x + x₀ and M ẍ + C ẋ + K x = 0 with right-hand side (x, M v).
-            new = -solve(m @ (s * x + v) + c @ x)
-            return np.concatenate([new, s * new + x])
-
-        operator = LinearOperator((2 * n, 2 * n), matvec=apply, dtype=complex)
-        start = np.concatenate([np.ones(n), np.zeros(n)]).astype(complex)
-        try:
-            values = eigs(
-                operator, PER_SHIFT, which='LM', v0=start, tol=1e-5, return_eigenvectors=False
-            )
-        except ArpackNoConvergence as partial:
-            values = partial.eigenvalues
-        found.extend(shift + 1.0 / values)
-    return Stability(np.array(found))
+    """Eigenvalues of M ẍ + C ẋ + K x = 0 near the imaginary axis."""
+    motion = linearised_motion(model, state, tow)
+    drifting, _ = motion.nearest(DRIFTING, MODES, tolerance=TOLERANCE)
+    found = [drifting]
+    for point in FALLING:
+        values, _ = motion.nearest(point, MODES, tolerance=TOLERANCE, restarts=FALLING_RESTARTS)
+        found.append(values)
+    for point in SWINGING:
+        values, _ = motion.nearest(point, SWINGS, tolerance=SWING_TOLERANCE)
+        found.append(values[np.abs(values.imag) > SLOWEST_SWING])
+    return Stability(np.concatenate(found))
