@@ -57,8 +57,8 @@ def stability(model: GearModel, state: State, tow: Tow) -> Stability:
     motion = linearised_motion(model, state, tow)
     drifting, _ = motion.nearest(DRIFTING, MODES, tolerance=TOLERANCE)
     found = [drifting]
-    for point in FALLING:
-        values, _ = motion.nearest(point, MODES, tolerance=TOLERANCE, restarts=FALLING_RESTARTS)
+    for falling in FALLING:
+        values, _ = motion.nearest(falling, MODES, tolerance=TOLERANCE, restarts=FALLING_RESTARTS)
         found.append(values)
     for point in SWINGING:
         values, _ = motion.nearest(point, SWINGS, tolerance=SWING_TOLERANCE)
