@@ -11,7 +11,7 @@ from pathlib import Path
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, TrawlError
-from trawl_ros.core.files import empty_folder, new_folder, packaged
+from trawl_ros.core.files import empty_folder, new_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis import diagnosis
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
@@ -96,7 +96,7 @@ def simulate(scenario: str | Path) -> Iterator[Truth]:
     >>> [round(truth.winches[0].length) for truth in islice(trawl_ros.simulate('demo'), 2)]
     [400, 400]
     """
-    trial = Trial(load_scenario(packaged(Path(scenario), 'scenarios')))
+    trial = Trial(load_scenario(scenario))
     while (truth := trial.step()) is not None:
         yield truth
 
@@ -129,7 +129,7 @@ def tow(
         As in `simulate`.
     """
     out = new_folder(Path(out), BagError)
-    loaded = load_scenario(packaged(Path(scenario), 'scenarios'))
+    loaded = load_scenario(scenario)
     on_progress(WorkProgress('looking for the steady states'))
     trial = Trial(loaded)
     interrupted = False
@@ -229,7 +229,7 @@ def identify(
     """
     if out is not None:
         empty_folder(Path(out), force=force)
-    known = None if truth is None else true_coefficients(packaged(Path(truth), 'scenarios'))
+    known = None if truth is None else true_coefficients(truth)
     options = estimator_options(prior=prior, net=net)
     record = _gear(gear)
     paths = [Path(bag) for bag in bags]

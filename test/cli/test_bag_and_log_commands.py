@@ -55,9 +55,9 @@ def test_the_door_tests_at_sea_become_a_bag_that_lacks_channels(run, log, tmp_pa
     assert '104  /trawl/winch/joint_states' in done.stdout
     done = run('identify', bag, '--out', tmp_path / 'out')
     assert done.exit_code == 1
-    for channel in ('speed from vessel/velocity_water', 'door_spread from door/spread'):
-        assert channel in done.stderr
-    assert 'nothing is estimated' in done.stderr
+    for topic in ('vessel/velocity_water', 'door/spread'):
+        assert topic in done.stderr
+    assert 'nothing is estimated: no readings on ' in done.stderr
     assert run('import-log', log, '--mapping', 'door_test_haul_log', '--out', bag).exit_code == 1
 
 

@@ -48,7 +48,7 @@ def test_prints_and_writes_a_plan_that_can_be_towed(done, run, coarse_gear, tmp_
 def test_says_what_is_wrong_with_the_question(run, coarse_gear):
     done = run('plan-trial', 'no-such-gear')
     assert done.exit_code == 1
-    assert 'no-such-gear: neither a file nor a gear of the package' in done.stderr
+    assert 'no-such-gear: neither a file nor a name of the package' in done.stderr
     few = ('--lengths-m', '200', '--speeds-m-s', '2.5')
     done = run('plan-trial', coarse_gear, *few, '--hours', '0.05')
     assert done.exit_code == 1

@@ -9,8 +9,12 @@ from pathlib import Path
 import pytest
 
 import trawl_ros
-from trawl_ros.core.errors import TrawlError
+from trawl_ros.bags.logs.mapping import load_mapping
+from trawl_ros.core.errors import GearError, InstrumentError, LogError, ScenarioError, TrawlError
 from trawl_ros.core.resources import share_path
+from trawl_ros.gear.load import load_gear
+from trawl_ros.instruments.parameters import load_instruments
+from trawl_ros.scenario.scenario import load_scenario
 
 SOURCE = Path(trawl_ros.__file__).parent
 ASK = 'from trawl_ros.core.resources import share_path; print(share_path("config", "a.yaml"))'
@@ -100,3 +104,19 @@ def test_no_data_at_all_is_said_in_one_sentence(tmp_path):
 def test_an_unknown_name_is_answered_with_the_known_ones():
     with pytest.raises(TrawlError, match=r'no such file or folder; there are: .*\bgear\b'):
         share_path('config', 'gaer')
+
+
+@pytest.mark.parametrize(
+    ('load', 'known', 'error'),
+    [
+        (load_gear, 'kaifuha', GearError),
+        (load_scenario, 'shakedown', ScenarioError),
+        (load_instruments, 'default', InstrumentError),
+        (load_mapping, 'door_test_haul_log', LogError),
+    ],
+)
+def test_files_of_the_package_are_named_alike(load, known, error, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    load(known)
+    with pytest.raises(error, match=r'^nonesuch: neither a file nor a name .*there are: '):
+        load('nonesuch')

@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import yaml
@@ -12,7 +11,7 @@ import yaml
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from trawl_ros.core.errors import ScenarioError
-from trawl_ros.core.files import packaged
+from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import load_yaml
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.lab.running.own_graph import own_graph
@@ -76,7 +75,7 @@ def with_effect(gear, folder):
     path.write_text(
         yaml.safe_dump(gear.model_copy(update={'effects': (effect,)}).model_dump(mode='json'))
     )
-    scenario = load_yaml(packaged(Path('demo'), 'scenarios'), ScenarioError) | {'gear': 'gear.yaml'}
+    scenario = load_yaml(packaged('demo', 'scenarios'), ScenarioError) | {'gear': 'gear.yaml'}
     (folder / 'tow.yaml').write_text(yaml.safe_dump(scenario))
     return folder / 'tow.yaml'
 

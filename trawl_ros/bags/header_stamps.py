@@ -1,17 +1,14 @@
 """Header stamps of stored messages, read by the bag's own types."""
 
-import struct
 from collections.abc import Callable
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError
-from trawl_ros.core.time import SECOND
+from trawl_ros.messages.stamps import stamp_in
 
 StampReader = Callable[[bytes], int | None]
 
 _HEADER = 'std_msgs/msg/Header'
-_ENCAPSULATION = 4
-_TIMES = {0: struct.Struct('>iI'), 1: struct.Struct('<iI')}
 
 
 def stamp_reader(bag: Bag, topic: str) -> StampReader | None:
@@ -29,12 +26,4 @@ def stamp_reader(bag: Bag, topic: str) -> StampReader | None:
         return None
     if not fields or fields[0][1][1] != _HEADER:
         return None
-    return _read
-
-
-def _read(data: bytes) -> int | None:
-    try:
-        seconds, nanoseconds = _TIMES[data[1]].unpack_from(data, _ENCAPSULATION)
-    except (struct.error, KeyError, IndexError):
-        return None
-    return int(seconds) * SECOND + int(nanoseconds)
+    return stamp_in

@@ -1,4 +1,4 @@
-"""Files and folders: as a user names them, or as they come with the package; written whole."""
+"""Files and folders of results: checked before the work, and written whole."""
 
 import json
 import math
@@ -10,23 +10,9 @@ from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, TextIO
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.resources import share_path
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-def packaged(path: Path, folder: str) -> Path:
-    """Find a YAML file: as given, or by its bare name in ``config/<folder>``.
-
-    Raises
-    ------
-    TrawlError
-        If a bare name is not one of those that come with the package.
-    """
-    if path.suffix in ('.yaml', '.yml') or path.is_file() or len(path.parts) != 1:
-        return path
-    return share_path('config', folder, f'{path}.yaml')
 
 
 def empty_folder(path: Path, *, force: bool) -> Path:

@@ -1,4 +1,4 @@
-"""Directory of the files that come with the package: gear, scenarios, parameters and bags."""
+"""Look-up of files: as a user names them, or as they come with the package."""
 
 from pathlib import Path
 
@@ -42,6 +42,23 @@ def share_path(*parts: str) -> Path:
     if not path.exists():
         raise TrawlError(f'{path}: {PACKAGE} comes with no such file or folder{_siblings(path)}')
     return path
+
+
+def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError) -> Path:
+    """Find a YAML file: as given, or by its bare name in ``config/<folder>``.
+
+    Raises
+    ------
+    TrawlError
+        Of the type ``error``, if a bare name is not one of those that come with the package.
+    """
+    path = Path(path)
+    if path.suffix in ('.yaml', '.yml') or path.is_file() or len(path.parts) != 1:
+        return path
+    try:
+        return share_path('config', folder, f'{path}.yaml')
+    except TrawlError as reason:
+        raise error(f'{path}: neither a file nor a name of the package; {reason}') from reason
 
 
 def _beside(module: Path) -> Path | None:

@@ -136,15 +136,11 @@ class Identification:
         )
 
     def _about_missing(self, missing: Sequence[str]) -> str:
-        parts = []
-        for name in missing:
-            arrived = self.finder.arrived[name]
-            state = f'{arrived} readings, none usable' if arrived else 'no readings'
-            parts.append(f'{name} from {CHANNELS[name].topic} ({state})')
-        return (
-            f'without {", ".join(parts)} a steady state cannot be compared with the model, '
-            f'so nothing is estimated; needed are {", ".join(REQUIRED)}'
-        )
+        arrived = self.finder.arrived
+        silent = dict.fromkeys(CHANNELS[name].topic for name in missing if not arrived[name])
+        parts = [f'no readings on {", ".join(silent)}'] if silent else []
+        parts += [f'none usable of {arrived[n]} of {n}' for n in missing if arrived[n]]
+        return f'nothing is estimated: {"; ".join(parts)}'
 
     def _about_clocks(self) -> str | None:
         stamps = {name: self.finder.newest(name) or 0 for name in REQUIRED}

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from trawl_ros.core.errors import GearError, TrawlError
-from trawl_ros.core.resources import share_path
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import load_yaml, validated
 from trawl_ros.gear.records import GearRecord
 
@@ -21,11 +21,5 @@ def load_gear(path: str | Path) -> GearRecord:
     GearError
         Naming file, key, what was found and what was expected.
     """
-    if not str(path).endswith(('.yaml', '.yml')) and not Path(path).exists():
-        try:
-            path = share_path('config', 'gear', f'{path}.yaml')
-        except TrawlError as reason:
-            raise GearError(
-                f'{path}: neither a file nor a gear of the package; {reason}'
-            ) from reason
+    path = packaged(path, 'gear', GearError)
     return validated(GearRecord, load_yaml(path, GearError), path, GearError)

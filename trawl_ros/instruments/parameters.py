@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from trawl_ros.core.errors import InstrumentError, TrawlError
-from trawl_ros.core.resources import share_path
+from trawl_ros.core.resources import packaged, share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.instruments.errors.records import (
     AngleErrors,
@@ -225,7 +225,7 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
     InstrumentError
         Naming file, key, what was found and what was expected.
     """
-    path = _file_of(path)
+    path = packaged(path, 'instruments', InstrumentError)
     data = load_yaml(path, InstrumentError)
     if isinstance(data, dict) and BASE in data:
         base = data.pop(BASE)
@@ -233,7 +233,7 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
             raise InstrumentError(
                 f'{path}: {BASE}: found {base!r}, expected the name of a set of the package'
             )
-        data = _merged(load_yaml(_file_of(base), InstrumentError), data)
+        data = _merged(_set_of_package(base), data)
     return validated(InstrumentParameters, data, path, InstrumentError)
 
 
@@ -251,7 +251,7 @@ def default_instruments_with(
     error
         Class of the error to raise.
     """
-    defaults = load_yaml(_file_of('default'), InstrumentError)
+    defaults = _set_of_package('default')
     return validated(InstrumentParameters, _merged(defaults, overrides), path, error, prefix=prefix)
 
 
@@ -263,10 +263,9 @@ def _merged(base: dict[str, Any], overrides: dict[str, Any]) -> dict[str, Any]:
     return merged
 
 
-def _file_of(path: str | Path) -> Path:
-    if str(path).endswith(('.yaml', '.yml')):
-        return Path(path)
+def _set_of_package(name: str) -> Any:
     try:
-        return share_path('config', 'instruments', f'{path}.yaml')
+        file = share_path('config', 'instruments', f'{name}.yaml')
     except TrawlError as reason:
         raise InstrumentError(str(reason)) from reason
+    return load_yaml(file, InstrumentError)

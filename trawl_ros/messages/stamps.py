@@ -1,5 +1,6 @@
 """Stamps: integer nanoseconds in the project, seconds and nanoseconds in messages."""
 
+import struct
 from typing import Any
 
 from rosbags.typesys.stores.ros2_jazzy import builtin_interfaces__msg__Time as Time
@@ -37,3 +38,18 @@ def header(stamp: int, frame: str) -> Header:
 def stamp_of(message: Any) -> int:
     """Read ``header.stamp`` of a message, in nanoseconds."""
     return from_time(message.header.stamp)
+
+
+ENCAPSULATION = 4
+"""Bytes of CDR before the message, of which the second tells the order of bytes."""
+
+_TIMES = {0: struct.Struct('>iI'), 1: struct.Struct('<iI')}
+
+
+def stamp_in(data: bytes, offset: int = ENCAPSULATION) -> int | None:
+    """Read the stamp (ns) at an offset in CDR; None where the bytes are too few or no CDR."""
+    try:
+        seconds, nanoseconds = _TIMES[data[1]].unpack_from(data, offset)
+    except (struct.error, KeyError, IndexError):
+        return None
+    return int(seconds) * SECOND + int(nanoseconds)

@@ -22,7 +22,7 @@ from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import recorded
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.runtime.stamping import stamp_in
+from trawl_ros.nodes.runtime.stamping import header_stamp
 from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, TRUTH, absolute
 
 CONTRACT = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
@@ -151,7 +151,7 @@ class BagRecorder(TrawlNode):
         by_header = self._by_header and topic != DIAGNOSTICS
 
         def take(data: bytes) -> None:
-            stamp = stamp_in(type_name, data)
+            stamp = header_stamp(type_name, data)
             logged = self.now() if stamp is None or not by_header else stamp
             if not self._bag.declared(topic):
                 self._declare(topic, type_name)

@@ -9,7 +9,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder, packaged
+from trawl_ros.core.files import empty_folder
 from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.from_gear import estimator_options, identification_for, predictor_for
@@ -85,7 +85,7 @@ class IdentificationNode(TrawlNode):
         parameters = self.parameters
         output, truth, state = parameters['output'], parameters['truth'], parameters['state']
         self._folder = empty_folder(Path(output), force=False) if output else None
-        self._truth = true_coefficients(packaged(Path(truth), 'scenarios')) if truth else None
+        self._truth = true_coefficients(truth) if truth else None
         self._state = Path(state) if state else None
         self._gear = load_gear(parameters['gear'])
         identification = self._identification()

@@ -3,11 +3,9 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 from trawl_ros.core.errors import InstrumentError, MessageError
-from trawl_ros.core.files import packaged
 from trawl_ros.core.limits import TRUTH
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.sensor_effects import SensorEffects
@@ -160,7 +158,7 @@ class InstrumentNode(TrawlNode, ABC):
     def _setup(self) -> Setup:
         seed = self.parameters['seed']
         if name := self.parameters['scenario']:
-            scenario = load_scenario(packaged(Path(name), 'scenarios'))
+            scenario = load_scenario(name)
             draws = scenario.draws if seed < 0 else SeedPlan(seed, scenario.state_changes_s)
             return Setup(
                 scenario.instruments,

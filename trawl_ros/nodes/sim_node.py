@@ -3,12 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
 from trawl_ros.core.errors import MessageError, TrawlError
-from trawl_ros.core.files import packaged
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
@@ -162,7 +160,7 @@ class SimNode(TrawlNode):
 
     def _load_scenario(self) -> Scenario | None:
         name = self.parameters['scenario']
-        return load_scenario(packaged(Path(name), 'scenarios')) if name else None
+        return load_scenario(name) if name else None
 
     def _prepare(self) -> tuple[TowSetup, int]:
         """Prepare the tow, and the time (ns) from one truth to the next."""

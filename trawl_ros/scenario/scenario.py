@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from trawl_ros.core.errors import InstrumentError, ScenarioError, TrawlError
+from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import load_yaml, validated
 from trawl_ros.effects.effect_set import EffectSet, effects_of
 from trawl_ros.effects.sensor_effects import SensorEffects
@@ -158,15 +159,16 @@ def load_scenario(path: str | Path) -> Scenario:
     Parameters
     ----------
     path
-        The file. The gear and instrument files that it names are sought beside it if their
-        names end in ``.yaml``, else among those that come with the package.
+        A file, or the name of a scenario that comes with the package, such as ``'demo'``. Gear
+        and instrument files that it names are sought beside it if their names end in ``.yaml``,
+        else among those that come with the package.
 
     Raises
     ------
     ScenarioError
         Naming file, key, what was found and what was expected.
     """
-    path = Path(path)
+    path = packaged(path, 'scenarios', ScenarioError)
     record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)
     try:
         gear = load_gear(_beside(path, record.gear))

@@ -10,7 +10,7 @@ from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.runtime.partial_truth import partial_truth
-from trawl_ros.nodes.runtime.stamping import stamp_in
+from trawl_ros.nodes.runtime.stamping import header_stamp
 from trawl_ros.records.samples import FixSample, HeadingSample, RangeSample, WinchSample
 from trawl_ros.records.truth import GearPicture, Polyline
 
@@ -29,23 +29,23 @@ STAMP = 1_785_000_123_456_789_012
     ids=lambda message: message.__msgtype__,
 )
 def test_a_header_is_found(message):
-    assert stamp_in(message.__msgtype__, serialize(message)) == STAMP
+    assert header_stamp(message.__msgtype__, serialize(message)) == STAMP
 
 
 def test_markers_have_the_stamp_of_the_first():
     rope = Polyline('warp', np.zeros((2, 3)), 0.0)
     doors = partial_truth(STAMP).doors
     _, array = gear_markers(GearPicture(STAMP, (rope,), doors, (1.0, 2.0)))
-    assert stamp_in(array.__msgtype__, serialize(array)) == STAMP
+    assert header_stamp(array.__msgtype__, serialize(array)) == STAMP
     array.markers = []
-    assert stamp_in(array.__msgtype__, serialize(array)) is None
+    assert header_stamp(array.__msgtype__, serialize(array)) is None
 
 
 @pytest.mark.parametrize('message', [estimate_message(np.zeros(12))[1], clock_message(STAMP)[1]])
 def test_what_has_no_header_has_no_stamp(message):
-    assert stamp_in(message.__msgtype__, serialize(message)) is None
+    assert header_stamp(message.__msgtype__, serialize(message)) is None
 
 
 def test_bytes_cut_short_have_no_stamp():
     message = sample_message(HeadingSample(STAMP, 1.0, 0.1))[1]
-    assert stamp_in(message.__msgtype__, serialize(message)[:9]) is None
+    assert header_stamp(message.__msgtype__, serialize(message)[:9]) is None

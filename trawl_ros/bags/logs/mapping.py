@@ -9,6 +9,7 @@ from trawl_ros.bags.logs.clock import Clock
 from trawl_ros.bags.logs.layout import LogLayout
 from trawl_ros.bags.logs.units import UNITS, units_of
 from trawl_ros.core.errors import LogError
+from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.records.topics import RANGES
 
@@ -223,7 +224,8 @@ def load_mapping(path: str | Path) -> LogMapping:
     LogError
         If the file is missing, unreadable, or names topics, fields or units that do not exist.
     """
-    return validated(LogMapping, load_yaml(path, LogError), path, LogError)
+    file = packaged(path, 'logs', LogError)
+    return validated(LogMapping, load_yaml(file, LogError), file, LogError)
 
 
 def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:

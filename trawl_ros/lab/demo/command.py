@@ -13,8 +13,9 @@ from trawl_ros.bags.reader import summarise
 from trawl_ros.cli.files import FOLDER, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing, TrawlError
-from trawl_ros.core.files import packaged, write_figure
+from trawl_ros.core.files import write_figure
 from trawl_ros.core.progress import WorkProgress
+from trawl_ros.core.resources import packaged
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
 from trawl_ros.lab.demo.report import load_result, print_result

@@ -1,24 +1,22 @@
 """Header stamp of a message, read off its bytes without decoding the rest."""
 
-import struct
-
-from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE
+from trawl_ros.messages.stamps import ENCAPSULATION, stamp_in
 
 MARKERS = 'visualization_msgs/msg/MarkerArray'
-_ENCAPSULATION = 4
-_ORDERS = {0: '>', 1: '<'}
 
 
-def stamp_in(type_name: str, data: bytes) -> int | None:
+def header_stamp(type_name: str, data: bytes) -> int | None:
     """Return the stamp (ns) of a message's header; None where it has none.
 
     An array of markers has that of its first marker.
     """
     if type_name == MARKERS:
         # The header follows the number of markers.
-        return _time_at(data, _ENCAPSULATION + 4) if len(data) > 20 else None
-    return _time_at(data, _ENCAPSULATION) if _begins_with_header(type_name) else None
+        stamp = stamp_in(data, ENCAPSULATION + 4) if len(data) > 20 else None
+    else:
+        stamp = stamp_in(data) if _begins_with_header(type_name) else None
+    return stamp if stamp is not None and stamp >= 0 else None
 
 
 def _begins_with_header(type_name: str) -> bool:
@@ -30,11 +28,3 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 _KNOWN: dict[str, bool] = {}
-
-
-def _time_at(data: bytes, offset: int) -> int | None:
-    try:
-        seconds, nanoseconds = struct.unpack_from(_ORDERS[data[1]] + 'iI', data, offset)
-    except (struct.error, KeyError, IndexError):
-        return None
-    return seconds * SECOND + nanoseconds if seconds >= 0 else None
