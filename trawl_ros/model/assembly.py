@@ -13,21 +13,23 @@ import numpy as np
 from trawl_ros.model import board as board_physics
 from trawl_ros.model import kite as kite_physics
 from trawl_ros.model import line
-from trawl_ros.model.bar import STILL, between
+from trawl_ros.model.bar import between
 from trawl_ros.model.bar_pass import add_bar_blocks, add_bar_forces, add_bar_masses, water_of
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarMotion
-from trawl_ros.model.numerics import STEP, cross, length, outer, rotation, skew
+from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
+from trawl_ros.model.numerics import STEP, cross, outer, rotation, skew
 from trawl_ros.model.state import State, Tow
 
 
 def rest_lengths(model: GearModel, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
     """Unstretched lengths of all bars and their rates; a warp is cut into equal bars."""
-    warp = model.warp_side >= 0
-    side = np.maximum(model.warp_side, 0)
-    rest = np.where(warp, tow.lengths[side] / model.warp_segments, model.rest)
-    rate = np.where(warp, tow.length_rates[side] / model.warp_segments, 0.0)
+    lengths = tow.lengths / model.warp_segments
+    rest, rate = model.rest.astype(lengths.dtype), np.zeros(len(model.rest))
+    for side, bars in enumerate(model.warp_bars):
+        rest[bars] = lengths[side]
+        rate[bars] = tow.length_rates[side] / model.warp_segments
     return rest, rate
 
 
@@ -89,12 +91,11 @@ def _motion(
 
 def lump_forces(model: GearModel, state: State) -> np.ndarray:
     """Drag (eq. 22), weight and buoyancy (eq. 28) of knots, floats and weights, (n, 3) N."""
-    z = state.nodes[:, 2]
-    density = model.water.density_at(z)
-    flow = model.water.current(z) - state.node_velocities
-    force = (0.5 * density * model.lump_drag_area * length(flow, STILL))[:, None] * flow
-    heavy = (model.lump_mass - density * model.lump_volume) * model.water.gravity
-    force = force - heavy[:, None] * np.array([0.0, 0.0, 1.0])
+    x, v, *lumps = alike(
+        state.nodes, state.node_velocities, model.lump_mass, model.lump_volume, model.lump_drag_area
+    )
+    force = np.empty_like(x)
+    fill_lump_forces(x, v, *lumps, water_of(model.water), force)
     for more in model.node_forces:
         at = more.nodes
         force[at] += more(state.nodes[at], state.node_velocities[at])
@@ -280,21 +281,13 @@ def _kite_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray
 
 
 def _lump_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray]:
-    z = state.nodes[:, 2]
-    density = model.water.density_at(z)
-    flow = model.water.current(z) - state.node_velocities
-    speed = length(flow, STILL)
-    factor = 0.5 * density * model.lump_drag_area
-    by_flow = factor[:, None, None] * (
-        speed[:, None, None] * np.eye(3) + outer(flow, flow) / speed[:, None, None]
+    stiffness, damping = np.empty((2, model.nodes, 3, 3))
+    fill_lump_slopes(
+        *alike(state.nodes, state.node_velocities, model.lump_volume, model.lump_drag_area),
+        water_of(model.water),
+        stiffness,
+        damping,
     )
-    by_height = np.einsum('nij,nj->ni', by_flow, model.water.current_slope(z))
-    thinning = model.water.density_gradient / density
-    by_height -= (thinning * factor * speed)[:, None] * flow
-    by_height[:, 2] -= model.water.gravity * model.water.density_gradient * model.lump_volume
-    stiffness = np.zeros((len(z), 3, 3))
-    stiffness[:, :, 2] = -by_height
-    damping = by_flow
     for more in model.node_forces:
         at, still = more.nodes, np.zeros((len(more.nodes), 3))
         for axis in range(3):

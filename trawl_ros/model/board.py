@@ -10,10 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.model.bar_pass import water_of
 from trawl_ros.model.board_law import (
     fill_coefficients,
     fill_flow,
     fill_loads,
+    fill_own_loads,
     fill_total,
 )
 from trawl_ros.model.compiled import alike
@@ -211,21 +213,58 @@ def own_load(
     Hydrodynamics (eq. 12-14), weight and buoyancy (eq. 19) and the gyroscopic moment
     -ω × Iω, which eq. 15 drops and which a spinning board needs to keep its angular momentum.
     """
-    flow = flow_at(board, outward, position, rotation, velocity, rate, water)
-    shape = flow.attack.shape
-    heavy = (board.mass - flow.density * board.volume) * water.gravity
-    given = alike(
-        heavy.ravel(),
-        np.broadcast_to(outward, shape).ravel(),
-        np.broadcast_to(rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
-        np.broadcast_to(rate, (*shape, 3)).reshape(-1, 3),
-        flow.density.ravel(),
-        flow.flow.reshape(-1, 3),
-        *(part.reshape(-1, 3) for part in hydrodynamics(board, values, flow)),
+    shape = np.broadcast_shapes(
+        np.shape(outward), position.shape[:-1], rotation.shape[:-2], velocity.shape[:-1]
     )
-    total = np.empty((len(given[0]), 6), given[0].dtype)
-    fill_total(board.inertia, board.rotary_slope * board.rotary_areas, *given, total)
+    given = alike(
+        values,
+        board.fastening_points.sum(0) / 3,
+        _flat(outward, shape),
+        _flat(position, shape, 3),
+        _flat(rotation, shape, 3, 3),
+        _flat(velocity, shape, 3),
+        _flat(rate, shape, 3),
+    )
+    total = np.empty((len(given[2]), 6), given[0].dtype)
+    turning = board.inertia, board.rotary_slope * board.rotary_areas
+    if board.bend is None:
+        fill_own_loads(
+            board.flow_axes,
+            board.slip_sign,
+            float(board.mass),
+            float(board.volume),
+            float(board.area),
+            board.levers * np.asarray(board.moment_signs),
+            *turning,
+            *given,
+            water_of(water),
+            total,
+        )
+        return total.reshape(*shape, 6)
+    flow = flow_at(board, outward, position, rotation, velocity, rate, water)
+    force, moment = (_flat(part, shape, 3) for part in hydrodynamics(board, values, flow))
+    heavy = (board.mass - flow.density * board.volume) * water.gravity
+    rest = alike(
+        _flat(heavy, shape),
+        given[2],
+        given[4],
+        given[6],
+        _flat(flow.density, shape),
+        _flat(flow.flow, shape, 3),
+        force,
+        moment,
+    )
+    total = np.empty((heavy.size, 6), rest[0].dtype)
+    fill_total(*turning, *rest, total)
     return total.reshape(*shape, 6)
+
+
+def _flat(array: np.ndarray, shape: tuple[int, ...], *tail: int) -> np.ndarray:
+    """The array for one board after another."""
+    whole = (*shape, *tail)
+    if np.shape(array) != whole:
+        array = np.broadcast_to(array, whole)
+    return array.reshape(-1, *tail)
 
 
 def inclination(rotation: np.ndarray) -> np.ndarray:

@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled
+from trawl_ros.model.current import current_at
 
 LAW_RANGE = (0.0, np.radians(40.0))
 """Attack angles (rad) for which eq. 14 holds as it stands."""
@@ -202,3 +204,44 @@ def fill_total(
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
             total[n, 3 + i] -= rate[n, j] * spin[k] - rate[n, k] * spin[j]
+
+
+@compiled
+def fill_own_loads(
+    flow_axes: bool,
+    slip_sign: float,
+    mass: float,
+    volume: float,
+    area: float,
+    levers: np.ndarray,
+    inertia: np.ndarray,
+    slowing: np.ndarray,
+    values: np.ndarray,
+    middle: np.ndarray,
+    outward: np.ndarray,
+    position: np.ndarray,
+    rotation: np.ndarray,
+    velocity: np.ndarray,
+    rate: np.ndarray,
+    water: WaterTable,
+    total: np.ndarray,
+) -> None:
+    """All of the above, one after another: the whole load (n, 6) of boards in the water."""
+    surface_density, gradient, gravity, knots, cubics = water
+    relative, flow, force, moment = np.empty((4, len(total), 3), total.dtype)
+    density, attack, slip, heavy = np.empty((4, len(total)), total.dtype)
+    coefficients, shear = np.empty((len(total), 6), total.dtype), np.empty(3)
+    for n in range(len(total)):
+        density[n] = surface_density - gradient * position[n, 2]
+        heavy[n] = (mass - density[n] * volume) * gravity
+        current_at(knots, cubics, position[n, 2], relative[n], shear)
+        for i in range(3):
+            relative[n, i] -= velocity[n, i]
+    fill_flow(middle, outward, rotation, relative, rate, flow, attack, slip)
+    for n in range(len(total)):
+        slip[n] *= slip_sign
+    fill_coefficients(values, attack, slip, coefficients)
+    fill_loads(area, levers, flow_axes, density, flow, coefficients, force, moment)
+    fill_total(
+        inertia, slowing, heavy, outward, rotation, rate, density, flow, force, moment, total
+    )

@@ -13,5 +13,5 @@ fused: Any = njit(cache=True, error_model='numpy', fastmath={'contract', 'reasso
 
 def alike(*arrays: np.ndarray) -> list[np.ndarray]:
     """Arrays of one kind, all real or all complex, as compiled loops take them."""
-    kind = complex if any(np.iscomplexobj(array) for array in arrays) else float
+    kind = complex if 'c' in [array.dtype.kind for array in arrays] else float
     return [np.ascontiguousarray(array, kind) for array in arrays]

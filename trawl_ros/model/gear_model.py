@@ -6,6 +6,7 @@ three per node, then six per board: translation and rotation vector, both in fix
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -87,6 +88,11 @@ class GearModel:
     def warp_segments(self) -> int:
         """Bars per warp."""
         return self.gear.warp.segments
+
+    @cached_property
+    def warp_bars(self) -> tuple[np.ndarray, np.ndarray]:
+        """Bars of the port and of the starboard warp."""
+        return np.flatnonzero(self.warp_side == 0), np.flatnonzero(self.warp_side == 1)
 
     def with_coefficients(self, values: np.ndarray) -> 'GearModel':
         """The same gear with other board coefficients, in the order of eq. 36."""

@@ -46,7 +46,7 @@ class SparsityPattern:
     def times(self, data: np.ndarray, vector: np.ndarray) -> np.ndarray:
         """Product of the matrix of ``data`` with a vector (dof,)."""
         product = np.zeros(self.dof, np.result_type(data, vector))
-        _multiply(self.indices, self.indptr, data, vector, product)
+        _multiply(self.indices.view(np.uint32), self.indptr, data, vector, product)
         return product
 
     def add(self, blocks: list[np.ndarray], data: np.ndarray) -> None:
@@ -111,7 +111,7 @@ def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> SparsityPat
         rigged=rigged,
         rig_board=board,
         rig_point=point,
-        slot=slot.ravel().astype(np.int32),
+        slot=slot.ravel().astype(np.uint32),
         indices=(slots % dof).astype(np.int32),
         indptr=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
     )

@@ -19,7 +19,7 @@ from trawl_ros.model.pattern import SparsityPattern
 WIDTH = 3
 """Unknowns of a block."""
 
-MERGED_ZEROS = 12
+MERGED_ZEROS = 4
 """Blocks of zeros with which a front may join its parent's: fewer and larger fronts are faster,
 though they hold a little more."""
 
@@ -155,10 +155,10 @@ def _numbered(pattern: SparsityPattern, sequence: np.ndarray, fronts: list[_Fron
     return Elimination(
         order=_unknowns(blocks),
         fronts=np.ascontiguousarray(table),
-        slots=slots.astype(np.int32),
-        places=places.astype(np.int32),
-        border=_unknowns(np.concatenate(borders)).astype(np.int32),
-        parents_rows=WIDTH * np.concatenate(rows or [np.empty(0, int)]).astype(np.int32),
+        slots=slots.astype(np.uint32),
+        places=places.astype(np.uint32),
+        border=_unknowns(np.concatenate(borders)).astype(np.uint32),
+        parents_rows=WIDTH * np.concatenate(rows or [np.empty(0, int)]).astype(np.uint32),
         fill=int(factors.sum()),
         largest=int(sizes.max()),
         waiting=_most_waiting(table, edges),

@@ -87,8 +87,8 @@ def factorised(pattern: SparsityPattern, data: np.ndarray) -> Factor:
 
 @lru_cache(maxsize=8)
 def _workspace(found: Elimination, kind: np.dtype) -> tuple[np.ndarray, np.ndarray]:
-    """Borders that wait for their parents, and the front at work."""
-    return np.empty(found.waiting, kind), np.empty(found.largest**2, kind)
+    """Borders that wait for their parents, and the fronts at work."""
+    return np.empty(found.waiting, kind), np.empty((2, found.largest**2), kind)
 
 
 def factorised_part(matrix: sp.csc_matrix) -> SuperLU:

@@ -33,28 +33,33 @@ def factorise(
 ) -> bool:
     """Factorise the matrix of ``data`` into ``factors``; False if a pivot vanished.
 
-    ``exchanged`` (dof,) gets the pivot row with which each changed places; ``waiting`` and
-    ``space`` are for fronts at work.
+    ``exchanged`` (dof,) gets the pivot row with which each changed places; ``space`` (2, ...) is
+    for the front at work and the one before, which is its last child unless it has none; what is
+    left of other children is ``waiting``.
     """
     stack = np.empty(len(fronts), np.int64)
     held = end = entry = first = 0
+    last = space[:0, :0]
     for number in range(len(fronts)):
         pivots, size = fronts[number, PIVOTS], fronts[number, SIZE]
         edge = size - pivots
-        flat = space[: size * size]
+        flat = space[number % 2, : size * size]
         flat[:] = 0.0
         while entry < fronts[number, ENTRIES]:
             flat[places[entry]] += data[slots[entry]]
             entry += 1
         front = flat.reshape(size, size)
-        for _ in range(fronts[number, CHILDREN]):
-            held -= 1
-            child = stack[held]
-            width = fronts[child, SIZE] - fronts[child, PIVOTS]
-            end -= width * width
-            rest = waiting[end : end + width * width].reshape(width, width)
+        for earlier in range(fronts[number, CHILDREN]):
+            if earlier == 0:
+                child, rest = number - 1, last
+            else:
+                held -= 1
+                child = stack[held]
+                width = fronts[child, SIZE] - fronts[child, PIVOTS]
+                end -= width * width
+                rest = waiting[end : end + width * width].reshape(width, width)
             at = fronts[child, ROWS]
-            _add_rest(rest, parents_rows[at : at + width // 3], front)
+            _add_rest(rest, parents_rows[at : at + len(rest) // 3], front)
         if not _eliminate(front, pivots, exchanged[first : first + pivots]):
             return False
         at = fronts[number, FACTORS]
@@ -64,10 +69,12 @@ def factorise(
         for i in range(edge):
             for k in range(pivots):
                 lower[k, i] = front[pivots + i, k]
-        waiting[end : end + edge * edge].reshape(edge, edge)[:] = front[pivots:, pivots:]
-        end += edge * edge
-        stack[held] = number
-        held += 1
+        last = front[pivots:, pivots:]
+        if number + 1 < len(fronts) and fronts[number + 1, CHILDREN] == 0:
+            waiting[end : end + edge * edge].reshape(edge, edge)[:] = last
+            end += edge * edge
+            stack[held] = number
+            held += 1
         first += pivots
     return True
 

@@ -1,0 +1,66 @@
+"""One pass over the nodes of a gear: knots, floats and weights (eq. 22, 28) and their slopes."""
+
+import numpy as np
+
+from trawl_ros.model.bar import STILL
+from trawl_ros.model.bar_pass import WaterTable
+from trawl_ros.model.compiled import compiled
+from trawl_ros.model.current import current_at
+
+
+@compiled
+def fill_lump_forces(
+    x: np.ndarray,
+    v: np.ndarray,
+    mass: np.ndarray,
+    volume: np.ndarray,
+    drag_area: np.ndarray,
+    water: WaterTable,
+    force: np.ndarray,
+) -> None:
+    """Fill in drag, weight and buoyancy (n, 3) of the lumps."""
+    density, gradient, gravity, knots, cubics = water
+    flow, shear = np.empty(3, x.dtype), np.empty(3)
+    for n in range(len(force)):
+        here = density - gradient * x[n, 2]
+        current_at(knots, cubics, x[n, 2], flow, shear)
+        square = STILL**2 + 0 * here
+        for i in range(3):
+            flow[i] -= v[n, i]
+            square += flow[i] ** 2
+        factor = 0.5 * here * drag_area[n] * np.sqrt(square)
+        for i in range(3):
+            force[n, i] = factor * flow[i]
+        force[n, 2] -= (mass[n] - here * volume[n]) * gravity
+
+
+@compiled
+def fill_lump_slopes(
+    x: np.ndarray,
+    v: np.ndarray,
+    volume: np.ndarray,
+    drag_area: np.ndarray,
+    water: WaterTable,
+    stiffness: np.ndarray,
+    damping: np.ndarray,
+) -> None:
+    """Fill in K = -∂F/∂x and C = -∂F/∂v (n, 3, 3) of the lumps."""
+    density, gradient, gravity, knots, cubics = water
+    flow, shear = np.empty((2, 3))
+    stiffness[:] = 0.0
+    for n in range(len(stiffness)):
+        here = density - gradient * x[n, 2]
+        current_at(knots, cubics, x[n, 2], flow, shear)
+        square = STILL**2
+        for i in range(3):
+            flow[i] -= v[n, i]
+            square += flow[i] ** 2
+        factor, speed = 0.5 * here * drag_area[n], np.sqrt(square)
+        for i in range(3):
+            by_height = -gradient / here * factor * speed * flow[i]
+            for j in range(3):
+                by_flow = factor * (speed * (i == j) + flow[i] * flow[j] / speed)
+                damping[n, i, j] = by_flow
+                by_height += by_flow * shear[j]
+            stiffness[n, i, 2] = -by_height
+        stiffness[n, 2, 2] += gravity * gradient * volume[n]
