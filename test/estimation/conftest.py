@@ -12,7 +12,7 @@ import pytest
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.error_terms import Scheme
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
@@ -216,8 +216,8 @@ def model() -> ClosedForm:
 
 
 @pytest.fixture
-def prior() -> BoardPrior:
-    return BoardPrior(TRUTH + 0.7 * STD, STD, TRUTH - 4.0 * STD, TRUTH + 4.0 * STD)
+def prior() -> ParameterVector:
+    return ParameterVector(TRUTH + 0.7 * STD, STD, TRUTH - 4.0 * STD, TRUTH + 4.0 * STD)
 
 
 @pytest.fixture
@@ -288,7 +288,7 @@ def clean_tow(coarse_gear: Path) -> SimpleNamespace:
 
 
 def clean_samples(
-    linear: Linear, prior: BoardPrior, pressure: Callable[[float], float]
+    linear: Linear, prior: ParameterVector, pressure: Callable[[float], float]
 ) -> Iterator[Sample]:
     """A tow through all states in a current, with the noise of the default instruments."""
     draw = np.random.default_rng(4).standard_normal

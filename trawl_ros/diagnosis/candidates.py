@@ -1,8 +1,7 @@
 """Candidate effects, their start values, and their signatures in the windows."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
@@ -42,10 +41,14 @@ class Candidate:
         return np.array([parameter.std for parameter in self.effect.parameters])
 
     @property
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Bounds of the values (m,)."""
-        low, high = zip(*((p.low, p.high) for p in self.effect.parameters), strict=True)
-        return np.array(low), np.array(high)
+    def group(self) -> ParameterGroup:
+        """The values as parameters of a fit."""
+        own = self.effect.parameters
+        return ParameterGroup(
+            'effect',
+            tuple(f'{self.name} {parameter.name}' for parameter in own),
+            tuple(parameter.unit for parameter in own),
+        )
 
 
 def candidates(
@@ -74,10 +77,16 @@ def candidates(
     return tuple(found)
 
 
-def blocks_of_candidates(wanted: Sequence[Candidate]) -> tuple[range, ...]:
-    """Slices of the candidates' values in their joint vector."""
-    ends = np.cumsum([len(candidate.start) for candidate in wanted]).tolist()
-    return tuple(range(a, b) for a, b in pairwise([0, *ends]))
+def values_vector(wanted: Sequence[Candidate]) -> ParameterVector:
+    """Vector of the candidates' values, which may or may not be present: one group for each."""
+    own = [parameter for candidate in wanted for parameter in candidate.effect.parameters]
+    return ParameterVector(
+        start=np.array([value for candidate in wanted for value in candidate.start]),
+        std=WIDE * np.array([parameter.std for parameter in own]),
+        low=np.array([parameter.low for parameter in own]),
+        high=np.array([parameter.high for parameter in own]),
+        groups=tuple(candidate.group for candidate in wanted),
+    )
 
 
 def signatures(
@@ -119,50 +128,21 @@ def extended(
     options
         Of the estimate.
     """
-    board = slice(len(COEFFICIENTS))
+    board = fit.prior.slice_of('coefficients')
     starts = np.concatenate([candidate.start for candidate in wanted])
     parts = tuple(
-        replace(part, at=part.at[board], by_coefficients=part.by_coefficients[:, board])
-        for part in fit.windows
+        part.only(board).followed_by(starts, own)
+        for part, own in zip(fit.windows, columns, strict=True)
     )
     return Fit(
-        behind(parts, starts, columns),
+        parts,
         np.concatenate((fit.coefficients[board], starts)),
         AS_STATED,
-        extended_prior(fit.prior, wanted),
+        with_candidates(fit.prior, wanted),
         options,
     )
 
 
-def behind(
-    parts: Sequence[Linearised], values: np.ndarray, columns: Sequence[np.ndarray]
-) -> tuple[Linearised, ...]:
-    """Windows with more values (m,) appended to all others.
-
-    With what each of these changes: for each window (channels of the window, m).
-    """
-    return tuple(
-        replace(
-            part,
-            at=np.concatenate((part.at, values)),
-            by_coefficients=np.hstack((part.by_coefficients, own)),
-        )
-        for part, own in zip(parts, columns, strict=True)
-    )
-
-
-def extended_prior(prior: BoardPrior, wanted: Sequence[Candidate]) -> BoardPrior:
-    """Joint prior of the boards, and of effects that may or may not be present."""
-    lows, highs = zip(*(candidate.bounds for candidate in wanted), strict=True)
-    effects = BoardPrior(
-        start=np.concatenate([candidate.start for candidate in wanted]),
-        std=np.concatenate([WIDE * candidate.scale for candidate in wanted]),
-        low=np.concatenate(lows),
-        high=np.concatenate(highs),
-        names=tuple(
-            f'{candidate.name} {parameter.name}'
-            for candidate in wanted
-            for parameter in candidate.effect.parameters
-        ),
-    )
-    return prior.first(len(COEFFICIENTS)).followed_by(effects)
+def with_candidates(prior: ParameterVector, wanted: Sequence[Candidate]) -> ParameterVector:
+    """Vector of the boards alone, with the candidates' values behind them."""
+    return prior.only('coefficients').followed_by(values_vector(wanted))

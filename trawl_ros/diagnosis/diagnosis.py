@@ -24,7 +24,6 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
 
 PLACEBO_STEPS = 3
@@ -244,7 +243,7 @@ def _advice(
     best = named.weighed[0].refit
     rivals = [one for one in seen.wanted if one.name in others]
     candidate = best.wanted[0]
-    values = best.estimate.values[len(COEFFICIENTS) :][: len(candidate.start)]
+    values = best.values[: len(candidate.start)]
     proposals = propose(predictor, seen, candidate, values, rivals)
     direct = [one.effect.direct for one in (*best.wanted, *rivals) if one.effect.direct]
     return tuple(dict.fromkeys(direct)), proposals
@@ -303,12 +302,11 @@ def _removed(before: HoldoutErrors, after: HoldoutErrors | None) -> float | None
 def values_of(one: Refit) -> Mapping[str, Mapping[str, tuple[float, float, float, str]]]:
     """Effect → parameter → value, both ends of its interval, and unit."""
     found: dict[str, dict[str, tuple[float, float, float, str]]] = {}
-    place = len(one.estimate.values) - one.number
-    for candidate in one.wanted:
+    estimate = one.estimate
+    for candidate, block in zip(one.wanted, one.fit.prior.blocks('effect'), strict=True):
         own = found.setdefault(candidate.name, {})
-        for parameter in candidate.effect.parameters:
-            low, high = one.estimate.low[place], one.estimate.high[place]
-            value = one.estimate.values[place]
-            own[parameter.name] = (float(value), float(low), float(high), parameter.unit)
-            place += 1
+        for parameter, place in zip(candidate.effect.parameters, block, strict=True):
+            numbers = (estimate.values[place], estimate.low[place], estimate.high[place])
+            value, low, high = map(float, numbers)
+            own[parameter.name] = (value, low, high, parameter.unit)
     return found

@@ -14,7 +14,6 @@ from scipy.special import chdtrc, ndtri
 from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, spread
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance, triangular
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 BLIND = 1e-9
 """Information below this part of what an effect has without coefficients is none."""
@@ -118,9 +117,10 @@ def evidence(
     weights
         Huber weights of each of these tows; found if None.
     """
-    number, board = len(units), len(COEFFICIENTS)
+    boards = fit.prior.slice_of('coefficients')
+    number, board = len(units), boards.stop
     jacobian = np.zeros((*fit.residual.shape, board + number))
-    jacobian[:, :, :board] = fit.jacobian[:, :, :board]
+    jacobian[:, :, boards] = fit.jacobian[:, :, boards]
     for row, (part, own) in enumerate(zip(fit.windows, columns, strict=True)):
         jacobian[row, :, board:] = spread(part, own * units)
     scales = np.array(fit.scales)[GROUP_OF]
@@ -133,7 +133,7 @@ def evidence(
         weights,
     )
     root = np.sqrt(fit.options.prior_weight)
-    away = (fit.prior.start[:board] - fit.coefficients[:board]) / fit.prior.std[:board]
+    away = -fit.prior.departure(fit.coefficients)[boards]
     known = np.zeros((board, board + number + 1))
     known[:, :board] = root * np.eye(board)
     known[:, -1] = root * away

@@ -9,15 +9,14 @@ from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refi
 from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator import POOR, Estimator
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 
 def fit_beside(
-    predictor: Predictor, prior: BoardPrior, windows: tuple[SteadyWindow, ...]
+    predictor: Predictor, prior: ParameterVector, windows: tuple[SteadyWindow, ...]
 ) -> Refit | None:
     """Fit the boards with the added effects held; None where no window has a steady state.
 
@@ -52,8 +51,9 @@ def fit_beside(
     if free is None:
         return found
     estimator = Estimator(predictor, prior, OBSERVABLES, OPTIONS)
-    board = free.estimate.values[: len(COEFFICIENTS)]
-    estimator.begin([_held(part, values) for part in free.fit.windows], board)
+    board = prior.slice_of('coefficients')
+    held = [_held(part, board, values) for part in free.fit.windows]
+    estimator.begin(held, free.estimate.values[board])
     estimate = estimator.finish()
     return likelier(found, None if estimate is None else Refit((), estimator, estimate))
 
@@ -69,12 +69,7 @@ def _nearest(active: ActiveEffect, predictor: Predictor, base: Refit) -> Candida
     return min(places, key=away)
 
 
-def _held(part: Linearised, values: np.ndarray) -> Linearised:
+def _held(part: Linearised, board: slice, values: np.ndarray) -> Linearised:
     """Window with the effects at these values, and only coefficients free."""
-    board = slice(len(COEFFICIENTS))
-    return replace(
-        part,
-        values=part.predicted(np.concatenate((part.at[board], values))),
-        at=part.at[board],
-        by_coefficients=part.by_coefficients[:, board],
-    )
+    there = part.predicted(np.concatenate((part.at[board], values)))
+    return replace(part.only(board), values=there)

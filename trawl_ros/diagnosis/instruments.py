@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.screening import Screening
 from trawl_ros.estimation.windows.over_ground import OverGround
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -15,7 +15,7 @@ JUDGED = 5
 
 
 def wrong_unit(
-    predictor: Predictor, prior: BoardPrior, windows: Sequence[SteadyWindow]
+    predictor: Predictor, prior: ParameterVector, windows: Sequence[SteadyWindow]
 ) -> str | None:
     """Sentence on a channel that reports in another unit; None where none is found."""
     screening = Screening(predictor, prior, OBSERVABLES)

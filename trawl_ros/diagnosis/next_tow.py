@@ -14,7 +14,6 @@ from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.channels import CHANNELS
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
@@ -173,7 +172,7 @@ def _solved(
     }  # fmt: skip
     asked = {'port_length': length, 'starboard_length': length, 'speed': speed}
     window = replace(part.window, means={**part.window.means, **asked}, noise=noise)
-    board = seen.fit.coefficients[: len(COEFFICIENTS)]
+    board = seen.fit.coefficients[seen.fit.prior.slice_of('coefficients')]
     found = linearise(predictor, OBSERVABLES, window, board, (part.state, None), even=False)
     means = {**window.means, **dict(zip(found.channels, map(float, found.values), strict=True))}
     bias = {name: CHANNELS[name].bias_std(mean) for name, mean in means.items()}

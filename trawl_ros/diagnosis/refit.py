@@ -5,16 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.diagnosis.candidates import Candidate, extended_prior
+from trawl_ros.diagnosis.candidates import Candidate, with_candidates
 from trawl_ros.diagnosis.rules import NEAR
-from trawl_ros.estimation.fit.estimate import Estimate, on_bound
+from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
@@ -66,25 +65,29 @@ class Refit:
     @property
     def number(self) -> int:
         """Number of effects' values behind the coefficients."""
-        return len(self.estimate.values) - len(COEFFICIENTS)
+        return len(self.values)
+
+    @property
+    def values(self) -> np.ndarray:
+        """Effects' values (m,) behind the coefficients."""
+        return self.estimate.values[self.fit.prior.slice_of('effect')]
 
     def cost(self, scales: tuple[float, ...]) -> float:
         """Cost at given noise scales, without the prior of the effects."""
         fit = replace(self.fit, scales=scales)
-        extra = slice(len(COEFFICIENTS), None)
-        away = (fit.coefficients - fit.prior.start)[extra] / fit.prior.std[extra]
+        away = fit.prior.departure(fit.coefficients)[fit.prior.slice_of('effect')]
         return fit.cost - 0.5 * self.fit.options.prior_weight * float(away @ away)
 
     def at_bound(self) -> bool:
         """True if a value of an effect rests on a bound."""
-        extra, prior = slice(len(COEFFICIENTS), None), self.fit.prior
-        low, high = on_bound(self.estimate.values, prior)
-        return bool(np.any(low[extra] | high[extra]))
+        effects = self.fit.prior.slice_of('effect')
+        low, high = self.fit.prior.on_bounds(self.estimate.values)
+        return bool(np.any(low[effects] | high[effects]))
 
 
 def fit_boards(
     predictor: Predictor,
-    prior: BoardPrior,
+    prior: ParameterVector,
     windows: Sequence[SteadyWindow],
     options: EstimatorOptions = OPTIONS,
     start: np.ndarray | None = None,
@@ -96,7 +99,7 @@ def fit_boards(
     # All at once: what the first windows alone would say is not asked, and may lead astray.
     together = Estimator(predictor, prior, OBSERVABLES, options)
     if start is not None:
-        together.begin((), np.clip(start, prior.low, prior.high))
+        together.begin((), prior.clipped(start))
     together.take(windows)
     estimate = together.finish()
     found = None if estimate is None else Refit((), together, estimate)
@@ -112,7 +115,7 @@ def fit_boards(
 
 def was_in_order(
     predictor: Predictor,
-    prior: BoardPrior,
+    prior: ParameterVector,
     windows: Sequence[SteadyWindow],
     baseline: frozenset[int],
 ) -> bool:
@@ -162,10 +165,9 @@ def refit(
         None where no window has a steady state.
     """
     free = replace(predictor, free=tuple(candidate.effect for candidate in wanted))
-    prior = extended_prior(base.prior, wanted)
+    prior = with_candidates(base.prior, wanted)
     estimator = Estimator(free, prior, OBSERVABLES, options)
-    low, high = prior.low[len(COEFFICIENTS) :], prior.high[len(COEFFICIENTS) :]
-    starts = np.clip(values, low, high)
-    estimator.begin(parts, np.concatenate((base.coefficients[: len(COEFFICIENTS)], starts)))
+    board = base.coefficients[base.prior.slice_of('coefficients')]
+    estimator.begin(parts, prior.clipped(np.concatenate((board, values))))
     estimate = estimator.finish()
     return None if estimate is None else Refit(tuple(wanted), estimator, estimate)

@@ -18,7 +18,6 @@ from trawl_ros.gear.records import (
     ProvenanceRecord,
     SourceRecord,
 )
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 RECORDINGS = ('.mcap', '.db3', '.csv')
 PIECE = 1 << 20
@@ -60,7 +59,7 @@ def repaired(found: Diagnosis, sources: Sequence[SourceBag]) -> GearRecord | Non
 
 def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> GearRecord:
     """Gear with the boards and effects of a refit."""
-    board = dict(zip(COEFFICIENTS, map(float, one.estimate.values), strict=False))
+    board = one.fit.prior.unpacked(one.estimate.values, 'coefficients')
     taken = set(one.names)
     effects = tuple(effect for effect in gear.effects if effect.name not in taken)
     effects += tuple(

@@ -2,16 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from trawl_ros.diagnosis.candidates import (
     Candidate,
-    behind,
-    blocks_of_candidates,
     candidates,
     extended,
     signatures,
+    values_vector,
 )
 from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
 from trawl_ros.diagnosis.patterns import ResidualPattern, patterns
@@ -21,7 +21,7 @@ from trawl_ros.estimation.fit.error_terms import TowErrors
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.gauss_newton import gauss_newton_step
 from trawl_ros.estimation.fit.nuisance import reweighted
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector
 from trawl_ros.solver.predict import Predictor
 
 USUAL_PATTERN, FAR = 3.0, 1e3
@@ -64,10 +64,14 @@ class ScoreTest:
 
     def block(self, candidate: Candidate) -> range:
         """Slice of a candidate's values."""
-        for other, block in zip(self.wanted, blocks_of_candidates(self.wanted), strict=True):
+        for other, block in zip(self.wanted, self._blocks, strict=True):
             if other is candidate:
                 return block
         raise ValueError(f'{candidate.name} is not among those that are wanted')
+
+    @cached_property
+    def _blocks(self) -> tuple[range, ...]:
+        return values_vector(self.wanted).blocks('effect')
 
     @property
     def channels(self) -> Mapping[str, range]:
@@ -145,7 +149,7 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
     )
     if max(explained.scales) > NOISE_TO_EXPLAIN:
         # Then it is no noise, but something that no effect knows: patterns are to have it.
-        free = with_patterns(free, of_shapes)
+        free = with_patterns(free, shapes, of_shapes)
         explained = gauss_newton_step(
             replace(free, scales=base.scales), free.prior.low, free.prior.high
         )
@@ -155,7 +159,7 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
     units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])
     found = evidence(fit, both, units, weights=weights)
     number = len(units) - len(shapes)
-    looks = [look for block in blocks_of_candidates(wanted) for look in looks_at(block)]
+    looks = [look for block in values_vector(wanted).blocks('effect') for look in looks_at(block)]
     limit = threshold(found, [*looks, *blocks_of(shapes, number).values()], FALSE_ALARMS)
     return ScoreTest(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
 
@@ -168,14 +172,20 @@ def looks_at(block: range) -> list[range]:
     return [block, *alone] if len(block) > 1 else [block]
 
 
-def with_patterns(fit: Fit, shapes: Sequence[np.ndarray]) -> Fit:
+def with_patterns(
+    fit: Fit, shapes: Sequence[ResidualPattern], columns: Sequence[np.ndarray]
+) -> Fit:
     """Fit with sizes of patterns appended to all else."""
-    number = shapes[0].shape[1]
+    number = len(shapes)
     nothing, far = np.zeros(number), np.full(number, FAR)
-    sizes = BoardPrior(nothing, np.full(number, USUAL_PATTERN), -far, far, ('',) * number)
+    names = tuple(f'{pattern.channel} {pattern.shape}' for pattern in shapes)
+    group = ParameterGroup('pattern', names, ('std',) * number)
+    sizes = ParameterVector(nothing, np.full(number, USUAL_PATTERN), -far, far, (group,))
     return replace(
         fit,
-        windows=behind(fit.windows, nothing, shapes),
+        windows=tuple(
+            part.followed_by(nothing, own) for part, own in zip(fit.windows, columns, strict=True)
+        ),
         coefficients=np.concatenate((fit.coefficients, nothing)),
         prior=fit.prior.followed_by(sizes),
     )

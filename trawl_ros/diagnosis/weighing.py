@@ -10,7 +10,6 @@ from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
 from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 DRAWS = 100
 """Number of bootstrap draws of the tows."""
@@ -176,7 +175,7 @@ def _cosine(seen: ScoreTest, one: Refit, other: Candidate) -> float:
     rows = [place for candidate in one.wanted for place in seen.block(candidate)]
     starts = np.concatenate([candidate.start for candidate in one.wanted])
     scale = np.concatenate([candidate.scale for candidate in one.wanted])
-    values = (one.estimate.values[len(COEFFICIENTS) :] - starts) / scale
+    values = (one.values - starts) / scale
     return seen.evidence.covered(rows, values, seen.block(other))
 
 
@@ -197,15 +196,15 @@ def left_over(base: Refit, seen: ScoreTest, one: Refit) -> LeftOver:
     one
         The refit.
     """
-    board = len(COEFFICIENTS)
+    effects = one.fit.prior.slice_of('effect')
     fit = replace(one.fit, scales=seen.fit.scales)
     # The same windows in the same order: a refit that loses one is none.
     columns = [
-        np.hstack((part.by_coefficients[:, board:], own))
+        np.hstack((part.by_coefficients[:, effects], own))
         for part, own in zip(fit.windows, seen.shapes, strict=True)
     ]
     number = one.number
-    units = np.concatenate((fit.prior.std[board:], np.ones(len(seen.patterns))))
+    units = np.concatenate((fit.prior.std[effects], np.ones(len(seen.patterns))))
     found = evidence(fit, columns, units).without(range(number))
     blocks = blocks_of(seen.patterns, number).values()
     worst = max(blocks, key=found.strength)

@@ -4,7 +4,7 @@ import numpy as np
 
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import WindowOptions
@@ -27,10 +27,10 @@ def estimator_options(*, prior: bool = True, net: bool = False) -> EstimatorOpti
     return EstimatorOptions(prior_weight=float(prior), net_drag=std, net_weight=std)
 
 
-def board_prior(gear: GearRecord) -> BoardPrior:
+def board_prior(gear: GearRecord) -> ParameterVector:
     """Prior of the board's coefficients in a gear file."""
     known = gear.identification
-    return BoardPrior(
+    return ParameterVector(
         start=np.array(known.start),
         std=np.array(known.std),
         low=np.array(known.low),

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
-from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.screening import Screening
 from trawl_ros.estimation.window_gate import WindowGate
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
@@ -58,7 +58,7 @@ class Identification:
     def __init__(
         self,
         predictor: SteadyPredictor,
-        prior: BoardPrior,
+        prior: ParameterVector,
         observables: Sequence[str],
         pressure_to_depth: Callable[[float], float],
         window_options: WindowOptions | None = None,

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.prediction import SteadyPrediction, SteadyPredictor
-from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.windows.operation import Unheld
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.estimation.windows.unit_errors import (
@@ -56,7 +56,7 @@ class Screening:
     """
 
     def __init__(
-        self, predictor: SteadyPredictor, prior: BoardPrior, observables: Sequence[str]
+        self, predictor: SteadyPredictor, prior: ParameterVector, observables: Sequence[str]
     ) -> None:
         self._predictor = predictor
         self._prior = prior

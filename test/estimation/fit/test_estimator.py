@@ -11,7 +11,7 @@ from trawl_ros.estimation.fit.estimate import posterior_of, undetermined
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import linearise
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
@@ -142,7 +142,7 @@ def test_errors_of_the_log_are_not_taken_for_the_boards(sea, model, prior):
 def test_a_bound_that_is_in_the_way_is_respected_and_named(sea, model, prior):
     low = np.array(prior.low)
     low[2] = sea.TRUTH[2] + 0.2 * sea.STD[2]
-    tight = BoardPrior(prior.start, prior.std, low, prior.high)
+    tight = ParameterVector(prior.start, prior.std, low, prior.high)
     windows = sea.trial_windows(model, np.random.default_rng(0), noise=0.3)
     _, estimate = estimated(sea, model, tight, windows)
     assert estimate.values[2] == low[2]
@@ -233,7 +233,7 @@ def test_where_the_answer_lies_beyond_the_steady_states_it_says_so(sea, prior):
     start = np.array(prior.start)
     start[0] = sea.TRUTH[0] - sea.STD[0]
     _, estimate = estimated(
-        sea, model, BoardPrior(start, prior.std, prior.low, prior.high), windows
+        sea, model, ParameterVector(start, prior.std, prior.low, prior.high), windows
     )
     assert not estimate.converged
     assert 'without a steady state' in estimate.reason
@@ -292,9 +292,9 @@ def test_a_prior_that_contradicts_itself_is_refused_by_name(prior):
     start = np.array(prior.start)
     start[3] = prior.high[3] + 1.0
     with pytest.raises(GearError, match=COEFFICIENTS[3]):
-        BoardPrior(start, prior.std, prior.low, prior.high)
+        ParameterVector(start, prior.std, prior.low, prior.high)
     with pytest.raises(GearError, match=r'identification\.std'):
-        BoardPrior(prior.start, prior.std[:5], prior.low, prior.high)
+        ParameterVector(prior.start, prior.std[:5], prior.low, prior.high)
 
 
 def test_a_confidence_of_one_is_refused():

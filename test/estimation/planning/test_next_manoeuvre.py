@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import linearise
-from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.from_gear import board_prior, estimator_options
 from trawl_ros.estimation.planning.information import (
     covariance_from,
     information_in,
@@ -88,7 +88,9 @@ def test_no_other_manoeuvre_tells_more_per_minute(adviser, fit):
         assert gain / other.minutes <= best * (1.0 + 1e-3)
 
 
-def test_what_ranks_manoeuvres_is_what_the_fit_knows(fit):
+@pytest.mark.parametrize('net', [False, True])
+def test_what_ranks_manoeuvres_is_what_the_fit_knows(fit, net):
+    fit = replace(fit, options=estimator_options(net=net))
     ours = covariance_from(information_in(fit), fit.prior)
     size = np.sqrt(np.outer(np.diag(ours), np.diag(ours)))
     assert np.max(np.abs(ours - fit.posterior.covariance) / size) < 1e-8

@@ -140,7 +140,7 @@ def test_windows_of_one_state_share_what_stays_wrong(plan):
     """Twice as many windows of a state tell less than twice as many states."""
     question = plan.question
     candidate = plan.choice.candidates[0]
-    before = information_before(question.estimator)
+    before = information_before(question.prior, question.estimator)
 
     def sd(number: int) -> np.ndarray:
         parts = imagined_windows(candidate, question.coefficients, state=0, number=number)

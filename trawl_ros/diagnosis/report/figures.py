@@ -7,7 +7,6 @@ from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison
 from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.diagnosis.score_test import ScoreTest
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 
@@ -172,22 +171,22 @@ def coefficients_figure(found: Diagnosis) -> Figure:
     base, added = found.base, found.added
     assert base is not None
     assert added is not None
-    prior = base.fit.prior
+    board = base.fit.prior.only('coefficients')
     figure = Figure(figsize=(9.0, 4.0), layout='constrained')
     axes = figure.subplots()
-    number = len(COEFFICIENTS)
     for shift, (label, one, colour) in zip(
         (-0.12, 0.12),
         (('boards alone', base, SECOND), (f'with {found.added_as}', added.refit, MEASURED)),
         strict=True,
     ):
-        values = (one.estimate.values[:number] - prior.start) / prior.std
-        std = one.estimate.std[:number] / prior.std
+        own = one.fit.prior.slice_of('coefficients')
+        values = board.departure(one.estimate.values[own])
+        std = one.estimate.std[own] / board.std
         axes.errorbar(
-            np.arange(number) + shift, values, 1.96 * std, fmt='o', color=colour, label=label
+            np.arange(len(board)) + shift, values, 1.96 * std, fmt='o', color=colour, label=label
         )
     axes.axhline(0.0, color='black', lw=0.8)
-    axes.set_xticks(range(number), COEFFICIENTS)
+    axes.set_xticks(range(len(board)), board.names)
     axes.set_ylabel('from the start / std of the prior')
     quiet(axes)
     figure.legend(loc='outside upper center', ncols=2, frameon=False)

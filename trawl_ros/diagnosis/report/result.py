@@ -11,7 +11,6 @@ from trawl_ros.diagnosis.repair import SourceBag
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.records.channels import CHANNELS
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, Any]:
@@ -163,7 +162,7 @@ def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, Any]:
                 'std': added.refit.estimate.std[i],
             },
         }
-        for i, name in enumerate(COEFFICIENTS)
+        for i, name in enumerate(base.fit.prior.only('coefficients').names)
     }
 
 

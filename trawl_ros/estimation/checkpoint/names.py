@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from trawl_ros.records.coefficients import COEFFICIENTS
+
 MODULES: Mapping[str, str] = MappingProxyType(
     {
         'trawl_ros.identification.buffers': 'trawl_ros.estimation.windows.buffers',
@@ -19,7 +21,7 @@ MODULES: Mapping[str, str] = MappingProxyType(
         'trawl_ros.identification.order': 'trawl_ros.estimation.windows.timestamp_check',
         'trawl_ros.identification.over_ground': 'trawl_ros.estimation.windows.over_ground',
         'trawl_ros.identification.pipeline': 'trawl_ros.estimation.pipeline',
-        'trawl_ros.identification.prior': 'trawl_ros.estimation.fit.prior',
+        'trawl_ros.identification.prior': 'trawl_ros.estimation.fit.parameters',
         'trawl_ros.identification.rejections': 'trawl_ros.estimation.windows.records',
         'trawl_ros.identification.screening': 'trawl_ros.estimation.screening',
         'trawl_ros.identification.timeline': 'trawl_ros.estimation.windows.watermark',
@@ -34,6 +36,7 @@ CLASSES: Mapping[str, str] = MappingProxyType(
         'Order': 'TimestampCheck',
         'Judgement': 'ScreeningResult',
         'Timeline': 'Watermark',
+        'BoardPrior': 'ParameterVector',
     }
 )
 
@@ -52,4 +55,15 @@ def present(name: str, has: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
     if module not in MODULES:
         return name, has
     now = {FIELDS.get(key, key): value for key, value in has.items()}
+    if own == 'BoardPrior' and 'names' in now:
+        now['groups'] = _groups(now.pop('names'))
     return f'{MODULES[module]}.{CLASSES.get(own, own)}', now
+
+
+def _groups(names: Any) -> Any:
+    """Groups of a parameter vector, packed, of packed names of coefficients: all there was."""
+    units = {'number': -3, 'tuple': [''] * len(COEFFICIENTS)}
+    has = {'kind': 'coefficients', 'names': names, 'units': units}
+    name = 'trawl_ros.estimation.fit.parameters.ParameterGroup'
+    # No packer gives a negative number.
+    return {'number': -1, 'tuple': [{'number': -2, 'object': name, 'has': has}]}

@@ -48,7 +48,7 @@ def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
         return ()
     std = fit.scheme.net_std
     root = joint_root(fit.marginal, fit.posterior.root)
-    rows = range(len(fit.marginal.model) - 2, len(fit.marginal.model))
+    (rows,) = fit.scheme.model_errors.blocks('net')
     return tuple(
         NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))
         for what, value, known, row in zip(('drag', 'weight'), fit.net, std, rows, strict=True)

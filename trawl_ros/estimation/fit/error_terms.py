@@ -8,10 +8,13 @@ a tow, and the model's own, alike in all tows.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector, nuisance
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 
@@ -65,10 +68,27 @@ class Scheme:
     net_drag: float = 0.0
     net_weight: float = 0.0
 
+    @classmethod
+    def of(cls, options: EstimatorOptions) -> 'Scheme':
+        """Error scheme of an estimator's options."""
+        return cls(
+            options.state_share,
+            options.model_error,
+            options.model_trend,
+            options.unsettled,
+            options.net_drag,
+            options.net_weight,
+        )
+
     @property
     def net_std(self) -> np.ndarray:
         """Prior std of the net's factors (2,) on drag and weight."""
         return np.array([self.net_drag, self.net_weight])
+
+    @property
+    def model_errors(self) -> ParameterVector:
+        """Errors of the model: one per group, then of their trends, and the net's factors."""
+        return _model_errors(self.model_trend != 0.0, bool(self.net_std.any()))
 
     @property
     def tow_share(self) -> float:
@@ -96,6 +116,22 @@ TERMS = tuple(
 )
 """Errors of calibration of one tow."""
 
+CALIBRATION = nuisance(
+    ParameterGroup('calibration', tuple(term.channel for term in TERMS), ('std',) * len(TERMS))
+)
+"""The same as parameters."""
+
+
+@cache
+def _model_errors(trend: bool, net: bool) -> ParameterVector:
+    groups = [ParameterGroup('model', GROUPS, ('std',) * len(GROUPS))]
+    if trend:
+        longer = tuple(f'{name} by length' for name in GROUPS)
+        groups.append(ParameterGroup('model', longer, ('std',) * len(GROUPS)))
+    if net:
+        groups.append(ParameterGroup('net', ('drag', 'weight'), ('std', 'std')))
+    return nuisance(*groups)
+
 
 @dataclass(frozen=True)
 class TowErrors:
@@ -121,8 +157,7 @@ class TowErrors:
     input_calibration : (n, 3, p) array
         By how much one std of each of `TERMS` makes warp lengths and speed read too large.
     model : (n, k, m) array
-        Change by one std of the model's errors, one per group, then of their trends, and of the
-        net's drag and weight where they are not held.
+        Change by one std of each of `Scheme.model_errors`.
     """
 
     rows: np.ndarray

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 DETERMINED_FRACTION = 0.2
@@ -239,22 +239,16 @@ def _varimax(basis: np.ndarray) -> np.ndarray:
     return rotated
 
 
-def is_determined(values: np.ndarray, std: np.ndarray, prior: BoardPrior) -> tuple[bool, ...]:
+def is_determined(values: np.ndarray, std: np.ndarray, prior: ParameterVector) -> tuple[bool, ...]:
     """Flags of the coefficients that the data determine; the rule stands at `Estimate`."""
     scale = np.maximum(np.abs(values), prior.std)
     well = (std <= DETERMINED_FRACTION * scale) & (std <= DETERMINED_SHRINK * prior.std)
     return tuple(bool(flag) for flag in well)
 
 
-def on_bound(values: np.ndarray, prior: BoardPrior) -> tuple[np.ndarray, np.ndarray]:
-    """Flags of the values that rest on their lower, and on their upper bound."""
-    near = 1e-9 * (prior.high - prior.low)
-    return values <= prior.low + near, values >= prior.high - near
-
-
-def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
+def active_bounds(values: np.ndarray, prior: ParameterVector) -> tuple[str, ...]:
     """Names of the active bounds."""
-    at_low, at_high = on_bound(values, prior)
+    at_low, at_high = prior.on_bounds(values)
     found = []
     for i, name in enumerate(prior.names):
         if at_low[i]:
@@ -265,7 +259,7 @@ def active_bounds(values: np.ndarray, prior: BoardPrior) -> tuple[str, ...]:
 
 
 def interval(
-    values: np.ndarray, std: np.ndarray, freedom: float, confidence: float, prior: BoardPrior
+    values: np.ndarray, std: np.ndarray, freedom: float, confidence: float, prior: ParameterVector
 ) -> tuple[np.ndarray, np.ndarray]:
     """Student's interval (12,), (12,) around the values, cut at the bounds."""
     half = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) * std

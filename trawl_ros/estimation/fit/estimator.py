@@ -19,9 +19,9 @@ from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.gauss_newton import gauss_newton_step
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.posterior import innovation_of, posterior_estimate
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
-from trawl_ros.estimation.fit.prior import BoardPrior
 from trawl_ros.estimation.fit.relinearise import comparable, far, moved, with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
 
@@ -87,7 +87,7 @@ class Estimator:
     def __init__(
         self,
         predictor: SteadyPredictor,
-        prior: BoardPrior,
+        prior: ParameterVector,
         observables: Sequence[str],
         options: EstimatorOptions | None = None,
     ) -> None:
@@ -298,9 +298,7 @@ class Estimator:
         lowers the cost of the windows solved anew.
         """
         prior, options, fit = self.prior, self.options, self._fit
-        reach = options.largest_step * prior.std
-        low = np.maximum(prior.low, fit.coefficients - reach)
-        high = np.minimum(prior.high, fit.coefficients + reach)
+        low, high = prior.box(fit.coefficients, options.largest_step)
         aimed = gauss_newton_step(fit, low, high)
         fit = replace(fit, scales=aimed.scales)
         size = float(np.max(np.abs(aimed.coefficients - fit.coefficients) / aimed.std))

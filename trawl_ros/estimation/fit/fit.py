@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from trawl_ros.estimation.fit.error_terms import (
+    CALIBRATION,
     GROUP_OF,
     GROUPS,
     Scheme,
@@ -24,16 +25,13 @@ from trawl_ros.estimation.fit.nuisance import (
     triangular,
 )
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import FARTHEST, ParameterVector
 
 AS_STATED = (1.0,) * len(GROUPS)
 """Factors on the stated noise before anything is known of it."""
 
-FARTHEST = 3.0
-"""Errors of inputs are taken for no larger than this many std when the model is solved."""
-
 LEAST_FACTOR = 0.2
-"""Nor is the net ever taken to have less than this part of its drag and weight."""
+"""The net is never taken to have less than this part of its drag and weight."""
 
 LEAST_SCALE = 0.3
 """Noise is never taken to be less than this part of what is stated."""
@@ -46,14 +44,16 @@ Known = tuple[tuple[Linearised, ...], EstimatorOptions, tuple[TowErrors, ...]]
 class Fit:
     """Linearised windows, coefficients (12,), and factors on the stated noise by group.
 
-    ``weights`` of the readings are found where none are given. ``known`` are windows and their
-    errors as they were worked out once: fits that are made of each other share them.
+    What ``prior`` has behind the coefficients of the boards stands behind them in ``coefficients``
+    and in the windows' ``by_coefficients``. ``weights`` of the readings are found where none are
+    given. ``known`` are windows and their errors as they were worked out once: fits that are made
+    of each other share them.
     """
 
     windows: tuple[Linearised, ...]
     coefficients: np.ndarray
     scales: tuple[float, ...]
-    prior: BoardPrior
+    prior: ParameterVector
     options: EstimatorOptions
     weights: tuple[np.ndarray, ...] | None = None
     known: Known | None = field(default=None, repr=False, compare=False)
@@ -70,15 +70,7 @@ class Fit:
     @property
     def scheme(self) -> Scheme:
         """Error scheme of the options."""
-        options = self.options
-        return Scheme(
-            options.state_share,
-            options.model_error,
-            options.model_trend,
-            options.unsettled,
-            options.net_drag,
-            options.net_weight,
-        )
+        return Scheme.of(self.options)
 
     @property
     def net(self) -> np.ndarray | None:
@@ -88,7 +80,8 @@ class Fit:
             return None
         found = np.zeros(2)
         if self.windows:
-            found = np.clip(self.marginal.model[-2:], -FARTHEST, FARTHEST)
+            errors = self.scheme.model_errors
+            found = errors.clipped(self.marginal.model)[errors.slice_of('net')]
         return np.maximum(1.0 + std * found, LEAST_FACTOR)
 
     @cached_property
@@ -105,7 +98,7 @@ class Fit:
         found = np.array([measured_inputs(part.window) for part in self.windows]).reshape(-1, 3)
         for part in self.marginal.tows:
             own = np.clip(part.inputs[:, :3], -FARTHEST, FARTHEST)
-            calibration = np.clip(part.calibration, -FARTHEST, FARTHEST)
+            calibration = CALIBRATION.clipped(part.calibration)
             errors = part.errors
             found[errors.rows] += errors.input_std * own - errors.input_calibration @ calibration
         return found
@@ -114,7 +107,7 @@ class Fit:
     def jacobian(self) -> np.ndarray:
         """Sensitivities (windows, k, 12) per prior std."""
         rows = [spread(part, part.by_coefficients * self.prior.std) for part in self.windows]
-        return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior.std))
+        return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior))
 
     @cached_property
     def marginal(self) -> NuisanceElimination:
@@ -140,7 +133,7 @@ class Fit:
 
     @property
     def _prior_cost(self) -> float:
-        away = (self.coefficients - self.prior.start) / self.prior.std
+        away = self.prior.departure(self.coefficients)
         return float(0.5 * self.options.prior_weight * away @ away)
 
     @cached_property
@@ -151,7 +144,7 @@ class Fit:
         """
         number = len(self.coefficients)
         root = np.sqrt(self.options.prior_weight)
-        away = (self.prior.start - self.coefficients) / self.prior.std
+        away = -self.prior.departure(self.coefficients)
         left = np.vstack((self.marginal.triangle, root * np.eye(number)))
         right = np.concatenate((self.marginal.right, root * away))
         triangle = triangular(np.column_stack((left, right)))

@@ -1,7 +1,7 @@
 """Linearised window: its predictions and their derivatives."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -47,6 +47,18 @@ class Linearised:
     def solved(self) -> np.ndarray:
         """Predictions (n,) with the net as it was when they were solved."""
         return self.values + self.by_net @ (self.net - 1.0)
+
+    def only(self, part: slice) -> 'Linearised':
+        """Linearisation by some of the parameters; the others stay where it was solved."""
+        return replace(self, at=self.at[part], by_coefficients=self.by_coefficients[:, part])
+
+    def followed_by(self, values: np.ndarray, columns: np.ndarray) -> 'Linearised':
+        """Linearisation by m more parameters: at these values (m,), with these columns (n, m)."""
+        return replace(
+            self,
+            at=np.concatenate((self.at, values)),
+            by_coefficients=np.hstack((self.by_coefficients, columns)),
+        )
 
     def std(self, windows_in_state: int) -> np.ndarray:
         """Standard deviations (n,) of the measured means."""

@@ -60,7 +60,7 @@ def moved(
         If more windows have none there.
     """
     coefficients = fit.coefficients + share * (aimed.coefficients - fit.coefficients)
-    coefficients = np.clip(coefficients, fit.prior.low, fit.prior.high)
+    coefficients = fit.prior.clipped(coefficients)
     windows = []
     for part, ahead in zip(fit.windows, aimed.inputs, strict=True):
         inputs = part.inputs + share * (ahead - part.inputs)

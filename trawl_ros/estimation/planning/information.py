@@ -12,23 +12,25 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS
+from trawl_ros.estimation.fit.error_terms import CALIBRATION, GROUP_OF, Scheme
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 
-SHARED = len(TERMS) + len(GROUPS)
-"""Unknowns before the coefficients: errors of calibration, and of the model."""
+
+def unknowns(prior: ParameterVector, options: EstimatorOptions) -> ParameterVector:
+    """Unknowns of a tow: errors of calibration, then of the model, then the coefficients."""
+    return CALIBRATION.followed_by(Scheme.of(options).model_errors).followed_by(prior)
 
 
 def information_of(
     parts: Sequence[Linearised],
-    prior: BoardPrior,
+    prior: ParameterVector,
     options: EstimatorOptions,
     scales: Sequence[float] = AS_STATED,
 ) -> np.ndarray:
-    """Information matrix (`SHARED` + 12 squared) of windows in one steady state.
+    """Information matrix, square in the `unknowns`, of windows in one steady state.
 
     Parameters
     ----------
@@ -51,11 +53,13 @@ def information_of(
     return rows.T @ rows
 
 
-def information_before(options: EstimatorOptions) -> np.ndarray:
+def information_before(prior: ParameterVector, options: EstimatorOptions) -> np.ndarray:
     """Prior information matrix: of calibration, of the model's errors, and of the coefficients."""
     # As in `know`: where neither data nor prior say anything, a std of a million.
-    weight = max(options.prior_weight, 1e-12)
-    return np.diag(np.concatenate((np.ones(SHARED), np.full(12, weight))))
+    among = unknowns(prior, options)
+    weights = np.ones(len(among))
+    weights[among.slice_of('coefficients')] = max(options.prior_weight, 1e-12)
+    return np.diag(weights)
 
 
 def information_in(fit: Fit) -> np.ndarray:
@@ -68,28 +72,32 @@ def information_in(fit: Fit) -> np.ndarray:
     """
     marginal = fit.marginal
     of_tow, of_model = marginal.tows[-1].triangle, marginal.model_triangle
+    among = unknowns(fit.prior, fit.options)
+    board = among.slice_of('coefficients')
     rows = [
         of_tow,
-        np.pad(of_model, ((0, 0), (len(TERMS), 0))),
-        np.pad(marginal.triangle, ((0, 0), (SHARED, 0))),
+        np.pad(of_model, ((0, 0), (len(CALIBRATION), 0))),
+        np.pad(marginal.triangle, ((0, 0), (board.start, 0))),
     ]
-    weight = max(fit.options.prior_weight, 1e-12)
-    before = np.diag(np.concatenate((np.zeros(SHARED), np.full(12, weight))))
+    weights = np.zeros(len(among))
+    weights[board] = max(fit.options.prior_weight, 1e-12)
+    before = np.diag(weights)
     return sum((part.T @ part for part in rows), before)
 
 
-def covariance_from(information: np.ndarray, prior: BoardPrior) -> np.ndarray:
+def covariance_from(information: np.ndarray, prior: ParameterVector) -> np.ndarray:
     """Covariance (12, 12) of the coefficients by an information matrix."""
     root = np.linalg.cholesky(information)
     # The lower right block of the inverse needs the lower right block of the factor alone.
-    inverse = solve_triangular(root[-12:, -12:], np.eye(12), lower=True)
+    number = len(prior)
+    inverse = solve_triangular(root[-number:, -number:], np.eye(number), lower=True)
     return inverse.T @ inverse * np.outer(prior.std, prior.std)
 
 
 def fitted_covariance(
     parts: Sequence[Linearised],
     coefficients: np.ndarray,
-    prior: BoardPrior,
+    prior: ParameterVector,
     options: EstimatorOptions,
 ) -> np.ndarray:
     """Posterior covariance (12, 12) that the estimator would give with these windows."""

@@ -1,12 +1,12 @@
 """Limits of knowledge after a trial: reasons why a quantity stays badly known."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 
-from trawl_ros.estimation.fit.error_terms import TERMS
 from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES, LawQuantities, law_rows
-from trawl_ros.estimation.planning.information import SHARED, covariance_from
+from trawl_ros.estimation.planning.information import covariance_from, unknowns
 from trawl_ros.estimation.planning.search import Designer
 from trawl_ros.estimation.planning.states import Manoeuvre
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -34,8 +34,9 @@ def limits_of(
         Quantities of the laws after it.
     """
     once, often = (designer.information(manoeuvres, times) for times in (1.0, WITHOUT_END))
-    every = set(range(len(once)))
-    calibration, model = set(range(len(TERMS))), set(range(len(TERMS), SHARED))
+    among = unknowns(designer.question.prior, designer.question.estimator)
+    every = set(range(len(among)))
+    calibration, model = ({*chain(*among.blocks(kind))} for kind in ('calibration', 'model'))
     remedies = (
         ('noise', often, every),
         ('calibration', once, every - calibration),

@@ -9,7 +9,7 @@ import numpy as np
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities, WorkingAngles, law_quantities
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.planning.duration import (
     Ability,
     Leg,
@@ -49,7 +49,7 @@ class Question:
     """
 
     coefficients: np.ndarray
-    prior: BoardPrior
+    prior: ParameterVector
     angles: WorkingAngles
     span: np.ndarray
     estimator: EstimatorOptions
@@ -91,7 +91,7 @@ class Designer:
         self.noise = noise
         self.timetable = Timetable(question.ability, question.windows, self.candidates)
         self._number = {one.manoeuvre: index for index, one in enumerate(self.candidates)}
-        self._before = information_before(question.estimator)
+        self._before = information_before(question.prior, question.estimator)
         self._taught = [
             information_of(self._windows(one, 0), question.prior, question.estimator)
             for one in self.candidates

@@ -18,7 +18,7 @@ from trawl_ros.estimation.fit.laws import (
 )
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, objective, paper_values, stack
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
 from trawl_ros.estimation.report.holdout import HeldOut, hold_out
 from trawl_ros.estimation.report.residuals import ChannelResiduals, innovations, residuals, solve
@@ -94,7 +94,7 @@ class Report:
     """
 
     estimate: Estimate
-    prior: BoardPrior
+    prior: ParameterVector
     prior_weight: float
     truth: np.ndarray | None
     rejected: dict[str, int]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.estimation.fit.estimate import NAMED_SHARE
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
@@ -32,7 +32,7 @@ class Spectrum:
         return ' with '.join(named or [COEFFICIENTS[order[0]]])
 
 
-def spectrum(covariance: np.ndarray, prior: BoardPrior, prior_weight: float) -> Spectrum:
+def spectrum(covariance: np.ndarray, prior: ParameterVector, prior_weight: float) -> Spectrum:
     """Spectrum of a covariance with the prior's information subtracted.
 
     With C the covariance in prior std, C⁻¹ = V S² Vᵀ + w I: the eigenvalues of C are

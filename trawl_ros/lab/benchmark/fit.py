@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.benchmark.fit_rivals import (
@@ -119,7 +119,7 @@ def measure(small: bool) -> Findings:
 def _fitted(
     predictor: Counting,
     windows: Sequence[SteadyWindow],
-    prior: BoardPrior,
+    prior: ParameterVector,
     options: EstimatorOptions,
 ) -> Fitted:
     estimator = Estimator(predictor, prior, OBSERVABLES, options)

@@ -7,7 +7,7 @@ import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.channels import INPUTS
@@ -95,7 +95,7 @@ class CoordinateSearch:
     """
 
     def __init__(
-        self, model: GearModel, windows: Sequence[SteadyWindow], prior: BoardPrior
+        self, model: GearModel, windows: Sequence[SteadyWindow], prior: ParameterVector
     ) -> None:
         self._model, self._prior = model, prior
         self._points = [

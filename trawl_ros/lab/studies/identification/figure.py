@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.studies.identification.rows import (
     COVERAGE,
@@ -25,7 +25,7 @@ WITHIN = '#dfeee3'
 
 
 def trials_figure(
-    coverage: Sequence[EstimationTrial], bound: Sequence[EstimationTrial], prior: BoardPrior
+    coverage: Sequence[EstimationTrial], bound: Sequence[EstimationTrial], prior: ParameterVector
 ) -> Figure:
     """Draw the results with their targets, all with 95 % intervals."""
     figure = Figure(figsize=(9.0, 9.5), layout='constrained')

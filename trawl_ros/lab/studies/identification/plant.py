@@ -7,7 +7,7 @@ from itertools import chain
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
@@ -101,7 +101,7 @@ class TowedBoard:
 
 def draw_board(
     gear: GearRecord,
-    prior: BoardPrior,
+    prior: ParameterVector,
     tows: tuple[tuple[State, ...], ...],
     chance: np.random.Generator,
 ) -> TowedBoard:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import binomtest
 
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
 from trawl_ros.lab.studies.identification.trial import EstimationTrial
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -77,7 +77,7 @@ OTHER_BOUND = (1, 2, 3)
 """Places of rows that explain, and of which nothing is asked."""
 
 
-def spread_rows(trials: Sequence[EstimationTrial], prior: BoardPrior) -> list[MeasuredValue]:
+def spread_rows(trials: Sequence[EstimationTrial], prior: ParameterVector) -> list[MeasuredValue]:
     """Root mean square error over the Bayesian Cramér–Rao bound (Van Trees)."""
     if not trials:
         return [MeasuredValue('spread of estimates over its bound', np.nan, note='no trials')]

@@ -11,7 +11,7 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
@@ -62,7 +62,7 @@ class PaperRefit:
     """
 
     estimate: Estimate
-    prior: BoardPrior
+    prior: ParameterVector
     truth: np.ndarray
     objective: np.ndarray
     attack: tuple[float, float]

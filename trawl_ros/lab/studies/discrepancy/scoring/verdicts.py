@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.diagnosis.candidates import blocks_of_candidates
+from trawl_ros.diagnosis.candidates import values_vector
 from trawl_ros.diagnosis.rules import ALIKE
 from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
@@ -96,7 +96,7 @@ def classes(likely: Likelihood) -> Mapping[str, tuple[str, ...]]:
     To first order, by cosines above `ALIKE` for the plan of the trial.
     """
     found = likely.mimicry
-    blocks = list(zip(likely.wanted, blocks_of_candidates(likely.wanted), strict=True))
+    blocks = list(zip(likely.wanted, values_vector(likely.wanted).blocks('effect'), strict=True))
     alike: dict[str, set[str]] = {one.name: {one.name} for one, _ in blocks}
     for one, block in blocks:
         for row in np.eye(len(block)):

@@ -12,14 +12,14 @@ import numpy as np
 from scipy.stats import norm
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.diagnosis.candidates import Candidate, blocks_of_candidates, candidates, signatures
+from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures, values_vector
 from trawl_ros.diagnosis.evidence import POWER, Evidence, evidence
 from trawl_ros.diagnosis.holdout import split
 from trawl_ros.diagnosis.refit import OPTIONS
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.prior import BoardPrior
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
@@ -95,7 +95,7 @@ class Likelihood:
         both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
         found = evidence(self.fit, both, np.ones(number + 1))
         left = [found.information[0, 0]]
-        for block in blocks_of_candidates(self.wanted):
+        for block in values_vector(self.wanted).blocks('effect'):
             cosine = found.covered([0], np.ones(1), [place + 1 for place in block])
             left.append(found.information[0, 0] * (1.0 - cosine**2))
         return float(np.sqrt(max(0.0, min(left))))
@@ -124,7 +124,10 @@ class Likelihood:
 
 
 def likelihood(
-    plant: Plant, prior: BoardPrior, windows: Sequence[SteadyWindow], plan: BlindTrialPlan = FULL
+    plant: Plant,
+    prior: ParameterVector,
+    windows: Sequence[SteadyWindow],
+    plan: BlindTrialPlan = FULL,
 ) -> Likelihood:
     """Linearise a plant.
 
