@@ -23,6 +23,7 @@ BAR = BarProperties(
     friction=np.array([0.02]),
     added_normal=np.array([1.0]),
     added_tangential=np.array([0.1]),
+    bow=np.array([0.0]),
 )
 AHEAD = np.array([1.0, 0.0, 0.0])
 
@@ -60,6 +61,31 @@ def test_the_corner_between_slack_and_taut_is_rounded_within_its_width() -> None
     np.testing.assert_allclose(np.gradient(value, strain), slope, atol=1e-3)
     assert np.abs(np.diff(slope)).max() <= curve.max() * (strain[1] - strain[0]) * 1.01
     assert np.abs(value - np.maximum(strain, 0.0)).max() <= SLACK_WIDTH / 4 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize('strain', [-0.5, -0.01, -1e-4, 0.0, 1e-4, 0.01])
+def test_a_bowed_bar_is_shorter_by_its_arc_and_longer_by_its_pull(strain: float) -> None:
+    load = 50.0
+    bowed = replace(BAR, bow=np.array([(load / STIFFNESS) ** 2 / 24]))
+    (force,), _ = line.tension(bowed, motion(strain=strain))
+    assert force > 0.0
+    assert force / STIFFNESS - (load / force) ** 2 / 24 == pytest.approx(strain, abs=1e-12)
+
+
+def test_an_arc_between_two_points_under_an_even_load_has_the_tension_of_a_bowed_bar() -> None:
+    # A circular arc of radius R under a load q across it pulls with q R; its chord is 2 R sin(a).
+    angle, load = 0.05, 50.0
+    strain = np.sin(angle) / angle - 1.0
+    bowed = replace(BAR, bow=np.array([(load / STIFFNESS) ** 2 / 24]))
+    (force,), _ = line.tension(bowed, motion(strain=strain))
+    assert force == pytest.approx(load / (2 * angle), rel=1e-3)
+
+
+def test_slopes_of_a_bowed_bar_are_those_of_its_tension() -> None:
+    strain = np.linspace(-1e-2, 1e-2, 4001)
+    value, slope, curve = line.taut(strain, 1e-8)
+    np.testing.assert_allclose(np.gradient(value, strain)[1:-1], slope[1:-1], atol=1e-5)
+    np.testing.assert_allclose(np.gradient(slope, strain)[1:-1], curve[1:-1], atol=1e-2)
 
 
 def test_damping_resists_stretching_in_proportion_to_its_rate() -> None:

@@ -211,7 +211,8 @@ class NettingRecord(Record):
     long as keeps the angle of the meshes. ``body`` sections become netting, the ``codend``
     sections one line of ``codend_segments`` with the drag of its twine at the stated angle.
     Behind each stretched circumference of ``halved_at_circumference_m`` half as many numerical
-    meshes go around as before it.
+    meshes go around as before it. ``bowing_pressure_pa`` is the load of the water across twine,
+    per projected area, under which it bows between its knots; without it bars are straight.
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
@@ -229,6 +230,7 @@ class NettingRecord(Record):
     knot_added_mass: NotNegative
     wing_end_m: Positive
     wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)]
+    bowing_pressure_pa: NotNegative = 0.0
 
 
 class KiteRecord(Record):

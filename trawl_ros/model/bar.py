@@ -37,8 +37,32 @@ def between(
 
 
 @compiled
-def taut_at(strain: Any) -> Any:
-    """Positive part of one strain with a rounded corner, and its first two derivatives."""
+def bowed_at(strain: Any, bow: float) -> Any:
+    """Elastic strain of a bar that bows under a load across it, and its first two derivatives.
+
+    The bow takes (Q / T)² / 24 of the bar's length, with the load Q on all of it and the tension T.
+    So the elastic strain e = T / EA is the root of e - bow / e² = strain, bow = (Q / EA)² / 24.
+    """
+    root = bow ** (1.0 / 3.0)
+    e = max(strain.real, root) if strain.real > 0.0 else np.sqrt(bow / (root - strain.real))
+    step = e
+    while step > 1e-14 * e:  # Newton from below, where its steps only rise
+        step = (strain.real - e + bow / e**2) / (1.0 + 2.0 * bow / e**3)
+        e += step
+    slope = 1.0 / (1.0 + 2.0 * bow / e**3)
+    curve = 6.0 * bow / e**4 * slope**3
+    # The imaginary part is a complex step, so small that tangents are exact.
+    beside = strain - strain.real
+    return e + slope * beside, slope + curve * beside, curve
+
+
+@compiled
+def taut_at(strain: Any, bow: float) -> Any:
+    """Elastic strain of a bar, and its first two derivatives: the positive part with a rounded
+    corner or, where the bar bows, as `bowed_at` has it.
+    """
+    if bow > 0.0:
+        return bowed_at(strain, bow)
     w = SLACK_WIDTH
     if strain.real >= w:
         return strain, 0 * strain + 1.0, 0.0
@@ -51,6 +75,7 @@ def taut_at(strain: Any) -> Any:
 def tension_at(
     stiffness: float,
     damping_time: float,
+    bow: Any,
     vector: np.ndarray,
     stretching: np.ndarray,
     rest: Any,
@@ -63,7 +88,7 @@ def tension_at(
     for i in range(3):
         along[i] = vector[i] / span
         closing += along[i] * stretching[i]
-    value, slope, _ = taut_at(span / rest - 1.0)
+    value, slope, _ = taut_at(span / rest - 1.0, bow.real)
     return stiffness * (value + damping_time * slope * closing / rest)
 
 
@@ -97,6 +122,7 @@ def drag_at(
 def pull_slopes_at(
     stiffness: float,
     damping_time: float,
+    bow: Any,
     vector: np.ndarray,
     stretching: np.ndarray,
     rest: float,
@@ -112,7 +138,7 @@ def pull_slopes_at(
     for i in range(3):
         closing += along[i] * stretching[i]
     rate = (closing - rest_rate * span / rest) / rest
-    _, slope, curve = taut_at(span / rest - 1.0)
+    _, slope, curve = taut_at(span / rest - 1.0, bow.real)
     elastic = (slope + damping_time * curve * rate) / rest
     viscous = stiffness * damping_time * slope / rest
     for j in range(3):

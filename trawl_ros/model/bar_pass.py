@@ -46,7 +46,8 @@ def add_bar_forces(
     total: np.ndarray,
 ) -> None:
     """Add to the points (p, 3) at both ends of the bars their pull and half of their load each."""
-    stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction, _, _ = bars
+    stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
+    bow = bars[10]
     density, gradient, gravity, knots, cubics = water
     vector, stretching, velocity = np.empty((3, 3), x.dtype)
     along, flow, load = np.empty((3, 3), x.dtype)
@@ -55,7 +56,7 @@ def add_bar_forces(
         start, end = ends[n, 0], ends[n, 1]
         height = between(x, v, start, end, vector, stretching, velocity)
         force = tension_at(
-            stiffness[n], damping_time[n], vector, stretching, rest[n], rest_rate[n], along
+            stiffness[n], damping_time[n], bow[n], vector, stretching, rest[n], rest_rate[n], along
         )
         here = density - gradient * height
         current_at(knots, cubics, height, flow, shear)
@@ -92,7 +93,8 @@ def add_bar_blocks(
     ``order`` has the plain bars first, whose blocks are added into the data of both matrices; of
     the others come the blocks (r, 6, 6), and the forces (r, 3) at their starts.
     """
-    stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction, _, _ = bars
+    stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
+    bow = bars[10]
     density, gradient, gravity, knots, cubics = water
     plain = len(order) - len(k_others)
     vector, stretching, velocity = np.empty((3, 3))
@@ -105,7 +107,7 @@ def add_bar_blocks(
         start, end = ends[n, 0], ends[n, 1]
         height = between(x, v, start, end, vector, stretching, velocity)
         force = tension_at(
-            stiffness[n], damping_time[n], vector, stretching, rest[n], rest_rate[n], along
+            stiffness[n], damping_time[n], bow[n], vector, stretching, rest[n], rest_rate[n], along
         )
         here = density - gradient * height
         current_at(knots, cubics, height, flow, shear)
@@ -116,6 +118,7 @@ def add_bar_blocks(
         pull_slopes_at(
             stiffness[n],
             damping_time[n],
+            bow[n],
             vector,
             stretching,
             rest[n],
@@ -185,7 +188,7 @@ def add_bar_masses(
     """Add half of the mass of the bars at either end, as `add_bar_blocks` does; of those that are
     not plain comes one half (r, 3, 3).
     """
-    _, _, mass, volume, _, _, _, _, added_normal, added_tangential = bars
+    _, _, mass, volume, _, _, _, _, added_normal, added_tangential, _ = bars
     plain = len(order) - len(others)
     vector, matrix = np.empty(3), np.empty((3, 3))
     for number in range(len(order)):

@@ -185,6 +185,7 @@ def _rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:
         rope.tangential_drag,
         rope.added_mass_normal,
         rope.added_mass_tangential,
+        0.0,
     )
 
 
@@ -273,7 +274,7 @@ def build_model(gear: GearRecord) -> GearModel:
         # The codend's drag is on its nodes, its volume and stiffness in its bars.
         area = 0.0 if bar.group == 'codend' else bar.area
         row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
-        number = build.bar(net[bar.start], net[bar.end], bar.rest, row + shared)
+        number = build.bar(net[bar.start], net[bar.end], bar.rest, (*row, *shared, bar.bow))
         build.lines.append((bar.group, [int(net[bar.start]), int(net[bar.end])], [number]))
     wing_rows = record.around // 12
     edge = record.wing_edge_hanging * mesh.edge_rest

@@ -27,7 +27,8 @@ class BarProperties:
 
     ``stiffness`` EA (N); ``damping_time`` c_l l0 / EA (s); ``mass`` (kg/m); ``volume`` (m²,
     that is m³/m); ``normal_area`` S_N and ``wet_area`` S_f (m²/m); ``normal_drag`` C_N90 and
-    ``friction`` C_f; ``added_normal`` C_mn = C_mb and ``added_tangential`` C_mt of eq. 26.
+    ``friction`` C_f; ``added_normal`` C_mn = C_mb and ``added_tangential`` C_mt of eq. 26;
+    ``bow`` of `bar.bowed_at` (dimensionless), 0 for bars that stay straight.
     """
 
     stiffness: np.ndarray
@@ -40,6 +41,7 @@ class BarProperties:
     friction: np.ndarray
     added_normal: np.ndarray
     added_tangential: np.ndarray
+    bow: np.ndarray
 
     def __post_init__(self) -> None:
         for name, values in zip(vars(self), alike(*self.columns), strict=True):
@@ -72,19 +74,21 @@ class BarMotion:
     rest_rate: np.ndarray
 
 
-def taut(strain: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def taut(strain: np.ndarray, bow: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """`taut_at` for an array of strains."""
     (flat,) = alike(np.ravel(strain))
     value, slope, curve = np.empty_like(flat), np.empty_like(flat), np.empty(flat.shape)
-    _taut(flat, value, slope, curve)
+    _taut(flat, bow, value, slope, curve)
     shape = np.shape(strain)
     return value.reshape(shape), slope.reshape(shape), curve.reshape(shape)
 
 
 @compiled
-def _taut(strain: np.ndarray, value: np.ndarray, slope: np.ndarray, curve: np.ndarray) -> None:
+def _taut(
+    strain: np.ndarray, bow: float, value: np.ndarray, slope: np.ndarray, curve: np.ndarray
+) -> None:
     for n in range(len(strain)):
-        value[n], slope[n], curve[n] = taut_at(strain[n])
+        value[n], slope[n], curve[n] = taut_at(strain[n], bow)
 
 
 def tension(bars: BarProperties, motion: BarMotion) -> tuple[np.ndarray, np.ndarray]:
@@ -96,12 +100,13 @@ def tension(bars: BarProperties, motion: BarMotion) -> tuple[np.ndarray, np.ndar
     given = alike(
         bars.stiffness,
         bars.damping_time,
+        bars.bow,
         motion.vector,
         motion.stretching,
         motion.rest,
         motion.rest_rate,
     )
-    force, along = np.empty_like(given[0]), np.empty_like(given[2])
+    force, along = np.empty_like(given[0]), np.empty_like(given[3])
     _tension(*given, force, along)
     return force, along
 
@@ -110,6 +115,7 @@ def tension(bars: BarProperties, motion: BarMotion) -> tuple[np.ndarray, np.ndar
 def _tension(
     stiffness: np.ndarray,
     damping_time: np.ndarray,
+    bow: np.ndarray,
     vector: np.ndarray,
     stretching: np.ndarray,
     rest: np.ndarray,
@@ -119,7 +125,14 @@ def _tension(
 ) -> None:
     for n in range(len(rest)):
         force[n] = tension_at(
-            stiffness[n], damping_time[n], vector[n], stretching[n], rest[n], rest_rate[n], along[n]
+            stiffness[n],
+            damping_time[n],
+            bow[n],
+            vector[n],
+            stretching[n],
+            rest[n],
+            rest_rate[n],
+            along[n],
         )
 
 
@@ -180,7 +193,7 @@ def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlope
     count = len(force)
     by_vector, by_stretching, load_by_vector, load_by_velocity = np.empty((4, count, 3, 3))
     _pull_slopes(
-        *alike(bars.stiffness, bars.damping_time, motion.vector, motion.stretching),
+        *alike(bars.stiffness, bars.damping_time, bars.bow, motion.vector, motion.stretching),
         *alike(motion.rest, motion.rest_rate, force, along),
         by_vector,
         by_stretching,
@@ -212,6 +225,7 @@ def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlope
 def _pull_slopes(
     stiffness: np.ndarray,
     damping_time: np.ndarray,
+    bow: np.ndarray,
     vector: np.ndarray,
     stretching: np.ndarray,
     rest: np.ndarray,
@@ -225,6 +239,7 @@ def _pull_slopes(
         pull_slopes_at(
             stiffness[n],
             damping_time[n],
+            bow[n],
             vector[n],
             stretching[n],
             rest[n],

@@ -33,6 +33,7 @@ class NetBar:
     area: float
     volume: float
     mass: float
+    bow: float
     group: str
 
 
@@ -106,7 +107,7 @@ def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
                 # Half of the column of a bar on a wing's edge is cut away.
                 share = 0.5 if _on_edge(k, j, other, n, wing_rows) else 1.0
                 own = {key: share * value for key, value in sums.items()}
-                bars.append(_bar(a, b, row.rest, own, 'netting'))
+                bars.append(_bar(a, b, row.rest, own, net.bowing_pressure_pa, 'netting'))
                 knot_area[[a, b]] += 0.5 * own['knots'] * net.knot_diameters**2
                 knot_volume[[a, b]] += 0.5 * own['knot_volume'] * net.knot_diameters**3
     line_drag = np.zeros(len(positions) + net.codend_segments)
@@ -145,7 +146,9 @@ def _kite_nodes(
     return KiteNodes(np.array(nodes), np.array([[1.0, 0.0, 0.0], [0.0, 1.0 - share, share]]))
 
 
-def _bar(a: int, b: int, rest: float, sums: dict[str, float], group: str) -> NetBar:
+def _bar(
+    a: int, b: int, rest: float, sums: dict[str, float], pressure: float, group: str
+) -> NetBar:
     return NetBar(
         a,
         b,
@@ -154,6 +157,7 @@ def _bar(a: int, b: int, rest: float, sums: dict[str, float], group: str) -> Net
         sums['area'] / rest,
         sums['volume'] / rest,
         sums['mass'] / rest,
+        (pressure * sums['width'] / (sums['stiffness'] / rest)) ** 2 / 24.0,
         group,
     )
 
@@ -250,5 +254,5 @@ def _add_codend(
         line_drag[node] += sums['area'] * per_area + knots
         share = {key: value / len(previous) for key, value in sums.items()}
         for start in previous:
-            bars.append(_bar(start, node, step, share, 'codend'))
+            bars.append(_bar(start, node, step, share, 0.0, 'codend'))
         previous = [node]

@@ -80,7 +80,8 @@ class Profile:
 
         Netting ahead of the mouth is taken to be like that at the mouth.
         """
-        total = dict.fromkeys(('area', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'), 0.0)
+        sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
+        total = dict.fromkeys(sums, 0.0)
         dx = (back - front) / SLICES
         for x in front + (np.arange(SLICES) + 0.5) * dx:
             section, circumference = self.at(float(x))
@@ -88,6 +89,7 @@ class Profile:
             d = section.twine_diameter_m
             twine = np.pi / 4 * d**2
             total['area'] += parallel * d * dx
+            total['width'] += d * dx
             total['volume'] += parallel * twine * dx
             total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx
             total['stiffness'] += parallel * twine * section.twine_modulus_pa * dx

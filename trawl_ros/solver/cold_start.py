@@ -1,7 +1,11 @@
-"""Cold start: steady shapes without a known neighbour, by refining coarser nets."""
+"""Cold start: steady shapes without a known neighbour, by continuation from bowed twine.
+
+Netting has bars that pull and bars that hang slack, and Newton's steps flip them from one to the
+other without end. Twine that bows under a load across it pulls a little however slack it hangs:
+with a large load the shape is found easily, and the load is then taken away step by step.
+"""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -12,15 +16,24 @@ from trawl_ros.solver.first_guess import (
     coarser_model,
     first_guess,
     shifted_to,
-    softened,
 )
 from trawl_ros.solver.relax import TOLERANCE, WARM_LIMIT, WARM_TIME_STEP, relax, without_attitude
 
-SOFT_LIMIT, LIMIT = 200, 300
-"""Iterations after which a rough shape is given up, with softer ropes and with the real ones."""
+PRESSURE = 1000.0
+"""Load across a bar per area (Pa) with which a shape is sought: about three times that of the
+water on netting that is towed at 2 m/s at 20° to its bars."""
 
-LONGER, HAULS = 1.5, 6
-"""Factor on the warp length, and number of hauling steps, where a fine net does not settle."""
+LIMIT = 300
+"""Iterations after which a rough shape is given up."""
+
+ROUGH = 1.0
+"""Force (N) left at which the load is lowered further."""
+
+LEAST = 1.0
+"""Load (Pa) below which it is taken away altogether."""
+
+FALL, LEAST_FALL = 4.0, 1.2
+"""Factor by which the load is lowered at once, and the one at which that is given up."""
 
 
 def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, float]:
@@ -34,19 +47,10 @@ def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, 
         As `relax` has them.
     """
     even = replace(tow, lengths=np.full(2, tow.lengths.mean()))
-    coarse = coarser_model(model)
-    if coarse is None:
-        state, spent, residual = _from_guess(model, even, heading)
-    else:
-        state, spent, residual = cold_start(coarse, heading, even)
-        if residual > TOLERANCE:
-            return state, spent, residual
-        state, more, residual = _settled(model, carried_over(coarse, state, model), even)
+    state, spent, residual = _bowed_shape(model, heading, even)
+    if residual <= ROUGH:
+        state, more, residual = straightened(model, state, even)
         spent += more
-        if residual > TOLERANCE and coarser_model(coarse) is not None:
-            # A very fine net settles more easily on a longer warp, which is then hauled.
-            state, more, residual = _hauled(model, coarse, heading, even)
-            spent += more
     if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:
         return state, spent, residual
     state, more, residual = relax(
@@ -55,53 +59,58 @@ def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, 
     return state, spent + more, residual
 
 
-def _from_guess(model: GearModel, tow: Tow, heading: float) -> tuple[State, int, float]:
-    # Boards keep their attitude until ropes and net have found a shape.
-    state, spent, _ = relax(
-        softened(model),
-        first_guess(model, tow, heading),
-        tow,
-        tolerance=1000.0,
-        time_step=2.0,
-        free=without_attitude(model),
-        limit=120,
-    )
-    state, more, residual = _settled(model, state, tow)
+def bowed(model: GearModel, pressure: float) -> GearModel:
+    """The same gear with bars that bow at least as under this load (Pa) across them."""
+    bars = model.bars
+    load = pressure * bars.normal_area * model.rest / bars.stiffness
+    bow = np.where(model.warp_side < 0, load**2 / 24.0, 0.0)
+    return replace(model, bars=replace(bars, bow=np.maximum(bars.bow, bow)))
+
+
+def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, float]:
+    """Shape of the gear with bowed twine."""
+    coarse = coarser_model(model)
+    loose = bowed(model, PRESSURE)
+    if coarse is None:
+        # Boards keep their attitude until ropes and net have found a shape.
+        state, spent, _ = relax(
+            loose,
+            first_guess(model, tow, heading),
+            tow,
+            tolerance=1000.0,
+            time_step=2.0,
+            free=without_attitude(model),
+            limit=120,
+        )
+    else:
+        state, spent, residual = _bowed_shape(coarse, heading, tow)
+        if residual > ROUGH:
+            return state, spent, residual
+        state = carried_over(coarse, state, model)
+    state, more, residual = relax(loose, state, tow, tolerance=ROUGH, time_step=1.0, limit=LIMIT)
     return state, spent + more, residual
 
 
-def _settled(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
-    """Relax a rough shape, with softer ropes first."""
-    state, spent, _ = relax(
-        softened(model), state, tow, tolerance=100.0, time_step=1.0, limit=SOFT_LIMIT
-    )
-    state, more, residual = relax(
-        model, state, tow, tolerance=TOLERANCE, time_step=1.0, limit=LIMIT
-    )
-    return state, spent + more, residual
-
-
-def _hauled(
-    model: GearModel, coarse: GearModel, heading: float, tow: Tow
-) -> tuple[State, int, float]:
-    """Steady shape hauled in, in a few steps, from `LONGER` times the warp length."""
-    lengths = tow.lengths[0] * np.geomspace(LONGER, 1.0, HAULS + 1)
-    steps = [replace(tow, lengths=np.full(2, length)) for length in lengths]
-    state, spent, residual = cold_start(coarse, heading, steps[0])
-    if residual > TOLERANCE:
-        return state, spent, residual
-    state, more, residual = _settled(model, carried_over(coarse, state, model), steps[0])
-    spent += more
-    for old, new in pairwise(steps):
-        if residual > TOLERANCE:
-            break
-        state, more, residual = relax(
-            model,
-            shifted_to(model, state, old, new),
-            new,
-            tolerance=TOLERANCE,
+def straightened(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
+    """Take the load of `bowed` away from a shape found with it."""
+    pressure, fall, spent = PRESSURE, FALL, 0
+    while True:
+        lower = pressure / fall
+        last = lower < LEAST
+        trial, more, residual = relax(
+            model if last else bowed(model, lower),
+            state,
+            tow,
+            tolerance=TOLERANCE if last else ROUGH,
             time_step=WARM_TIME_STEP,
             limit=WARM_LIMIT,
         )
         spent += more
-    return state, spent, residual
+        if residual <= (TOLERANCE if last else ROUGH):
+            state, pressure = trial, lower
+            if last:
+                return state, spent, residual
+        elif fall > LEAST_FALL:
+            fall = np.sqrt(fall)
+        else:
+            return trial, spent, residual

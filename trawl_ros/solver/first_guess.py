@@ -24,9 +24,6 @@ COARSE_AROUND = (48, 24)
 NEIGHBOURS = 12
 """Nodes of the coarser net that say where one of the finer net lies."""
 
-SOFTNESS = 0.3
-"""Share of its stiffness that `softened` leaves to a rope."""
-
 
 def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
     """First guess: straight warps, boards at a usual attitude, the net as built behind them."""
@@ -109,14 +106,6 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
     return replace(
         found, nodes=nodes, node_velocities=np.tile(found.node_velocities[0], (model.nodes, 1))
     )
-
-
-def softened(model: GearModel) -> GearModel:
-    """The same gear with softer ropes and netting, in which fewer bars flip between slack and
-    taut on the way to a shape.
-    """
-    soft = np.where(model.warp_side >= 0, 1.0, SOFTNESS)
-    return replace(model, bars=replace(model.bars, stiffness=soft * model.bars.stiffness))
 
 
 def at_velocity(state: State, velocity: np.ndarray) -> State:
