@@ -29,8 +29,9 @@ LIMIT = 300
 ROUGH = 1.0
 """Force (N) left at which the load is lowered further."""
 
-LEAST = 1.0
-"""Load (Pa) below which it is taken away altogether."""
+LEAST, TOO_LITTLE = 1.0, 1e-3
+"""Load (Pa) below which it is taken away altogether; where that fails it is lowered on, down to
+the second value."""
 
 FALL, LEAST_FALL = 4.0, 1.2
 """Factor by which the load is lowered at once, and the one at which that is given up."""
@@ -93,23 +94,26 @@ def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int
 
 def straightened(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
     """Take the load of `bowed` away from a shape found with it."""
-    pressure, fall, spent = PRESSURE, FALL, 0
+    pressure, fall, least, spent = PRESSURE, FALL, LEAST, 0
     while True:
         lower = pressure / fall
-        last = lower < LEAST
+        last = lower < least
+        wanted = TOLERANCE if last else ROUGH
         trial, more, residual = relax(
             model if last else bowed(model, lower),
             state,
             tow,
-            tolerance=TOLERANCE if last else ROUGH,
+            tolerance=wanted,
             time_step=WARM_TIME_STEP,
             limit=WARM_LIMIT,
         )
         spent += more
-        if residual <= (TOLERANCE if last else ROUGH):
+        if residual <= wanted:
             state, pressure = trial, lower
             if last:
                 return state, spent, residual
+        elif last and least > TOO_LITTLE:
+            least /= FALL**2
         elif fall > LEAST_FALL:
             fall = np.sqrt(fall)
         else:

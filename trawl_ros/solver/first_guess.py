@@ -18,7 +18,7 @@ LEAN = np.radians(14.0)
 DEPTH_SHARE, SPREAD_SHARE = 0.22, 0.16
 """Depth and sideways reach of a board as shares of the warp length, roughly as gears tow."""
 
-COARSE_AROUND = (48, 24)
+COARSE_AROUND = (96, 48, 24)
 """Meshes around the mouth of the coarser nets whose shape is found first."""
 
 NEIGHBOURS = 12
