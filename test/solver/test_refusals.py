@@ -76,3 +76,16 @@ def test_why_a_state_is_refused_is_also_said_in_a_word(
     with pytest.raises(NoSteadyState) as surfaced:
         steady_state(model, 200.0, 3.5)
     assert (collapsed.value.reason, surfaced.value.reason) == ('collapsed', 'surfaced')
+
+
+def test_boards_that_lie_over_are_told_with_their_last_state(default_model: GearModel) -> None:
+    before = time.process_time()
+    with pytest.raises(NoSteadyState, match=r'boards lie over: at 1\.\d+ m/s they lean') as lost:
+        steady_state(default_model, 500.0, 1.5)
+    assert lost.value.reason == 'lift lost'
+    assert time.process_time() - before < 10.0
+
+
+def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearModel) -> None:
+    with pytest.raises(NoSteadyState, match='heave of one board against the other grows'):
+        steady_state(default_model, 300.0, 1.7)

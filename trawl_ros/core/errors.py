@@ -6,7 +6,9 @@ Every message names the file, key or topic, what was found there and what was ex
 from traceback import format_exception
 from typing import Literal
 
-Refusal = Literal['none found', 'collapsed', 'surfaced', 'outside law', 'unstable']
+Refusal = Literal[
+    'none found', 'fold', 'lift lost', 'collapsed', 'surfaced', 'outside law', 'unstable'
+]
 """Reasons why there is no usable steady state."""
 
 

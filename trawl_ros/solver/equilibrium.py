@@ -14,6 +14,8 @@ from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
+from trawl_ros.solver.growing_mode import growing_mode
+from trawl_ros.solver.last_state import followed
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.relax import (
     DRIFT_LIMIT,
@@ -94,6 +96,8 @@ def find_equilibrium(
     if (near is None and start is None) or (cold and residual > TOLERANCE):
         state, iterations, residual = cold_start(model, point.heading, tow)
     where = _where(point)
+    if residual > TOLERANCE and cold and near is None:
+        state, residual = followed(model, point, where), 0.0
     if residual > TOLERANCE:
         raise NoSteadyState(
             f'{where}: no steady state found in {iterations} iterations, {residual:.3g} N left'
@@ -194,8 +198,10 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
         )
     motion = stability(model, found.state, found.tow)
     if not motion.stable:
+        worst = motion.eigenvalues[motion.eigenvalues.real.argmax()]
+        mode = growing_mode(model, found.state, found.tow, worst)
         raise NoSteadyState(
-            f'{where}: the steady state is unstable, it grows by a factor e in '
+            f'{where}: the steady state is unstable, {mode} grows by a factor e in '
             f'{1 / motion.growth:.0f} s',
             'unstable',
         )

@@ -17,6 +17,8 @@ LOOKS: dict[Verdict, tuple[str, str]] = {
     'surfaced': ('#9ecae1', 'refused: gear breaks the surface'),
     'outside law': ('#c994c7', 'refused: a board works outside its law'),
     'collapsed': ('#8c6d5a', 'refused: collapsed'),
+    'fold': ('#fb8072', 'refused: beyond a fold'),
+    'lift lost': ('#bebada', 'refused: boards lie over'),
     'none found': ('#d9d9d9', 'refused: none found'),
 }
 """Colour and name of each verdict."""
