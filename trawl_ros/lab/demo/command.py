@@ -19,6 +19,7 @@ from trawl_ros.core.resources import packaged
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
 from trawl_ros.lab.demo.report import load_result, print_result
+from trawl_ros.lab.running.chain import start_chain, stop_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
 from trawl_ros.model.water import build_water
@@ -36,7 +37,6 @@ from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficien
 if TYPE_CHECKING:
     from trawl_ros.lab.running.monitor import Monitor
 
-INSTRUMENT_NODES = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
 LOOK_S = 0.2
 
 
@@ -133,12 +133,7 @@ def _tow(
     console: Console,
 ) -> float:
     """Tow and record; return the wall time (s)."""
-    path = str(scenario.path)
-    consumers = ['bag_recorder', *INSTRUMENT_NODES]
-    processes.start('bag_recorder', use_sim_time=True, output=str(folder.bag))
-    for node in INSTRUMENT_NODES:
-        processes.start(node, use_sim_time=True, scenario=path, wait_for=['bag_recorder'])
-    processes.start('sim_node', scenario=path, time_scale=0.0, exit_at_end=True, wait_for=consumers)
+    start_chain(processes, scenario.path, folder.bag)
     began = time.monotonic()
     with ProgressDisplay(console) as display:
         while not processes.finished('sim_node'):
@@ -147,9 +142,7 @@ def _tow(
             display(WorkProgress('towing', done, scenario.duration_s, 's', step))
             time.sleep(LOOK_S)
     took = time.monotonic() - began
-    # Sources before the recorder, so that it gets their last messages.
-    processes.stop(*INSTRUMENT_NODES)
-    processes.stop('bag_recorder')
+    stop_chain(processes)
     return took
 
 

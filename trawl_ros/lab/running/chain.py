@@ -1,7 +1,7 @@
 """Instrument chain as processes, monitored while it runs."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import fmean
@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING
 import psutil
 
 from trawl_ros.core.progress import OnProgress, WorkProgress
-from trawl_ros.lab.running.processes import Processes
+from trawl_ros.lab.running.processes import Processes, Value
 
 if TYPE_CHECKING:
     from trawl_ros.lab.running.delay_monitor import DelayMonitor
 
+RECORDER, SIMULATION = 'bag_recorder', 'sim_node'
 INSTRUMENTS = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
-CONSUMERS = ('bag_recorder', *INSTRUMENTS)
-CHAIN = ('sim_node', *CONSUMERS)
+CONSUMERS = (RECORDER, *INSTRUMENTS)
+CHAIN = (SIMULATION, *CONSUMERS)
 
 LOOK_S = 0.2
 BAG_PART_S = 600.0
@@ -42,20 +43,62 @@ class Glance:
     delay_s: Mapping[str, float]
 
 
-def start_chain(processes: Processes, scenario: Path, bag: Path, time_scale: float) -> None:
-    """Start all nodes of the chain on a scenario; the simulation ends with it."""
-    path = str(scenario)
-    processes.start('bag_recorder', use_sim_time=True, output=str(bag), max_bag_duration=BAG_PART_S)
-    for node in INSTRUMENTS:
-        processes.start(node, use_sim_time=True, scenario=path, wait_for=['bag_recorder'])
-    processes.start(
-        'sim_node',
-        scenario=path,
-        time_scale=time_scale,
-        publish_clock=True,
-        exit_at_end=True,
-        wait_for=list(CONSUMERS),
-    )
+def chain_parameters(
+    node: str, scenario: Path, bag: Path, consumers: Sequence[str] = CONSUMERS
+) -> dict[str, Value]:
+    """Parameters of a node of the chain: as fast as it goes, with truth waiting for consumers."""
+    if node == RECORDER:
+        return {'use_sim_time': True, 'output': str(bag)}
+    if node == SIMULATION:
+        return {
+            'scenario': str(scenario),
+            'time_scale': 0.0,
+            'publish_clock': True,
+            'wait_for': list(consumers),
+        }
+    return {'use_sim_time': True, 'scenario': str(scenario), 'wait_for': [RECORDER]}
+
+
+def start_chain(
+    processes: Processes,
+    scenario: Path,
+    bag: Path,
+    time_scale: float = 0.0,
+    bag_part_s: float | None = None,
+) -> None:
+    """Start all nodes of the chain on a scenario; the simulation ends with it.
+
+    Parameters
+    ----------
+    processes
+        Runs the nodes.
+    scenario, bag
+        Of the tow.
+    time_scale
+        Speed over real time; 0 is as fast as the consumers follow.
+    bag_part_s
+        Data time after which the recorder begins a new file.
+    """
+    parts = {} if bag_part_s is None else {'max_bag_duration': bag_part_s}
+    more: dict[str, dict[str, Value]] = {
+        RECORDER: {**parts},
+        SIMULATION: {'time_scale': time_scale, 'exit_at_end': True},
+    }
+    for node in (*CONSUMERS, SIMULATION):
+        processes.start(node, **{**chain_parameters(node, scenario, bag), **more.get(node, {})})
+
+
+def stop_chain(processes: Processes) -> None:
+    """Stop all nodes of the chain that run, sources before the recorder: it gets their last words.
+
+    Raises
+    ------
+    NodeFailed
+        If one cannot end cleanly.
+    """
+    left = processes.pids()
+    for group in ((SIMULATION,), INSTRUMENTS, (RECORDER,)):
+        processes.stop(*(node for node in group if node in left))
 
 
 def watch_chain(
@@ -88,7 +131,7 @@ def watch_chain(
     glances: list[Glance] = []
     delays: dict[str, list[float]] = {}
     began: float | None = None
-    while not stop() and not processes.finished('sim_node'):
+    while not stop() and not processes.finished(SIMULATION):
         time.sleep(LOOK_S)
         if (data_s := monitor.truth_s) is None:
             continue
@@ -102,10 +145,7 @@ def watch_chain(
             if seen is not None:
                 glances.append(seen)
             delays = {}
-    left = processes.pids()
-    # Sources before the recorder, so that it gets their last messages.
-    for group in (('sim_node',), INSTRUMENTS, ('bag_recorder',)):
-        processes.stop(*(node for node in group if node in left))
+    stop_chain(processes)
     return glances
 
 

@@ -11,7 +11,7 @@ import psutil
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
 from trawl_ros.core.errors import BagError
-from trawl_ros.lab.running.chain import INSTRUMENTS
+from trawl_ros.lab.running.chain import INSTRUMENTS, chain_parameters
 from trawl_ros.lab.running.processes import Processes
 from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION, RECORDER, SIMULATION
 from trawl_ros.records.topics import absolute
@@ -58,7 +58,7 @@ class Crew:
         self, processes: Processes, scenario: Path, gear: str, folder: Path, *, identify: bool
     ) -> None:
         self._processes = processes
-        self._scenario = str(scenario)
+        self._scenario = scenario
         self._gear = gear
         self._folder = folder
         self.recordings: list[Recording] = []
@@ -68,24 +68,18 @@ class Crew:
 
     def start(self, node: str) -> None:
         """Start a node, the recorder with a new bag."""
-        needed = [name for name in self.nodes if name != SIMULATION]
         if node == RECORDER:
-            path = self._folder / f'bag{len(self.recordings)}'
-            self.recordings.append(Recording(path))
-            self._processes.start(node, use_sim_time=True, output=str(path))
-        elif node == SIMULATION:
-            self._processes.start(
-                node, scenario=self._scenario, time_scale=0.0, publish_clock=True, wait_for=needed
-            )
-        elif node == IDENTIFICATION:
+            self.recordings.append(Recording(self._folder / f'bag{len(self.recordings)}'))
+        if node == IDENTIFICATION:
             state = str(self._folder / 'state.json')
             self._processes.start(
                 node, use_sim_time=True, gear=self._gear, state=state, advise=False
             )
         else:
-            self._processes.start(
-                node, use_sim_time=True, scenario=self._scenario, wait_for=[RECORDER]
-            )
+            consumers = [name for name in self.nodes if name != SIMULATION]
+            bag = self.recordings[-1].path
+            parameters = chain_parameters(node, self._scenario, bag, consumers)
+            self._processes.start(node, **parameters)
 
     def stop(self, node: str) -> None:
         """Stop a node (SIGSTOP)."""

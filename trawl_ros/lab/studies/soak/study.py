@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import made_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress
-from trawl_ros.lab.running.chain import Glance, start_chain, watch_chain
+from trawl_ros.lab.running.chain import BAG_PART_S, Glance, start_chain, watch_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
 from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, write_coarse_gear, write_long_tow
@@ -116,7 +116,7 @@ def _run(
         Processes(logs, environment) as processes,
         DelayMonitor(environment) as monitor,
     ):
-        start_chain(processes, scenario, scratch / 'bag', time_scale)
+        start_chain(processes, scenario, scratch / 'bag', time_scale, BAG_PART_S)
         every = 1.0 if time_scale else 3600.0 * hours / GLANCES
         stage = WorkProgress(title, 0.0, 3600.0 * hours, 's')
         return watch_chain(processes, monitor, every, stage, on_progress, stop)
