@@ -16,9 +16,10 @@ from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.nodes.playback.recorded_qos import matching, profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
+from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.graph_checks import SYNC
-from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import recorded
 from trawl_ros.nodes.runtime.run import run

@@ -4,11 +4,11 @@ A sound file is read by the index at its end. Where that is missing or wrong, th
 through record by record as far as it goes.
 """
 
-import heapq
 import struct
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -28,13 +28,14 @@ from trawl_ros.bags.storage.chunks import (
 )
 from trawl_ros.bags.storage.copies import find_copies
 from trawl_ros.bags.storage.descriptions import Descriptions, read_remains
+from trawl_ros.bags.storage.log_order import in_log_order
 from trawl_ros.bags.storage.mcap_output import LIBRARY
 from trawl_ros.bags.storage.mcap_scan import RECORD_START, walk
 from trawl_ros.bags.storage.recovery import recover, sample_messages
 from trawl_ros.bags.storage.stored import Definition, StatedTopics, Stored
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import open_file
-from trawl_ros.core.limits import BAG_WAITING, LATEST_STAMP
+from trawl_ros.core.limits import LATEST_STAMP
 
 _CHUNK_HEAD = struct.Struct('<QQQII')
 """First and last time, size, checksum, and length of the compression's name behind it."""
@@ -133,37 +134,21 @@ class McapFile:
     def messages(self) -> Iterator[Stored]:
         """Give all messages in the order of their log times; equal ones as they stand in the file.
 
-        Chunks are opened as their time comes, so that memory holds only those that overlap.
+        Memory holds only chunks that overlap.
         """
-        waiting: list[tuple[int, int, int, Message]] = []
-        held = 0
         lost_channels: Counter[int] = Counter()
         late: Counter[str] = Counter()
         allowed = Allowance(self.path, self._size)
         with open_file(self.path, BagError) as stream:
-            for piece in [*self._pieces, None]:
-                while waiting and (piece is None or waiting[0][0] < piece.start):
-                    message = heapq.heappop(waiting)[3]
-                    held -= len(message.data)
-                    described = self._known.find(message.channel_id)
-                    if described is None:
-                        lost_channels[message.channel_id] += 1
-                        continue
-                    if message.log_time > LATEST_STAMP.value:
-                        late[described[0]] += 1
-                        continue
+            load = partial(self._load, stream, allowed=allowed)
+            for message in in_log_order(self.path, self._pieces, load):
+                described = self._known.find(message.channel_id)
+                if described is None:
+                    lost_channels[message.channel_id] += 1
+                elif message.log_time > LATEST_STAMP.value:
+                    late[described[0]] += 1
+                else:
                     yield Stored(described[0], described[1].type, message)
-                if piece is None:
-                    break
-                for place, record in enumerate(self._load(stream, piece, allowed) or ()):
-                    if isinstance(record, Message):
-                        held += len(record.data)
-                        heapq.heappush(waiting, (record.log_time, piece.offset, place, record))
-                if held > BAG_WAITING.value:
-                    raise BagError(
-                        f'{self.path}: chunks before byte {piece.offset} overlap in time; expected '
-                        f'{BAG_WAITING} at most to be held at once'
-                    )
         for number, count in lost_channels.items():
             self._report(
                 f'{self.path}: {count} messages of channel {number}, whose description was lost, '

@@ -17,7 +17,8 @@ from std_srvs.srv import Trigger
 
 from trawl_ros.messages.diagnostics import read_statuses
 from trawl_ros.nodes.identification_node import FINISH
-from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
+from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.records.topics import NAMESPACE, absolute
 

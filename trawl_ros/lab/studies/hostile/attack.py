@@ -14,7 +14,8 @@ from rclpy.subscription import Subscription
 from trawl_ros.lab.studies.hostile.mutations import hostile
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.fields import not_finite
-from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
+from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.records.topics import find_topic
 
 Stream = Sequence[tuple[str, str, bytes]]

@@ -36,9 +36,10 @@ from trawl_ros.nodes.bag_recorder import BagRecorder
 from trawl_ros.nodes.discrepancy_node import FINDINGS, DiscrepancyNode
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode
 from trawl_ros.nodes.identification_node import STATUS, IdentificationNode
+from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import HEADER
 from trawl_ros.nodes.runtime.graph_checks import SYNC
-from trawl_ros.nodes.runtime.node import DIAGNOSTICS, TrawlNode
+from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.sim_node import SimNode
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
 from trawl_ros.nodes.vessel_node import VesselNode
