@@ -33,7 +33,7 @@ def test_every_check_of_the_small_map_holds() -> None:
     outcome = CASE.run(True)
     assert [check.key for check in outcome.rows if not check.ok] == []
     json.dumps([check_record(check) for check in outcome.rows])
-    assert len(outcome.drawings) == 2
+    assert len(outcome.drawings) == 3
 
 
 def test_a_walk_reaches_what_neighbours_lead_to_and_searches_the_rest_cold(
@@ -41,9 +41,9 @@ def test_a_walk_reaches_what_neighbours_lead_to_and_searches_the_rest_cold(
 ) -> None:
     verdicts = {spot: answer.verdict for spot, answer in lattice.answers.items()}
     assert verdicts == {
-        (0, 0): 'none found',
+        (0, 0): 'lift lost',
         (0, 1): 'usable',
-        (1, 0): 'none found',
+        (1, 0): 'lift lost',
         (1, 1): 'usable',
     }
     # Cold at the start, then once from the neighbour and, a third of them, cold once more.

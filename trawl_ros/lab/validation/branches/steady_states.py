@@ -10,6 +10,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.branches.branch_limits import limit_findings
 from trawl_ros.lab.validation.branches.collapsed_starts import Tally, collapsed_shapes, tally
 from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
@@ -81,6 +82,7 @@ def run(small: bool) -> Findings:
     speeds = speed_lattice(model, size.lengths, size.speeds)
     angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
     collapsed_checks, collapsed_table = _collapsed(model, size)
+    ends = limit_findings(model, small=small)
     return Findings(
         rows=(
             _working('working_speeds', 'warp lengths and speeds of 1.9 to 2.3 m/s', [speeds]),
@@ -89,6 +91,7 @@ def run(small: bool) -> Findings:
             *smoothness_checks(speeds),
             *branch_checks('angle', angles),
             *collapsed_checks,
+            *ends.rows,
         ),
         drawings=(
             Drawing(
@@ -103,9 +106,10 @@ def run(small: bool) -> Findings:
                 'numbers are attack angles in degrees.',
                 angle_figure(angles),
             ),
+            *ends.drawings,
         ),
-        tables=(_counts(speeds, angles), collapsed_table),
-        text=_text(speeds),
+        tables=(_counts(speeds, angles), collapsed_table, *ends.tables),
+        text=f'{_text(speeds)} {ends.text}',
     )
 
 

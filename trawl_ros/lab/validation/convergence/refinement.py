@@ -33,7 +33,7 @@ FINER: Mapping[str, dict[str, Any]] = {
     'all': {'warp': 2, 'bridle': 2, 'net': 1.5},
 }
 """Refinements of gears. With half as many meshes again the default net has more around its mouth
-than the real one; twice as many have no root that the solver finds from nothing."""
+than the real one."""
 
 WORDS: Mapping[str, str] = {
     'warp': 'twice the warp segments',
