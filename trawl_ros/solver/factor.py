@@ -41,8 +41,7 @@ class Factor:
         if self._pivoted is None:
             columns = np.ascontiguousarray(right.T).reshape(-1, len(right))
             solution = np.empty_like(columns)
-            for given, sought in zip(columns, solution, strict=True):
-                solve(given, *self._factors, sought)
+            solve(columns, *self._factors, solution)
             if self._trusted or self._holds(columns[0], solution[0]):
                 self._trusted = True
                 return solution.T.reshape(right.shape)

@@ -157,52 +157,64 @@ def _update_by_three(front: np.ndarray, k: int) -> None:
 
 @fused
 def solve(
-    right: np.ndarray,
+    rights: np.ndarray,
     order: np.ndarray,
     fronts: np.ndarray,
     border: np.ndarray,
     factors: np.ndarray,
     exchanged: np.ndarray,
-    solution: np.ndarray,
+    solutions: np.ndarray,
 ) -> None:
-    """Solve for one right-hand side (dof,) with the factors."""
-    x, beyond = right[order], np.empty(fronts[:, SIZE].max(), right.dtype)
+    """Solve for right-hand sides (k, dof) with the factors, of which each part serves for all of
+    them while it is at hand.
+    """
+    inner, beyond = np.empty_like(rights), np.empty(fronts[:, SIZE].max(), rights.dtype)
+    for right in range(len(rights)):
+        for k in range(len(order)):
+            inner[right, k] = rights[right, order[k]]
     first = 0
     for number in range(len(fronts)):
-        pivots, size, edge_at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, BORDER]
-        edge, at = size - pivots, fronts[number, FACTORS]
+        pivots, size, at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, FACTORS]
+        edge, begin = size - pivots, fronts[number, BORDER]
         upper = factors[at : at + pivots * size].reshape(pivots, size)
         at += pivots * size
         lower = factors[at : at + pivots * edge].reshape(pivots, edge)
-        y, rest = x[first : first + pivots], beyond[:edge]
-        rest[:] = 0.0
-        for k in range(pivots):
-            other = exchanged[first + k]
-            y[k], y[other] = y[other], y[k]
-        for k in range(pivots):
-            value = y[k]
-            for j in range(k):
-                value -= upper[k, j] * y[j]
-            y[k] = value
+        rest = beyond[:edge]
+        for right in range(len(rights)):
+            x = inner[right]
+            y = x[first : first + pivots]
+            rest[:] = 0.0
+            for k in range(pivots):
+                other = exchanged[first + k]
+                y[k], y[other] = y[other], y[k]
+            for k in range(pivots):
+                value = y[k]
+                for j in range(k):
+                    value -= upper[k, j] * y[j]
+                y[k] = value
+                for i in range(edge):
+                    rest[i] += lower[k, i] * value
             for i in range(edge):
-                rest[i] += lower[k, i] * value
-        for i in range(edge):
-            x[border[edge_at + i]] -= rest[i]
+                x[border[begin + i]] -= rest[i]
         first += pivots
     for number in range(len(fronts) - 1, -1, -1):
-        pivots, size, edge_at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, BORDER]
-        edge, at = size - pivots, fronts[number, FACTORS]
+        pivots, size, at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, FACTORS]
+        edge, begin = size - pivots, fronts[number, BORDER]
         upper = factors[at : at + pivots * size].reshape(pivots, size)
+        rest = beyond[:edge]
         first -= pivots
-        y, rest = x[first : first + pivots], beyond[:edge]
-        for i in range(edge):
-            rest[i] = x[border[edge_at + i]]
-        for k in range(pivots - 1, -1, -1):
-            value = y[k]
-            for j in range(k + 1, pivots):
-                value -= upper[k, j] * y[j]
+        for right in range(len(rights)):
+            x = inner[right]
+            y = x[first : first + pivots]
             for i in range(edge):
-                value -= upper[k, pivots + i] * rest[i]
-            y[k] = value * upper[k, k]
-    for k in range(len(x)):
-        solution[order[k]] = x[k]
+                rest[i] = x[border[begin + i]]
+            for k in range(pivots - 1, -1, -1):
+                value = y[k]
+                for j in range(k + 1, pivots):
+                    value -= upper[k, j] * y[j]
+                for i in range(edge):
+                    value -= upper[k, pivots + i] * rest[i]
+                y[k] = value * upper[k, k]
+    for right in range(len(rights)):
+        for k in range(len(order)):
+            solutions[right, order[k]] = inner[right, k]

@@ -21,7 +21,7 @@ LIMIT_METRES, LIMIT_RADIANS = 10.0, 0.1
 HEAVY = 1e2
 """Time step (s) from which mass is too little to matter beside drag and stiffness."""
 
-KEEP_RATE, KEEP_SIZE = 0.25, 0.02
+KEEP_RATE, KEEP_SIZE = 0.4, 0.05
 """A factorised matrix serves again after a step of at most this share of the limits, while it
 brings the force down to this share at least."""
 

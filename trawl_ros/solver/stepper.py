@@ -102,8 +102,7 @@ class Stepper:
             if inertia is None:
                 # Added mass turns with the ropes; taking it at the predicted place keeps
                 # the order of the method.
-                inertia_data = mass(model, state, tow)
-                inertia = model.pattern.matrix(inertia_data)
+                inertia = mass(model, state, tow)
             if self._factor is None:
                 here = linearised(model, state, tow)
                 force = here.force
@@ -111,13 +110,13 @@ class Stepper:
                     model.pattern,
                     here.stiffness
                     + (by_velocity / by_position) * here.damping
-                    + inertia_data / by_position,
+                    + inertia / by_position,
                 )
                 self._factor_step = h
                 self.factorisations += 1
             else:
                 force = forces(model, state, tow)
-            correction = self._factor.solve(force - inertia @ new)
+            correction = self._factor.solve(force - model.pattern.times(inertia, new))
             size = float(np.abs(correction).max())
             if not np.isfinite(size) or (iteration > 2 and size > 10 * last):
                 raise StepFailed('the time step did not converge')
