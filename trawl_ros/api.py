@@ -23,8 +23,8 @@ from trawl_ros.estimation.planning.plan import TrialPlan
 from trawl_ros.estimation.planning.plan import plan_trial as plan_for
 from trawl_ros.estimation.planning.states import Limits
 from trawl_ros.estimation.planning.writing import write_plan
+from trawl_ros.estimation.report.page import write_report
 from trawl_ros.estimation.report.report import Report, report
-from trawl_ros.estimation.report.writing import write_report
 from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord

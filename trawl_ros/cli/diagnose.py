@@ -7,12 +7,18 @@ import click
 from rich.console import Console
 
 from trawl_ros import api
-from trawl_ros.cli.files import BAG, FOLDER
+from trawl_ros.cli.options import (
+    BAG,
+    FOLDER,
+    FORCE_OPTION,
+    GEAR_OPTION,
+    NAMESPACE_OPTION,
+    SCHEDULER_OPTION,
+)
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.writing import MODEL
-from trawl_ros.records.topics import NAMESPACE
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
 """Exit codes by verdict; 1 and 2 are for errors of input and usage."""
@@ -25,18 +31,10 @@ EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_T
     'order; may be given several times.',
 )  # fmt: skip
 @click.option('--out', required=True, type=FOLDER, help='Folder for the reports and the model.')
-@click.option(
-    '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '
-    'the name of one that comes with the package.',
-)  # fmt: skip
-@click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
-@click.option(
-    '--scheduler', help='Address of a Dask cluster that reads the bags, which it must see under '
-    'the same paths; without it, processes of this machine do. It runs code and must be '
-    'trusted; tls:// takes '
-    "the keys of Dask's configuration.",
-)  # fmt: skip
-@click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
+@GEAR_OPTION
+@NAMESPACE_OPTION
+@SCHEDULER_OPTION
+@FORCE_OPTION
 @click.pass_context
 def command(
     context: click.Context,

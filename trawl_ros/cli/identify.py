@@ -7,7 +7,15 @@ import click
 from rich.console import Console
 
 from trawl_ros import api
-from trawl_ros.cli.files import BAG, FOLDER, SCENARIO
+from trawl_ros.cli.options import (
+    BAG,
+    FOLDER,
+    FORCE_OPTION,
+    GEAR_OPTION,
+    NAMESPACE_OPTION,
+    SCENARIO,
+    SCHEDULER_OPTION,
+)
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.table import (
@@ -16,7 +24,6 @@ from trawl_ros.estimation.report.table import (
     coefficient_table,
     opening_line,
 )
-from trawl_ros.records.topics import NAMESPACE
 
 TABLE_WIDTH = 100
 
@@ -24,10 +31,7 @@ TABLE_WIDTH = 100
 @click.command('identify')
 @click.argument('bags', nargs=-1, required=True, type=BAG)
 @click.option('--out', required=True, type=FOLDER, help='Folder for page, JSON and figures.')
-@click.option(
-    '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '
-    'the name of one that comes with the package.',
-)  # fmt: skip
+@GEAR_OPTION
 @click.option(
     '--truth', type=SCENARIO, help='Scenario that made the bags; its coefficients are set beside '
     'the estimates.',
@@ -37,14 +41,9 @@ TABLE_WIDTH = 100
     '--net', is_flag=True, help='Estimate drag and weight of the net along; else they are held as '
     'the gear file has them.',
 )  # fmt: skip
-@click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
-@click.option(
-    '--scheduler', help='Address of a Dask cluster that reads the bags, which it must see under '
-    'the same paths; without it, processes of this machine do. It runs code and must be '
-    'trusted; tls:// takes '
-    "the keys of Dask's configuration.",
-)  # fmt: skip
-@click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
+@NAMESPACE_OPTION
+@SCHEDULER_OPTION
+@FORCE_OPTION
 def command(
     bags: Sequence[Path],
     out: Path,

@@ -7,7 +7,7 @@ import click
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.logs.nmea import import_nmea
 from trawl_ros.bags.logs.nmea_mapping import is_nmea
-from trawl_ros.cli.files import BAG
+from trawl_ros.cli.options import BAG
 from trawl_ros.core.resources import packaged
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from trawl_ros.cli.files import FOLDER
+from trawl_ros.cli.options import FOLDER, FORCE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
 
@@ -68,7 +68,7 @@ class _Numbers(click.ParamType):
     type=click.FloatRange(10.0, 11_000.0),
     help='Depth of the water; the gear stays 10 m above the bottom.',
 )
-@click.option('--force', is_flag=True, help='Replace the results of an earlier run in --out.')
+@FORCE_OPTION
 def command(
     gear: str,
     hours: float,

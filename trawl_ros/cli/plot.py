@@ -6,11 +6,10 @@ from pathlib import Path
 
 import click
 
-from trawl_ros.cli.files import BAG, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.options import BAG, FOLDER, FORCE_OPTION, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.plots.album import plot
-from trawl_ros.records.topics import NAMESPACE
 
 
 class _Time(click.ParamType[float]):
@@ -40,8 +39,8 @@ class _Time(click.ParamType[float]):
     '--gear', default='kaifuha', show_default=True, help='The gear: a file or the name of one that '
     'comes with the package. Its water turns pressure into depth.',
 )  # fmt: skip
-@click.option('--namespace', default=NAMESPACE, show_default=True, help='Of the topics.')
-@click.option('--force', is_flag=True, help='Replace the pictures of an earlier run in --out.')
+@NAMESPACE_OPTION
+@FORCE_OPTION
 def command(
     bag: Path,
     out: Path,

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 
 from trawl_ros import api
-from trawl_ros.cli.files import BAG, SCENARIO
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.options import BAG, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 
 

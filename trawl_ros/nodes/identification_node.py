@@ -201,7 +201,7 @@ class IdentificationNode(TrawlNode):
         if self._folder is None:
             return f'{found.windows} windows used; {found.reason}'
         # Figures bring matplotlib, which the node needs at its end only.
-        from trawl_ros.estimation.report.writing import write_report
+        from trawl_ros.estimation.report.page import write_report
 
         write_report(report(identification, self._truth, gear=self._gear), self._folder)
         return f'{self._folder}: identification.json of {found.windows} windows'

@@ -7,8 +7,9 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder, made_folder
+from trawl_ros.core.files import empty_folder, made_folder, write_text
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.version import __version__
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.water import build_water
@@ -16,7 +17,6 @@ from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure, left_out
 from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments
-from trawl_ros.plots.page import PAGE, write_page
 from trawl_ros.plots.reading import read_tow
 from trawl_ros.plots.records import SonarPicture, TowHistory
 from trawl_ros.plots.shapes import gear_shape
@@ -24,8 +24,11 @@ from trawl_ros.plots.sonar import sonar_figure
 from trawl_ros.plots.sweeps import read_sweeps
 from trawl_ros.plots.track import track_figure
 from trawl_ros.records.topics import NAMESPACE
-from trawl_ros.report.pictures import Drawing, Picture, draw
+from trawl_ros.report.pictures import Drawing, Picture, by_section, draw
+from trawl_ros.report.rendering import page
 from trawl_ros.report.style import clock
+
+PAGE = 'index.html'
 
 EARLY_MIDDLE_LATE = (0.05, 0.5, 0.95)
 """Parts of a tow at which the gear is drawn unless told otherwise."""
@@ -124,7 +127,18 @@ def plot(
     album.track()
     album.moments(chosen)
     interrupted = animate and album.film(stopped, on_progress)
-    write_page(out, tow, album.pictures, album.notes)
+    write_text(
+        out / PAGE,
+        page(
+            'trawl_ros.plots',
+            PAGE,
+            name=tow.name,
+            duration=clock(tow.duration_s),
+            sections=by_section(album.pictures),
+            notes=album.notes,
+            version=__version__,
+        ),
+    )
     return DrawnTow(out / PAGE, tuple(album.pictures), tuple(album.notes), not interrupted)
 
 

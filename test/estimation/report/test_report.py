@@ -13,7 +13,7 @@ from rich.console import Console
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.report.figures import drawings
 from trawl_ros.estimation.report.holdout import hold_out
-from trawl_ros.estimation.report.page import page
+from trawl_ros.estimation.report.page import page, write_report
 from trawl_ros.estimation.report.report import report
 from trawl_ros.estimation.report.residuals import residuals, solve
 from trawl_ros.estimation.report.result import result
@@ -25,7 +25,6 @@ from trawl_ros.estimation.report.table import (
     opening_line,
 )
 from trawl_ros.estimation.report.verdict import verdict
-from trawl_ros.estimation.report.writing import write_report
 from trawl_ros.estimation.windows.records import REASONS
 from trawl_ros.records.channels import CHANNELS, INPUTS
 

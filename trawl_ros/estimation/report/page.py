@@ -1,21 +1,48 @@
-"""HTML report as one self-contained page."""
+"""Files of an identification: JSON, figures, and a self-contained HTML page."""
 
 import math
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any
 
+from trawl_ros.core.files import made_folder, write_json, write_text
 from trawl_ros.core.version import __version__
 from trawl_ros.estimation.fit.laws import LAWS
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.figures import drawings
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
+from trawl_ros.estimation.report.result import result
 from trawl_ros.estimation.report.verdict import BEYOND, verdict
 from trawl_ros.estimation.windows.records import REASONS
 from trawl_ros.records.coefficients import COEFFICIENTS
-from trawl_ros.report.pictures import Picture, by_section
+from trawl_ros.report.pictures import Picture, by_section, draw, embedded
 from trawl_ros.report.rendering import page as filled
 
 PAGE = 'report.html'
+
+
+def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> None:
+    """Write ``identification.json``, the figures and ``report.html``.
+
+    Parameters
+    ----------
+    found
+        Report of the identification.
+    folder
+        Made if it does not exist.
+    advice
+        Sentences on what to tow next, where there are any.
+
+    Raises
+    ------
+    TrawlError
+        If the folder cannot be written to.
+    """
+    made_folder(folder)
+    write_json(folder / 'identification.json', result(found), indent=2)
+    pictures = embedded(folder, draw(folder, drawings(found)))
+    write_text(folder / PAGE, page(found, pictures, advice))
 
 
 def page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()) -> str:

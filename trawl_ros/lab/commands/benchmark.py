@@ -5,20 +5,18 @@ from pathlib import Path
 
 import click
 
-from trawl_ros.cli.files import FOLDER
-from trawl_ros.cli.interruption import INTERRUPTED
-from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.cli.options import FORCE_OPTION, REPORT_OPTION
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.lab.benchmark.modules import NAMES, TITLES, check_names, measure
 from trawl_ros.lab.benchmark.writing import NAME, MeasuredModule, write_report
-from trawl_ros.lab.commands.outcome import print_missed, print_reached
+from trawl_ros.lab.commands.outcome import print_missed, print_reached, stoppable
 
 
 @click.command('benchmark')
 @click.argument('names', nargs=-1, metavar='[NAME]...')
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
-@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@REPORT_OPTION
+@FORCE_OPTION
 @click.option('--small', is_flag=True, help='Everything on less, in seconds.')
 def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None:
     """Measure speed and growth, and set them beside other tools.
@@ -30,20 +28,15 @@ def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None
     chosen = tuple(dict.fromkeys(names)) or NAMES
     check_names(chosen)
     empty_folder(out, force=force)
-    console = error_console()
     measured: list[MeasuredModule] = []
-    try:
-        with ProgressDisplay(console) as display:
-            for number, name in enumerate(chosen):
-                display(WorkProgress('measuring', number, len(chosen), 'modules', TITLES[name]))
-                began = time.perf_counter()
-                findings = measure(name, small=small)
-                measured.append(MeasuredModule(name, findings, time.perf_counter() - began))
-                for row in findings.rows:
-                    wanted = f', asked for {row.wanted}' if row.target is not None else ''
-                    console.print(f'{name}: {row.what}: {row.figure}{wanted}', markup=False)
-                print_missed(findings.rows, console)
-    except KeyboardInterrupt:
-        console.print('stopped; no report is written')
-        raise SystemExit(INTERRUPTED) from None
+    with stoppable() as (display, console):
+        for number, name in enumerate(chosen):
+            display(WorkProgress('measuring', number, len(chosen), 'modules', TITLES[name]))
+            began = time.perf_counter()
+            findings = measure(name, small=small)
+            measured.append(MeasuredModule(name, findings, time.perf_counter() - began))
+            for row in findings.rows:
+                wanted = f', asked for {row.wanted}' if row.target is not None else ''
+                console.print(f'{name}: {row.what}: {row.figure}{wanted}', markup=False)
+            print_missed(findings.rows, console)
     print_reached(write_report(out, measured, small=small), out / f'{NAME}.md')

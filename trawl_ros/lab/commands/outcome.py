@@ -1,12 +1,27 @@
-"""Outcome of a report on the terminal: the targets that are missed, and how many are reached."""
+"""Progress and outcome of the lab's commands on the terminal."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
 from rich.console import Console
 
+from trawl_ros.cli.interruption import INTERRUPTED
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.lab.report.measured import MeasuredValue
+
+
+@contextmanager
+def stoppable(left: str = 'no report is written') -> Iterator[tuple[ProgressDisplay, Console]]:
+    """Show progress; Ctrl-C ends the command, and it is said what is left."""
+    console = error_console()
+    try:
+        with ProgressDisplay(console) as display:
+            yield display, console
+    except KeyboardInterrupt:
+        console.print(f'stopped; {left}')
+        raise SystemExit(INTERRUPTED) from None
 
 
 def print_missed(rows: Iterable[MeasuredValue], console: Console) -> None:
@@ -20,3 +35,9 @@ def print_reached(rows: Sequence[MeasuredValue], report: Path) -> None:
     """Print how many targets are reached, and where the report is."""
     asked = [row for row in rows if row.target is not None]
     click.echo(f'{sum(row.ok for row in asked)} of {len(asked)} targets are reached: {report}')
+
+
+def print_outcome(rows: Sequence[MeasuredValue], report: Path) -> None:
+    """Print both."""
+    print_missed(rows, error_console())
+    print_reached(rows, report)

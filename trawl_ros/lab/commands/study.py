@@ -1,20 +1,24 @@
 """``trawl study``: what takes long to find out, measured and reported."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
-from rich.console import Console
 
-from trawl_ros.cli.files import FILE, FOLDER
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.options import (
+    FILE,
+    FOLDER,
+    FORCE_OPTION,
+    GEAR_OPTION,
+    REPORT_OPTION,
+    SCHEDULER_OPTION,
+)
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.files import empty_folder, made_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.commands.outcome import print_missed, print_reached
-from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.lab.commands.outcome import print_outcome, stoppable
 from trawl_ros.lab.studies.chaos.plan import Plan as ChaosPlan
 from trawl_ros.lab.studies.chaos.report import REPORT as CHAOS_REPORT
 from trawl_ros.lab.studies.chaos.report import write_chaos
@@ -43,8 +47,8 @@ def command() -> None:
 
 
 @command.command('soak')
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
-@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@REPORT_OPTION
+@FORCE_OPTION
 @click.option(
     '--hours',
     default=24.0,
@@ -52,7 +56,7 @@ def command() -> None:
     type=click.FloatRange(0.005, 48.0),
     help='Time at sea, towed as fast as it goes.',
 )
-@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@GEAR_OPTION
 @click.option('--real-time-s', default=60.0, show_default=True, type=click.FloatRange(0.0, 3600.0),
               help='Wall time in real time, for the share of a core; 0 leaves it out.')  # fmt: skip
 @click.option('--coarse', is_flag=True, help='Tow at sea with a coarse net, which is quicker.')
@@ -64,8 +68,7 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
     """
     load_gear(gear)
     empty_folder(out, force=force)
-    console = error_console()
-    with Interruption() as interruption, ProgressDisplay(console) as display:
+    with Interruption() as interruption, ProgressDisplay(error_console()) as display:
         seen = run_soak(
             SoakPlan(hours, gear, real_time_s, coarse=coarse),
             out,
@@ -73,21 +76,21 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
             lambda: interruption.requested,
         )
         rows = write_soak(out, seen)
-    _tell(rows, out / REPORT, console)
+    print_outcome(rows, out / REPORT)
     if interruption.requested:
         raise SystemExit(INTERRUPTED)
 
 
 @command.command('chaos')
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
-@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@REPORT_OPTION
+@FORCE_OPTION
 @click.option('--hours', default=ChaosPlan.hours, show_default=True,
               type=click.FloatRange(0.02, 24.0), help='Time at sea, towed twice.')  # fmt: skip
 @click.option('--kills', default=ChaosPlan.kills, show_default=True,
               type=click.IntRange(0, 1000), help='Of the recorder at full load.')  # fmt: skip
 @click.option('--seed', default=ChaosPlan.seed, show_default=True,
               type=click.IntRange(0, 2**31), help='Of what happens when.')  # fmt: skip
-@click.option('--gear', default=ChaosPlan.gear, show_default=True, help='Gear file or name.')
+@GEAR_OPTION
 def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str) -> None:
     """Stop and kill nodes, crowd their topics, fill the disk, and see what is left of a tow.
 
@@ -96,8 +99,7 @@ def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str
     """
     load_gear(gear)
     empty_folder(out, force=force)
-    console = error_console()
-    with Interruption() as interruption, ProgressDisplay(console) as display:
+    with Interruption() as interruption, ProgressDisplay(error_console()) as display:
         seen = run_chaos(
             ChaosPlan(hours, kills, seed, gear),
             out,
@@ -105,17 +107,17 @@ def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str
             lambda: interruption.requested,
         )
         rows = write_chaos(out, seen)
-    _tell(rows, out / CHAOS_REPORT, console)
+    print_outcome(rows, out / CHAOS_REPORT)
     if interruption.requested:
         raise SystemExit(INTERRUPTED)
 
 
 @command.command('sonar')
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
-@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@REPORT_OPTION
+@FORCE_OPTION
 @click.option('--sweeps', default=130, show_default=True, type=click.IntRange(2, 10_000),
               help='Sweeps of each case.')  # fmt: skip
-@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@GEAR_OPTION
 @click.option('--instruments', default='default', show_default=True,
               help='File or name of instrument parameters.')  # fmt: skip
 def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> None:
@@ -126,16 +128,11 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
     """
     study = SonarStudy(sweeps, gear=gear, instruments=instruments)
     empty_folder(out, force=force)
-    console = error_console()
     measured = []
-    try:
-        with ProgressDisplay(console) as display:
-            for done, case in enumerate(CASES):
-                display(WorkProgress('measuring', done, len(CASES), 'cases', case.name))
-                measured.append(study.measure(case))
-    except KeyboardInterrupt:
-        console.print('stopped; no report is written')
-        raise SystemExit(INTERRUPTED) from None
+    with stoppable() as (display, _):
+        for done, case in enumerate(CASES):
+            display(WorkProgress('measuring', done, len(CASES), 'cases', case.name))
+            measured.append(study.measure(case))
     write_sonar(out, measured, sweeps)
     click.echo(f'{sweeps} sweeps of each of {len(CASES)} cases: {out / SONAR_REPORT}')
 
@@ -143,7 +140,7 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
 @command.command('identification')
 @click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
 @click.option('--force', is_flag=True, help='Begin anew, whatever is there.')
-@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@GEAR_OPTION
 @click.option('--seed', default=IdentificationPlan.seed, show_default=True,
               type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
 @click.option('--coverage', default=IdentificationPlan.coverage, show_default=True,
@@ -156,11 +153,7 @@ def sonar(out: Path, force: bool, sweeps: int, gear: str, instruments: str) -> N
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
 @click.option('--tows', default=IdentificationPlan.tows, show_default=True,
               type=click.IntRange(1, IdentificationPlan.tows), help='In a trial.')  # fmt: skip
-@click.option(
-    '--scheduler',
-    help='Address of a Dask cluster that makes the trials. It runs code '
-    "and must be trusted; tls:// takes the keys of Dask's configuration.",
-)
+@SCHEDULER_OPTION
 @click.option('--small', is_flag=True, help='Trials only: neither a planned trial, nor a replay, '
               'nor the node in real time.')  # fmt: skip
 @click.option('--live-s', default=IdentificationPlan.live_s, show_default=True,
@@ -187,24 +180,19 @@ def identification(
     Ctrl-C the same command goes on where it was.
     """
     plan = IdentificationPlan(gear, seed, coverage, bound, mouth, around, tows, live_s)
-    console = error_console()
-    try:
-        with ProgressDisplay(console) as display:
-            found = run_study(plan, out, display, scheduler=scheduler, force=force, small=small)
-    except KeyboardInterrupt:
-        console.print(f'stopped; the trials made so far are kept in {out}')
-        raise SystemExit(INTERRUPTED) from None
+    with stoppable(f'the trials made so far are kept in {out}') as (display, _):
+        found = run_study(plan, out, display, scheduler=scheduler, force=force, small=small)
     rows = write_identification(out, plan, found.sections, found.figure)
-    _tell(rows, out / IDENTIFICATION_REPORT, console)
+    print_outcome(rows, out / IDENTIFICATION_REPORT)
 
 
 @command.command('counters')
 @click.option('--table', required=True, type=FILE, help='CSV of true wire and what both counters '
               'showed, in fathoms: wire_out_fm, winch_stbd_fm, winch_port_fm.')  # fmt: skip
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
+@REPORT_OPTION
 @click.option('--seed', default=COUNTERS_SEED, show_default=True, type=click.IntRange(0, 2**31),
               help='Of plant, noise and biases.')  # fmt: skip
-@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@FORCE_OPTION
 def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     """Diagnose a simulated trial whose winch counters err as measured ones did.
 
@@ -212,19 +200,14 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     """
     known = read_table(table)
     made_folder(empty_folder(out, force=force))
-    console = error_console()
-    try:
-        with ProgressDisplay(console) as display:
-            rows = run_counters(known, out, display, seed)
-    except KeyboardInterrupt:
-        console.print('stopped; no report is written')
-        raise SystemExit(INTERRUPTED) from None
-    _tell(rows, out / COUNTERS_REPORT, console)
+    with stoppable() as (display, _):
+        rows = run_counters(known, out, display, seed)
+    print_outcome(rows, out / COUNTERS_REPORT)
 
 
 @command.command('hostile')
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
-@click.option('--force', is_flag=True, help='Write over the file of an earlier report.')
+@REPORT_OPTION
+@FORCE_OPTION
 @click.option('--messages', default=100_000, show_default=True,
               type=click.IntRange(100, 100_000_000), help='Hostile messages.')  # fmt: skip
 @click.option('--seed', default=1, show_default=True, type=click.IntRange(0, 2**31),
@@ -242,16 +225,15 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
     except ImportError as reason:
         raise RosMissing('the study of hostile messages', reason) from reason
     empty_folder(out, force=force)
-    console = error_console()
-    with ProgressDisplay(console) as display:
+    with ProgressDisplay(error_console()) as display:
         found = run_hostile(messages, seed, display)
-    _tell(write_hostile(out, found, seed), out / HOSTILE_REPORT, console)
+    print_outcome(write_hostile(out, found, seed), out / HOSTILE_REPORT)
 
 
 @command.command('discrepancy')
 @click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
 @click.option('--force', is_flag=True, help='Begin anew, whatever is there.')
-@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@GEAR_OPTION
 @click.option('--seed', default=DiscrepancyPlan.seed, show_default=True,
               type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
 @click.option('--clean', default=DiscrepancyPlan.clean, show_default=True,
@@ -272,8 +254,7 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
               'too.')  # fmt: skip
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
-@click.option('--scheduler', help='Address of a Dask cluster, which must see --out under the '
-              'same path. It runs code and must be trusted.')  # fmt: skip
+@SCHEDULER_OPTION
 def discrepancy(
     out: Path,
     force: bool,
@@ -296,17 +277,7 @@ def discrepancy(
     """
     load_gear(gear)
     plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, around)
-    console = error_console()
-    try:
-        with ProgressDisplay(console) as display:
-            trials = run_blind(plan, out, display, scheduler=scheduler, force=force)
-    except KeyboardInterrupt:
-        console.print(f'stopped; the trials made so far are kept in {out}')
-        raise SystemExit(INTERRUPTED) from None
+    with stoppable(f'the trials made so far are kept in {out}') as (display, _):
+        trials = run_blind(plan, out, display, scheduler=scheduler, force=force)
     rows = write_discrepancy(out, plan, trials, read_classes(out))
-    _tell(rows, out / DISCREPANCY_REPORT, console)
-
-
-def _tell(rows: Sequence[MeasuredValue], report: Path, console: Console) -> None:
-    print_missed(rows, console)
-    print_reached(rows, report)
+    print_outcome(rows, out / DISCREPANCY_REPORT)

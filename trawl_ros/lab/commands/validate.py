@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from trawl_ros.cli.files import FOLDER
+from trawl_ros.cli.options import FORCE_OPTION, REPORT_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.lab.commands.outcome import print_missed, print_reached
 from trawl_ros.lab.report.page import Section
@@ -13,8 +13,8 @@ from trawl_ros.lab.validation.run import validate
 
 @click.command('validate')
 @click.argument('cases', nargs=-1, metavar='[CASE]...')
-@click.option('--out', required=True, type=FOLDER, help='Folder of the report.')
-@click.option('--force', is_flag=True, help='Write over the files of an earlier report.')
+@REPORT_OPTION
+@FORCE_OPTION
 @click.option('--small', is_flag=True, help='Each case on less, in seconds.')
 @click.option(
     '--workers', default=2, show_default=True, type=click.IntRange(1, 64), help='Processes.'

@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 
 from trawl_ros.bags.reader import summarise
-from trawl_ros.cli.files import FOLDER, SCENARIO
+from trawl_ros.cli.options import FOLDER, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import write_figure
