@@ -12,7 +12,7 @@ from trawl_ros.lab.report.page import Findings, Page, Section, write_page
 from trawl_ros.report.pictures import draw
 
 NAME, COMMAND = 'benchmark', 'trawl benchmark'
-SMALL = 'This is the small version, which shows that it runs and says nothing about speed. '
+SMALL = 'It ran in its small version, which shows that it runs and says nothing about speed. '
 
 
 @dataclass(frozen=True)
