@@ -29,13 +29,13 @@ def test_a_small_case_is_whole(name: str) -> None:
     assert tuple(drawing.name for drawing in found.drawings) == FIGURES[name]
     for table in found.tables:
         assert all(len(row) == len(table.head) for row in table.rows)
-    keys = [check.key for check in found.checks]
+    keys = [check.key for check in found.rows]
     assert len(set(keys)) == len(keys)
-    for check in found.checks:
+    for check in found.rows:
         assert check.value == check.value, check.key
         assert check.ok or check.note, check.key
     if name != 'sentences':
-        assert all(check.ok for check in found.checks), found.checks
+        assert all(check.ok for check in found.rows), found.rows
 
 
 DIRECTIONS = (
@@ -60,6 +60,6 @@ DIRECTIONS = (
 
 @pytest.mark.timeout(120)
 def test_directions_are_the_papers() -> None:
-    checks = {check.key: check for check in small('sentences').checks}
+    checks = {check.key: check for check in small('sentences').rows}
     for key in DIRECTIONS:
         assert checks[key].ok, checks[key]
