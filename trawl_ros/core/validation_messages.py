@@ -14,19 +14,19 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-UNITS = {
-    'm': 'metres',
-    'mm': 'millimetres',
+from trawl_ros.core.units import UNITS
+
+KEY_UNITS = {
+    **{
+        symbol.lower().replace('/', '_'): UNITS[symbol].name
+        for symbol in ('m', 'mm', 'N', 'kN', 'Pa', 'kPa', 'deg', 'rad', 'deg/s', 'rad/s', 'm/s')
+    },
     'm2': 'square metres',
     'm3': 'cubic metres',
     'per_m3': 'per cubic metre',
     'm4': 'metres to the fourth power',
     'kg': 'kilograms',
     't': 'tonnes',
-    'n': 'newtons',
-    'kn': 'kilonewtons',
-    'pa': 'pascals',
-    'kpa': 'kilopascals',
     'gpa': 'gigapascals',
     's': 'seconds',
     'min': 'minutes',
@@ -34,11 +34,6 @@ UNITS = {
     'hz': 'hertz',
     'khz': 'kilohertz',
     'db': 'decibels',
-    'deg': 'degrees',
-    'rad': 'radians',
-    'deg_s': 'degrees per second',
-    'rad_s': 'radians per second',
-    'm_s': 'metres per second',
     'm_s2': 'metres per second squared',
     'kg_m': 'kilograms per metre',
     'kg_m2': 'kilogram square metres',
@@ -54,7 +49,7 @@ def unit_of(key: str) -> str | None:
     """Name the unit that the end of a key states: ``'length_m'`` gives ``'metres'``."""
     words = key.split('_')
     for start in range(1, len(words)):
-        unit = UNITS.get('_'.join(words[start:]))
+        unit = KEY_UNITS.get('_'.join(words[start:]))
         if unit is not None:
             return unit
     return 'minutes' if key == 'minutes' else None
@@ -260,7 +255,7 @@ def _closest(unknown: str, known: list[str]) -> str | None:
 def _without_unit(key: str) -> str:
     words = key.split('_')
     for start in range(1, len(words)):
-        if '_'.join(words[start:]) in UNITS:
+        if '_'.join(words[start:]) in KEY_UNITS:
             return '_'.join(words[:start])
     return key
 

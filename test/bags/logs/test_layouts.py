@@ -23,7 +23,7 @@ def run(tmp_path):
         data = log if isinstance(log, bytes) else log.encode(encoding)
         (tmp_path / 'log.csv').write_bytes(data)
         (tmp_path / 'mapping.yaml').write_text(mapping)
-        bag = tmp_path / 'bag'
+        bag = tmp_path / f'bag_{len(list(tmp_path.glob("bag_*")))}'
         said = import_log(tmp_path / 'log.csv', tmp_path / 'mapping.yaml', bag, **options)
         found = {}
         for received in Bag(bag).messages():

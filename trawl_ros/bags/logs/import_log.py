@@ -24,12 +24,12 @@ from trawl_ros.bags.logs.mapping import (
     load_mapping,
 )
 from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
-from trawl_ros.bags.logs.units import UNITS
 from trawl_ros.bags.possible import impossible, impossible_compass
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, LogError
 from trawl_ros.core.files import new_folder
 from trawl_ros.core.limits import LOG_READINGS
+from trawl_ros.core.units import UNITS
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.samples import (
@@ -299,7 +299,7 @@ def _sample(
         case ['winch', _]:
             return WinchSample(stamp, *(_pair(readings, what) for what in _WINCH_READINGS))
         case [*_, place, 'pressure']:
-            if water and entry.std and UNITS[entry.std.unit][0] == 'length':
+            if water and entry.std and UNITS[entry.std.unit].quantity == 'length':
                 std = water.depth_to_difference(std)
             if water and 'depth' in readings:
                 return PressureSample(stamp, place, water.pressure(readings['depth']), std)

@@ -7,10 +7,10 @@ from pydantic import Field, model_validator
 
 from trawl_ros.bags.logs.clock import Clock
 from trawl_ros.bags.logs.layout import LogLayout
-from trawl_ros.bags.logs.units import UNITS, units_of
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
+from trawl_ros.core.units import UNITS, units_of
 from trawl_ros.records.topics import RANGES
 
 _RANGE = {'distance': 'length'}
@@ -71,7 +71,7 @@ class Quantity(Record):
 
     def si(self) -> float:
         """Give the value in SI units."""
-        return self.value * UNITS[self.unit][1]
+        return self.value * UNITS[self.unit].size
 
 
 class ColumnMapping(Record):
@@ -88,7 +88,7 @@ class ColumnMapping(Record):
 
     def si(self, cell: float) -> float:
         """Convert the cell into SI units."""
-        return (cell * self.scale + self.offset) * UNITS[self.unit][1]
+        return (cell * self.scale + self.offset) * UNITS[self.unit].size
 
 
 class LogWater(Record):

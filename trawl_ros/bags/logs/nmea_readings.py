@@ -8,12 +8,12 @@ import numpy as np
 
 from trawl_ros.bags.logs.import_log import compass_yaw, course_velocity
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, NmeaTopic
-from trawl_ros.bags.logs.units import UNITS
 from trawl_ros.bags.possible import impossible_compass
+from trawl_ros.core.units import UNITS
 from trawl_ros.records.samples import FixSample, HeadingSample, RangeSample, Sample, VelocitySample
 
-KNOT, KM_H = UNITS['kn'][1], UNITS['km/h'][1]
-FOOT, FATHOM = UNITS['ft'][1], UNITS['fathom'][1]
+KNOT, KM_H = UNITS['kn'].size, UNITS['km/h'].size
+FOOT, FATHOM = UNITS['ft'].size, UNITS['fathom'].size
 
 SampleAt = Callable[[int], Sample]
 """Gives the sample for a stamp (ns)."""

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.units import UNITS
 from trawl_ros.estimation.windows.buffers import ChannelBuffer
 from trawl_ros.estimation.windows.operation import Unheld
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.estimation.windows.statistics import error_of_mean, longest_run, outliers, trend
-from trawl_ros.estimation.windows.unit_errors import NAMES, unit_of
+from trawl_ros.estimation.windows.unit_errors import unit_of
 from trawl_ros.estimation.windows.watermark import NANO
 from trawl_ros.records.channels import Channel
 
@@ -73,7 +74,7 @@ def _outside(where: str, channel: Channel, outside: np.ndarray) -> Unheld:
     if unit is not None:
         return Unheld(
             'wrong unit',
-            f'{where} looks like {unit}, expected {NAMES[channel.unit]}: it reads {reads:.4g}',
+            f'{where} looks like {unit}, expected {UNITS[channel.unit].name}: it reads {reads:.4g}',
         )
     return Unheld(
         'out of range',

@@ -5,24 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.units import UNITS
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel
 
 WRONG_UNITS: Mapping[str, Mapping[str, float]] = {
-    'm': {'feet': 3.28084, 'fathoms': 0.546807},
-    'm/s': {'knots': 1.943844, 'kilometres per hour': 3.6},
-    'N': {
-        'kilonewtons': 1e-3,
-        'tonnes-force': 1.019716e-4,
-        'kilograms-force': 0.1019716,
-        'pounds-force': 0.2248089,
-    },
-    'rad': {'degrees': 57.29578},
+    unit: {UNITS[wrong].name: 1.0 / UNITS[wrong].size for wrong in mistaken}
+    for unit, mistaken in {
+        'm': ('ft', 'fathom'),
+        'm/s': ('kn', 'km/h'),
+        'N': ('kN', 'tf', 'kgf', 'lbf'),
+        'rad': ('deg',),
+    }.items()
 }
 """SI unit → unit mistaken for it → reading per SI value."""
-
-NAMES: Mapping[str, str] = {
-    'm': 'metres', 'm/s': 'metres per second', 'N': 'newtons', 'rad': 'radians',
-}  # fmt: skip
 
 DOORS = ('port_door_depth', 'starboard_door_depth')
 TENSIONS = ('port_tension', 'starboard_tension')
@@ -65,7 +60,7 @@ class Misreading:
         row = CHANNELS[name]
         return (
             f'{" and ".join(self.channels)} ({row.topic}) look like {self.unit}, expected '
-            f'{NAMES[row.unit]}: {means[name]:.4g} agrees with the other channels as '
+            f'{UNITS[row.unit].name}: {means[name]:.4g} agrees with the other channels as '
             f'{means[name] / self.factor:.4g} {row.unit}'
         )
 
