@@ -16,7 +16,7 @@ MOST_NUMBERS = 20
 """Each length at each speed takes seconds to look up."""
 
 
-class _Numbers(click.ParamType):
+class _Numbers(click.ParamType[tuple[float, ...]]):
     """Different numbers between two limits, given with commas, put in order."""
 
     name = 'numbers'

@@ -8,6 +8,7 @@ import numpy as np
 from trawl_ros.control.bearings import LOST_S, Bearings, NavigationSample
 from trawl_ros.control.drift import Way
 from trawl_ros.control.track import Track
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.geodesy import Datum
 
 GAIN_PER_S = 0.05
@@ -65,7 +66,7 @@ class HoldCourse:
 class FollowTrack:
     """Target: a track over ``waypoints`` (n, 2), east and north in ``map``, m."""
 
-    waypoints: np.ndarray
+    waypoints: FloatArray
 
 
 @dataclass(frozen=True)
@@ -117,8 +118,8 @@ class Autopilot:
         self._bearings = Bearings(datum)
         self._target: Target | None = None
         self._track: Track | None = None
-        self._aim: np.ndarray | None = None
-        self._seen: np.ndarray | None = None
+        self._aim: FloatArray | None = None
+        self._seen: FloatArray | None = None
         self._course = math.nan
         self._passed = False
         self._rate = 0.0
@@ -189,7 +190,7 @@ class Autopilot:
         course = heading if math.isnan(self._course) else self._course
         return self._against_current(course, stamp, ('fix lost: holds the course',))
 
-    def _along(self, waypoints: np.ndarray, position: np.ndarray, stamp: int) -> AutopilotState:
+    def _along(self, waypoints: FloatArray, position: FloatArray, stamp: int) -> AutopilotState:
         if self._track is None:
             begun = len(waypoints) > 1 and np.hypot(*(waypoints[0] - position)) < BEGUN_M
             points = waypoints if begun else np.vstack([position, waypoints])
@@ -200,7 +201,7 @@ class Autopilot:
             state, leg=found.leg, across=found.across, left=found.left, ended=found.ended
         )
 
-    def _to_school(self, position: np.ndarray, heading: float, stamp: int) -> AutopilotState:
+    def _to_school(self, position: FloatArray, heading: float, stamp: int) -> AutopilotState:
         aim = self._aim_at(position, heading)
         if aim is None:
             course = heading if math.isnan(self._course) else self._course
@@ -214,7 +215,7 @@ class Autopilot:
         state = self._against_current(self._course, stamp, self._fix_problems(stamp))
         return replace(state, left=distance, ended=self._passed)
 
-    def _aim_at(self, position: np.ndarray, heading: float) -> np.ndarray | None:
+    def _aim_at(self, position: FloatArray, heading: float) -> FloatArray | None:
         """Place of the chosen school, or of the nearest ahead if none is chosen yet."""
         schools = self._bearings.schools
         if self._aim is None:

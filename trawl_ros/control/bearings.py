@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from trawl_ros.control.low_pass import LowPass
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.geodesy import Datum, to_east_north
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
@@ -40,8 +41,8 @@ class Bearings:
     def __init__(self, datum: Datum) -> None:
         self._datum = datum
         self._heading: float | None = None
-        self._position: np.ndarray | None = None
-        self._ground: np.ndarray | None = None
+        self._position: FloatArray | None = None
+        self._ground: FloatArray | None = None
         self._water = np.zeros(2)
         self._current = (LowPass(CURRENT_S), LowPass(CURRENT_S))
         self._speed = LowPass(SPEED_S)
@@ -60,12 +61,12 @@ class Bearings:
         return self._speed.value if math.isfinite(self._speed.value) else 0.0
 
     @property
-    def current(self) -> np.ndarray:
+    def current(self) -> FloatArray:
         """Velocity (2,) of the water, east and north, m/s; 0 before it is known."""
         found = np.array([part.value for part in self._current])
         return found if np.isfinite(found).all() else np.zeros(2)
 
-    def position(self, stamp: int) -> np.ndarray | None:
+    def position(self, stamp: int) -> FloatArray | None:
         """Position (2,), east and north, m, at a stamp (ns); None where it is out of date."""
         if self._position is None or self.age('fix', stamp) > DEAD_RECKONED_S:
             return None

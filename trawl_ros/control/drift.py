@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 MOST_DRIFT = 0.8
 """Greatest part of the ship's speed that is spent against the current."""
 
@@ -16,7 +18,7 @@ class Way:
     """
 
     speed: float
-    current: np.ndarray
+    current: FloatArray
     turn: float
 
     def heading_on(self, course: float) -> float:
@@ -27,7 +29,7 @@ class Way:
         across = (north * math.cos(course) - east * math.sin(course)) / self.speed
         return course - math.asin(min(max(across, -MOST_DRIFT), MOST_DRIFT))
 
-    def turned(self, before: float, after: float, response: float) -> np.ndarray:
+    def turned(self, before: float, after: float, response: float) -> FloatArray:
         """Displacement (2,), east and north over ground, m, during a turn between two headings.
 
         Parameters

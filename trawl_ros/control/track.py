@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.control.drift import Way
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import ScenarioError
 
 SHORTEST_LEG_M = 1.0
@@ -52,7 +53,7 @@ class Track:
         If there are fewer than two waypoints, or two in a row are the same.
     """
 
-    def __init__(self, waypoints: np.ndarray, *, look_ahead: float) -> None:
+    def __init__(self, waypoints: FloatArray, *, look_ahead: float) -> None:
         self._points = np.asarray(waypoints, dtype=float)
         if len(self._points) < 2:
             raise ScenarioError(f'a track of {len(self._points)} waypoints, expected at least two')
@@ -73,7 +74,7 @@ class Track:
         """Course of each leg, ENU yaw, rad."""
         return tuple(self._courses.tolist())
 
-    def follow(self, position: np.ndarray, way: Way, response: float) -> OnTrack:
+    def follow(self, position: FloatArray, way: Way, response: float) -> OnTrack:
         """Return the course and the position relative to the track.
 
         Parameters
@@ -97,7 +98,7 @@ class Track:
         course = self._courses[self._leg] - math.atan2(across, ahead)
         return OnTrack(self._leg, across, left, math.remainder(course, 2 * math.pi), self._ended)
 
-    def _place(self, position: np.ndarray) -> tuple[float, float]:
+    def _place(self, position: FloatArray) -> tuple[float, float]:
         """Distance along a leg and cross-track distance to port of it, m."""
         east, north = position - self._points[self._leg]
         course = self._courses[self._leg]

@@ -1,5 +1,7 @@
 """Array types, by their elements; shapes stand in docstrings, as numpy cannot check them."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,3 +22,9 @@ StampArray = NDArray[np.int64]
 
 ByteArray = NDArray[np.uint8]
 """Bytes: images of the trawl sonar, and what messages hold."""
+
+if TYPE_CHECKING:
+    Slice = slice[int, int, None]
+else:
+    Slice = slice
+"""Contiguous part of an array; builtin slices take no types when they run."""

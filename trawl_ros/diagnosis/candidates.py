@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
@@ -27,7 +28,7 @@ class Candidate:
     """
 
     effect: Effect
-    start: np.ndarray
+    start: FloatArray
     place: int = 0
 
     @property
@@ -36,7 +37,7 @@ class Candidate:
         return self.effect.name
 
     @property
-    def scale(self) -> np.ndarray:
+    def scale(self) -> FloatArray:
         """Prior std of the values (m,) about neutral."""
         return np.array([parameter.std for parameter in self.effect.parameters])
 
@@ -52,7 +53,7 @@ class Candidate:
 
 
 def candidates(
-    effects: Mapping[str, Effect], predictor: Predictor, depths: np.ndarray
+    effects: Mapping[str, Effect], predictor: Predictor, depths: FloatArray
 ) -> tuple[Candidate, ...]:
     """All candidates that steady tows may show.
 
@@ -91,7 +92,7 @@ def values_vector(wanted: Sequence[Candidate]) -> ParameterVector:
 
 def signatures(
     predictor: Predictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
-) -> list[np.ndarray]:
+) -> list[FloatArray]:
     """Signatures of the candidates: changes in the windows' readings per unit of their values.
 
     Returns
@@ -115,7 +116,7 @@ def signatures(
 
 
 def extended(
-    fit: Fit, wanted: Sequence[Candidate], columns: Sequence[np.ndarray], options: EstimatorOptions
+    fit: Fit, wanted: Sequence[Candidate], columns: Sequence[FloatArray], options: EstimatorOptions
 ) -> Fit:
     """Fit with the candidates' values appended to the coefficients.
 

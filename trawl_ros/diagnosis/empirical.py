@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.candidates import candidates, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.naming import refitted
@@ -66,7 +67,7 @@ def empirical(predictor: Predictor, base: Refit, seen: ScoreTest) -> Empirical |
     columns = signatures(predictor, base.fit.windows, wanted)
     units = np.concatenate([candidate.scale for candidate in wanted])
 
-    def gathered(some: list[np.ndarray]) -> Evidence:
+    def gathered(some: list[FloatArray]) -> Evidence:
         return evidence(seen.fit, some, units, weights=seen.weights)
 
     terms = replace(seen, wanted=wanted, columns=tuple(columns), evidence=gathered(columns))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc, ndtri
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, spread
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance, triangular
@@ -38,9 +39,9 @@ class Evidence:
         T; the score of data without any effect is its transpose times standard normal numbers.
     """
 
-    information: np.ndarray
-    score: np.ndarray
-    root: np.ndarray
+    information: FloatArray
+    score: FloatArray
+    root: FloatArray
 
     def chi2(self, block: Sequence[int]) -> float:
         """Score statistic: decrease of the χ² of all data with these values free."""
@@ -58,17 +59,17 @@ class Evidence:
         freedom = self.degrees_of_freedom(block)
         return tail(self.chi2(block) / doubt**2, freedom) if freedom else 0.0
 
-    def values(self, block: Sequence[int]) -> np.ndarray:
+    def values(self, block: Sequence[int]) -> FloatArray:
         """Most likely values, relative to their linearisation point, in units of the columns."""
         return np.linalg.pinv(self._of(block), 1e-10, hermitian=True) @ self.score[list(block)]
 
-    def std(self, block: Sequence[int]) -> np.ndarray:
+    def std(self, block: Sequence[int]) -> FloatArray:
         """Standard deviations of values, each alone; infinite where they are unobservable."""
         diagonal = np.diag(self._of(block))
         with np.errstate(divide='ignore'):
             return 1.0 / np.sqrt(np.where(diagonal > BLIND, diagonal, 0.0))
 
-    def covered(self, block: Sequence[int], values: np.ndarray, other: Sequence[int]) -> float:
+    def covered(self, block: Sequence[int], values: FloatArray, other: Sequence[int]) -> float:
         """Cosine of the values' signature with the nearest of other values' signatures."""
         rows, columns = list(block), list(other)
         size = float(values @ self._of(block) @ values)
@@ -90,17 +91,17 @@ class Evidence:
             self.root - taken @ self.root,
         )
 
-    def _of(self, block: Sequence[int]) -> np.ndarray:
+    def _of(self, block: Sequence[int]) -> FloatArray:
         return self.information[np.ix_(list(block), list(block))]
 
 
 def evidence(
     fit: Fit,
-    columns: Sequence[np.ndarray],
-    units: np.ndarray,
+    columns: Sequence[FloatArray],
+    units: FloatArray,
     *,
     tows: Sequence[TowErrors] | None = None,
-    weights: Sequence[np.ndarray] | None = None,
+    weights: Sequence[FloatArray] | None = None,
 ) -> Evidence:
     """Compute information and score of effects' values around a fit of the boards.
 
@@ -148,10 +149,10 @@ def tail(value: float, freedom: int) -> float:
     return float(_tails(np.array(value), freedom))
 
 
-def _tails(values: np.ndarray, freedom: int) -> np.ndarray:
+def _tails(values: FloatArray, freedom: int) -> FloatArray:
     # Beyond the smallest number it is infinite.
     with np.errstate(divide='ignore'):
-        tails: np.ndarray = -np.log(chdtrc(freedom, values)) / np.log(10.0)
+        tails: FloatArray = -np.log(chdtrc(freedom, values)) / np.log(10.0)
     return tails
 
 
@@ -175,7 +176,7 @@ def threshold(
 
 def detectable(
     found: Evidence, block: Sequence[int], limit: float, doubt: float = 1.0
-) -> np.ndarray:
+) -> FloatArray:
     """Detectable sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
     sigmas = doubt * float(-ndtri(0.5 * 10.0**-limit)) + POWER
     return sigmas * found.std(block)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, signatures
 from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refit
 from trawl_ros.effects.effect_set import ActiveEffect
@@ -69,7 +70,7 @@ def _nearest(active: ActiveEffect, predictor: Predictor, base: Refit) -> Candida
     return min(places, key=away)
 
 
-def _held(part: Linearised, board: slice, values: np.ndarray) -> Linearised:
+def _held(part: Linearised, board: Slice, values: FloatArray) -> Linearised:
     """Window with the effects at these values, and only coefficients free."""
     there = part.predicted(np.concatenate((part.at[board], values)))
     return replace(part.only(board), values=there)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.evidence import BLIND
 from trawl_ros.diagnosis.patterns import SHAPES, ResidualPattern
 from trawl_ros.diagnosis.score_test import ScoreTest
@@ -46,7 +47,7 @@ def telling(seen: ScoreTest) -> tuple[Where, ...]:
     return tuple(where for where in located(seen) if abs(where.z) >= TELLING)
 
 
-def map_of(seen: ScoreTest) -> tuple[list[str], list[str], np.ndarray]:
+def map_of(seen: ScoreTest) -> tuple[list[str], list[str], FloatArray]:
     """Channels, variables and z (channels, variables), NaN where a pattern is unobservable."""
     found = {(where.channel, where.variable): where.z for where in located(seen)}
     channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.candidates import Candidate, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
@@ -71,7 +72,7 @@ def propose(
     predictor: Predictor,
     seen: ScoreTest,
     best: Candidate,
-    values: np.ndarray,
+    values: FloatArray,
     rivals: Sequence[Candidate],
 ) -> tuple[Proposal, ...]:
     """Propose tows like those at hand, and those on the reciprocal track.
@@ -123,7 +124,7 @@ def _apart(
     seen: ScoreTest,
     there: Evidence,
     best: Candidate,
-    values: np.ndarray,
+    values: FloatArray,
     rivals: Sequence[Candidate],
 ) -> float:
     """Least χ² of an effect that a rival cannot explain."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.records.channels import MEASURED
 
@@ -22,7 +23,7 @@ class ResidualPattern:
     shape: str
 
 
-def patterns(parts: Sequence[Linearised]) -> tuple[tuple[ResidualPattern, ...], list[np.ndarray]]:
+def patterns(parts: Sequence[Linearised]) -> tuple[tuple[ResidualPattern, ...], list[FloatArray]]:
     """All patterns that are observable in the windows.
 
     Returns
@@ -48,7 +49,7 @@ def patterns(parts: Sequence[Linearised]) -> tuple[tuple[ResidualPattern, ...], 
     return found, columns
 
 
-def _variables(parts: Sequence[Linearised]) -> np.ndarray:
+def _variables(parts: Sequence[Linearised]) -> FloatArray:
     """Shapes (windows, shapes), centred and scaled."""
     length = np.array([0.5 * part.inputs[:2].sum() for part in parts])
     speed = np.array([part.inputs[2] for part in parts])
@@ -60,6 +61,6 @@ def _variables(parts: Sequence[Linearised]) -> np.ndarray:
     return np.column_stack(shapes)
 
 
-def _standard(values: np.ndarray) -> np.ndarray:
+def _standard(values: FloatArray) -> FloatArray:
     spread = float(values.std())
     return (values - values.mean()) / spread if spread > 1e-9 else np.zeros(len(values))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.candidates import Candidate, with_candidates
 from trawl_ros.diagnosis.rules import NEAR
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -68,7 +69,7 @@ class Refit:
         return len(self.values)
 
     @property
-    def values(self) -> np.ndarray:
+    def values(self) -> FloatArray:
         """Effects' values (m,) behind the coefficients."""
         return self.estimate.values[self.fit.prior.slice_of('effect')]
 
@@ -90,7 +91,7 @@ def fit_boards(
     prior: ParameterVector,
     windows: Sequence[SteadyWindow],
     options: EstimatorOptions = OPTIONS,
-    start: np.ndarray | None = None,
+    start: FloatArray | None = None,
 ) -> Refit | None:
     """Fit the boards alone; None where no window has a steady state.
 
@@ -138,7 +139,7 @@ def refit(
     predictor: Predictor,
     base: Fit,
     wanted: Sequence[Candidate],
-    values: np.ndarray,
+    values: FloatArray,
     parts: Sequence[Linearised],
     options: EstimatorOptions,
 ) -> Refit | None:

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.candidates import (
     Candidate,
     candidates,
@@ -49,16 +50,16 @@ class ScoreTest:
     """
 
     fit: Fit
-    weights: tuple[np.ndarray, ...]
+    weights: tuple[FloatArray, ...]
     wanted: tuple[Candidate, ...]
-    columns: tuple[np.ndarray, ...]
+    columns: tuple[FloatArray, ...]
     patterns: tuple[ResidualPattern, ...]
-    shapes: tuple[np.ndarray, ...]
+    shapes: tuple[FloatArray, ...]
     evidence: Evidence
     limit: float
 
     @property
-    def units(self) -> np.ndarray:
+    def units(self) -> FloatArray:
         """Units of all candidates' values."""
         return np.concatenate([candidate.scale for candidate in self.wanted])
 
@@ -104,7 +105,7 @@ class ScoreTest:
         """True if something beyond the model is detected."""
         return self.strongest > self.limit
 
-    def detectable(self, candidate: Candidate) -> np.ndarray:
+    def detectable(self, candidate: Candidate) -> FloatArray:
         """Detectable departures (m,) from the candidate's start, each value alone."""
         return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit, DOUBT)
 
@@ -173,7 +174,7 @@ def looks_at(block: range) -> list[range]:
 
 
 def with_patterns(
-    fit: Fit, shapes: Sequence[ResidualPattern], columns: Sequence[np.ndarray]
+    fit: Fit, shapes: Sequence[ResidualPattern], columns: Sequence[FloatArray]
 ) -> Fit:
     """Fit with sizes of patterns appended to all else."""
     number = len(shapes)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
@@ -44,7 +45,7 @@ class Weighed:
     delta_chi2: float
     delta_bic: float
     doubted_bic: float
-    gains: np.ndarray
+    gains: FloatArray
     share: float
     others: tuple[str, ...]
     cosine: float
@@ -103,7 +104,7 @@ def weigh(base: Refit, seen: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
 
 def _resampled(
     seen: ScoreTest, refits: Sequence[Refit], criteria: Sequence[float]
-) -> tuple[list[np.ndarray], list[str]]:
+) -> tuple[list[FloatArray], list[str]]:
     """Bootstrap: gains of each unit left out, and the best effect of each resampled trial.
 
     Both to first order; ``criteria`` are what refits came to, by which the order is set right.

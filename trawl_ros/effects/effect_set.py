@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import GearError
 from trawl_ros.effects.base.effect import Effect, Readings, Situation
 from trawl_ros.effects.empirical.library import dictionary
@@ -21,7 +22,7 @@ class ActiveEffect:
     """Effect with its values (m,) in the order of its parameters."""
 
     effect: Effect
-    values: np.ndarray
+    values: FloatArray
 
     @property
     def name(self) -> str:
@@ -38,7 +39,7 @@ class EffectSet:
     def __bool__(self) -> bool:
         return bool(self.effects)
 
-    def apply_to_inputs(self, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, inputs: FloatArray, at: Situation) -> FloatArray:
         """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         for active in self.effects:
             inputs = active.effect.apply_to_inputs(active.values, inputs, at)

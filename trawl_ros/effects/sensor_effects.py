@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Readings, Situation
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.model.water import Water
@@ -95,7 +96,7 @@ class SensorEffects:
         """Readings of sensors; each depends on one observable, so that others need not be known."""
         return self._acting.apply_to_sensors({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
 
-    def _instrument(self, true: np.ndarray, at: Situation) -> np.ndarray:
+    def _instrument(self, true: FloatArray, at: Situation) -> FloatArray:
         """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
         shown = true
         for _ in range(ROUNDS):

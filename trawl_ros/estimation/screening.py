@@ -6,10 +6,11 @@ is no news about the board: an instrument speaks in a wrong unit, or is wrong al
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.prediction import SteadyPrediction, SteadyPredictor
@@ -23,6 +24,11 @@ from trawl_ros.estimation.windows.unit_errors import (
     towable,
 )
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+
+if TYPE_CHECKING:
+    from trawl_ros.solver.equilibrium import Equilibrium
+
+NumberT = TypeVar('NumberT', int, float)
 
 MODEL_FRACTION, MODEL_ANGLE = 0.1, 0.05
 """Error of the model, as part of an observable and in rad, wide enough for any kept gear."""
@@ -65,18 +71,18 @@ class Screening:
 
     def reset(self) -> None:
         """Reset to no windows."""
-        self._start: Any = None
+        self._start: Equilibrium | None = None
         self._state: int | None = None
         self._judgement = ScreeningResult()
         self._tow: int | None = None
         self._unit: Misreading | None = None
 
     @property
-    def near(self) -> Any:
+    def near(self) -> 'Equilibrium | None':
         """Newest steady state found, as a start for nearby ones; None before any."""
         return self._start
 
-    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> ScreeningResult:
+    def judge(self, window: SteadyWindow, coefficients: FloatArray) -> ScreeningResult:
         """Judge a window around the present coefficients (12,); once for each steady state.
 
         A unit that was found wrong stays so through the tow, unless a window says otherwise.
@@ -88,7 +94,7 @@ class Screening:
             self._state = window.state
         return self._judgement
 
-    def _judge(self, window: SteadyWindow, coefficients: np.ndarray) -> ScreeningResult:
+    def _judge(self, window: SteadyWindow, coefficients: FloatArray) -> ScreeningResult:
         distance = self._distance(window, coefficients)
         stated = distance(window.means)
         known = self._unit
@@ -115,7 +121,7 @@ class Screening:
         return ScreeningResult(found, refused=True)
 
     def _distance(
-        self, window: SteadyWindow, coefficients: np.ndarray
+        self, window: SteadyWindow, coefficients: FloatArray
     ) -> Callable[[Mapping[str, float]], float]:
         """Return the squared Mahalanobis distance of means from the model as a function."""
         solved: dict[tuple[float, float, float], SteadyPrediction | None] = {}
@@ -150,7 +156,7 @@ class Screening:
         return float(off @ np.linalg.solve(covariance, off))
 
     def _solve(
-        self, inputs: tuple[float, float, float], coefficients: np.ndarray
+        self, inputs: tuple[float, float, float], coefficients: FloatArray
     ) -> SteadyPrediction | None:
         starts = [None] if self._start is None else [self._start, None]
         for start in starts:
@@ -194,7 +200,7 @@ def _unit_judgement(
 def without(window: SteadyWindow, channels: Sequence[str]) -> SteadyWindow:
     """Copy of the window without some channels."""
 
-    def rest(values: Mapping[str, Any]) -> dict[str, Any]:
+    def rest(values: Mapping[str, NumberT]) -> dict[str, NumberT]:
         return {name: value for name, value in values.items() if name not in channels}
 
     return replace(

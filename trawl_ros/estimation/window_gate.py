@@ -1,13 +1,15 @@
 """Window gate: checks of a window by all channels and its tow, before it reaches the estimate."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.screening import Screening, without
 from trawl_ros.estimation.windows.over_ground import OverGround
 from trawl_ros.estimation.windows.records import RejectedWindow, Rejections, SteadyWindow
+
+if TYPE_CHECKING:
+    from trawl_ros.solver.equilibrium import Equilibrium
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class GatedWindow:
     window: SteadyWindow | None
     rejected: RejectedWindow | None = None
     withdraw: bool = False
-    near: Any = None
+    near: 'Equilibrium | None' = None
 
 
 class WindowGate:
@@ -43,7 +45,7 @@ class WindowGate:
         self._over_ground = OverGround()
         self._screening.reset()
 
-    def judge(self, window: SteadyWindow, coefficients: np.ndarray) -> GatedWindow:
+    def judge(self, window: SteadyWindow, coefficients: FloatArray) -> GatedWindow:
         """Judge a window, by the model at the present coefficients (12,)."""
         over_ground = self._over_ground.judge(window.tow, window.track)
         if over_ground is not None:

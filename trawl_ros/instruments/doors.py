@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.instruments.distance import within
 from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
@@ -19,7 +20,7 @@ _OUTWARD = (1.0, -1.0)
 """The way (along y of the door frame) in which each door's outer face looks, port first."""
 
 
-def pitch_and_roll(orientation: np.ndarray) -> tuple[float, float]:
+def pitch_and_roll(orientation: FloatArray) -> tuple[float, float]:
     """Read pitch (nose down positive) and roll (top to starboard positive) off a pose, rad.
 
     ``orientation`` is the quaternion (x, y, z, w) of a frame x forward, y port, z up. The
@@ -45,7 +46,7 @@ def off_axis(doors: Doors) -> float:
     return worst
 
 
-class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
+class DoorAttitude(Instrument[FloatArray, AttitudeSample]):
     """Inclinometer of a door. Observes the door's orientation, a quaternion (4,)."""
 
     def __init__(self, side: str, parameters: AttitudeParameters, draws: SeedPlan) -> None:
@@ -53,7 +54,7 @@ class DoorAttitude(Instrument[np.ndarray, AttitudeSample]):
         super().__init__(f'door/{side}/attitude', parameters.timing(), errors, draws)
         self._side = side
 
-    def _read(self, part: np.ndarray, stamp: int) -> AttitudeSample:
+    def _read(self, part: FloatArray, stamp: int) -> AttitudeSample:
         pitch, roll = pitch_and_roll(part)
         return AttitudeSample(
             stamp,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.instruments.distance import within
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
@@ -23,7 +24,7 @@ class Below:
     the mean surface) and the schools of fish.
     """
 
-    keel: np.ndarray
+    keel: FloatArray
     seabed: float
     schools: tuple[SchoolTruth, ...]
 
@@ -33,7 +34,7 @@ class Below:
         return self.seabed + float(self.keel[2])
 
 
-def cone(half_angle: float) -> np.ndarray:
+def cone(half_angle: float) -> FloatArray:
     """Return unit vectors (n, 3) that fill a cone about straight down, evenly from its axis out."""
     tilts = np.repeat(np.arange(1, RINGS + 1) / RINGS * half_angle, RAYS_PER_RING)
     around = np.tile(np.arange(RAYS_PER_RING) / RAYS_PER_RING * 2 * math.pi, RINGS)

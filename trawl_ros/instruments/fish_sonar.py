@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.errors.random_streams import generator
 from trawl_ros.instruments.parameters import FishSonarParameters
@@ -79,7 +80,7 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         seen = seen[np.isfinite(seen).all(1)]
         return SchoolsSample(stamp, seen[np.argsort(np.linalg.norm(seen, axis=1))])
 
-    def _seen(self, vessel: VesselTruth, school: SchoolTruth, stamp: int) -> np.ndarray | None:
+    def _seen(self, vessel: VesselTruth, school: SchoolTruth, stamp: int) -> FloatArray | None:
         """Measured position of a school in frame ``vessel``; None if it is not detected."""
         record = self._parameters
         sonar = np.array([0.0, 0.0, -self._draught])
@@ -111,10 +112,11 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         if lucky > 0.5 * (1.0 + math.tanh(0.5 * excess / record.fading_db)):
             return None
         ahead = shown_range * math.cos(shown_tilt)
-        return sonar + np.array(
+        place: FloatArray = sonar + np.array(
             [
                 ahead * math.cos(shown_bearing),
                 ahead * math.sin(shown_bearing),
                 -shown_range * math.sin(shown_tilt),
             ]
         )
+        return place

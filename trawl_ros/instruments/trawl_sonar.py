@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from trawl_ros.core.arrays import ByteArray, FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument, within
 from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
@@ -82,7 +83,7 @@ class TrawlSonar(Instrument[Truth, Sweep]):
         self._pings: list[Ping] = []
         self._begin: int | None = None
         self._gain = self._off = 0.0
-        self._shown: np.ndarray | None = None
+        self._shown: ByteArray | None = None
 
     def _read(self, part: Truth, stamp: int) -> Sweep | None:
         sweep = self._complete()
@@ -139,7 +140,7 @@ def _ping(truth: Truth, angle: float) -> Ping:
     )
 
 
-def _axes(net: NetTruth) -> np.ndarray:
+def _axes(net: NetTruth) -> FloatArray:
     """Axes x, y, z of frame ``sonar`` in ``map`` as columns."""
     x, y, z, w = net.sonar_orientation
     return np.array(

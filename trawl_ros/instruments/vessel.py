@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.geodesy import Datum, to_latitude_longitude
 from trawl_ros.instruments.echo_sounder import EchoSounder
 from trawl_ros.instruments.errors.faults import Faulty
@@ -19,7 +20,7 @@ from trawl_ros.records.samples import FixSample, HeadingSample, Sample, Velocity
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import Truth
 
-Moving = tuple[np.ndarray, float]
+Moving = tuple[FloatArray, float]
 """A velocity (3,) in m/s and the rate of turn in rad/s."""
 
 
@@ -59,7 +60,7 @@ class GpsVelocity(_Velocity):
         super().__init__('ground', parameters, draws)
 
 
-class GpsFix(Instrument[np.ndarray, FixSample]):
+class GpsFix(Instrument[FloatArray, FixSample]):
     """GPS position on Earth. Observes the ship's position (3,) in ``map``."""
 
     def __init__(self, parameters: FixParameters, datum: Datum, draws: SeedPlan) -> None:
@@ -67,7 +68,7 @@ class GpsFix(Instrument[np.ndarray, FixSample]):
         super().__init__('vessel/fix', parameters.timing(), errors, draws)
         self._datum = datum
 
-    def _read(self, part: np.ndarray, stamp: int) -> FixSample:
+    def _read(self, part: FloatArray, stamp: int) -> FixSample:
         measured = np.array(
             [
                 self._measure('east', float(part[0]), stamp),

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import joint_column
 from trawl_ros.messages.pieces import TopicMessage
@@ -34,12 +35,12 @@ class ChannelInnovation:
     ratio: float
 
 
-def estimate_message(values: Sequence[float] | np.ndarray) -> TopicMessage:
+def estimate_message(values: Sequence[float] | FloatArray) -> TopicMessage:
     """Turn the twelve coefficients, in the order of `COEFFICIENTS`, into a message."""
     return ESTIMATE, _array(np.asarray(values, dtype=float), (len(COEFFICIENTS),))
 
 
-def covariance_message(matrix: np.ndarray) -> TopicMessage:
+def covariance_message(matrix: FloatArray) -> TopicMessage:
     """Turn their covariance (12, 12) into a message, row-major."""
     size = len(COEFFICIENTS)
     return COVARIANCE, _array(np.asarray(matrix, dtype=float), (size, size))
@@ -58,7 +59,7 @@ def innovation_message(stamp: int, innovations: Sequence[ChannelInnovation]) -> 
     )
 
 
-def read_estimate(message: Any) -> np.ndarray:
+def read_estimate(message: Any) -> FloatArray:
     """Read the twelve coefficients, shape (12,).
 
     Raises
@@ -69,7 +70,7 @@ def read_estimate(message: Any) -> np.ndarray:
     return _values(ESTIMATE, message, (len(COEFFICIENTS),))
 
 
-def read_covariance(message: Any) -> np.ndarray:
+def read_covariance(message: Any) -> FloatArray:
     """Read the covariance, shape (12, 12).
 
     Raises
@@ -95,7 +96,7 @@ def read_innovations(message: Any) -> tuple[ChannelInnovation, ...]:
     )
 
 
-def _array(values: np.ndarray, shape: tuple[int, ...]) -> ros.std_msgs__msg__Float64MultiArray:
+def _array(values: FloatArray, shape: tuple[int, ...]) -> ros.std_msgs__msg__Float64MultiArray:
     if values.shape != shape:
         raise ValueError(f'coefficients of shape {values.shape}, expected {shape}')
     dimensions = [
@@ -108,7 +109,7 @@ def _array(values: np.ndarray, shape: tuple[int, ...]) -> ros.std_msgs__msg__Flo
     )
 
 
-def _values(topic: str, message: Any, shape: tuple[int, ...]) -> np.ndarray:
+def _values(topic: str, message: Any, shape: tuple[int, ...]) -> FloatArray:
     sizes = tuple(dimension.size for dimension in message.layout.dim)
     offset = message.layout.data_offset
     values = np.asarray(message.data, dtype=float)[offset:]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
 from trawl_ros.core.foreign import short
 from trawl_ros.messages.pieces import ABSENT
@@ -281,11 +282,11 @@ def _deviation(topic: str, variance: float) -> float:
     return math.sqrt(variance)
 
 
-def _vector(message: Any) -> np.ndarray:
+def _vector(message: Any) -> FloatArray:
     return np.array([message.x, message.y, message.z], dtype=float)
 
 
-def _orientation(topic: str, message: Any) -> np.ndarray:
+def _orientation(topic: str, message: Any) -> FloatArray:
     _angles(topic, message)
     return np.array([message.x, message.y, message.z, message.w], dtype=float)
 

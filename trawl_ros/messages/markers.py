@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
@@ -69,7 +70,7 @@ def tension_colour(tension: float) -> ros.std_msgs__msg__ColorRGBA:
     return _colours(np.array([tension]))[0]
 
 
-def _colours(tensions: np.ndarray) -> list[ros.std_msgs__msg__ColorRGBA]:
+def _colours(tensions: FloatArray) -> list[ros.std_msgs__msg__ColorRGBA]:
     places = np.clip(tensions / FULL_SCALE, 0.0, 1.0) * (len(RAMP) - 1)
     channels = [np.interp(places, np.arange(len(RAMP)), channel).tolist() for channel in RAMP.T]
     return [
@@ -78,7 +79,7 @@ def _colours(tensions: np.ndarray) -> list[ros.std_msgs__msg__ColorRGBA]:
     ]
 
 
-def _points(points: np.ndarray) -> list[ros.geometry_msgs__msg__Point]:
+def _points(points: FloatArray) -> list[ros.geometry_msgs__msg__Point]:
     return [ros.geometry_msgs__msg__Point(*point) for point in points.tolist()]
 
 

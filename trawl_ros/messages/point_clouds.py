@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
 
 _WIDTH = np.dtype('<f4').itemsize
 
 
-def point_cloud(header: Any, columns: Mapping[str, np.ndarray]) -> Any:
+def point_cloud(header: Any, columns: Mapping[str, FloatArray]) -> Any:
     """Make a ``sensor_msgs/PointCloud2``.
 
     Parameters
@@ -42,7 +43,7 @@ def point_cloud(header: Any, columns: Mapping[str, np.ndarray]) -> Any:
     )
 
 
-def read_point_cloud(topic: str, message: Any, names: Sequence[str]) -> np.ndarray:
+def read_point_cloud(topic: str, message: Any, names: Sequence[str]) -> FloatArray:
     """Read fields of 32-bit floats off a point cloud.
 
     Parameters

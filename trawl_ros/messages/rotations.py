@@ -9,6 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 UNIT_TOLERANCE = 1e-3
 """Quaternions further from length 1 than this are not orientations."""
 
@@ -49,7 +51,7 @@ def to_angles(quaternion: Sequence[float]) -> tuple[float, float, float]:
     return roll, pitch, yaw
 
 
-def about_z(angle: float) -> np.ndarray:
+def about_z(angle: float) -> FloatArray:
     """Return the matrix (3, 3) that turns components in a yawed frame into fixed ones."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.messages import pieces
 from trawl_ros.messages.pieces import TopicMessage, vector
 from trawl_ros.messages.point_clouds import point_cloud
@@ -169,7 +170,7 @@ def _seabed(stamp: int, seabed: SeabedTruth) -> TopicMessage:
 
 def transforms_message(truth: Truth) -> TopicMessage:
     """Return the poses of all frames in ``map`` at one instant."""
-    poses: dict[str, tuple[np.ndarray, Any]] = {
+    poses: dict[str, tuple[FloatArray, Any]] = {
         VESSEL: (truth.vessel.position, to_quaternion(0.0, 0.0, truth.vessel.heading)),
         SONAR: (truth.net.sonar_position, truth.net.sonar_orientation),
     }
@@ -180,7 +181,7 @@ def transforms_message(truth: Truth) -> TopicMessage:
     )
 
 
-def _transform(stamp: int, frame: str, position: np.ndarray, orientation: Any) -> Any:
+def _transform(stamp: int, frame: str, position: FloatArray, orientation: Any) -> Any:
     return ros.geometry_msgs__msg__TransformStamped(
         header(stamp, MAP),
         frame,

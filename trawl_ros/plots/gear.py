@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.messages.markers import FULL_SCALE, RAMP
 from trawl_ros.plots.records import SCHOOLS, GearShape, Strand
 from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
@@ -30,7 +31,7 @@ LEFT_IN, RIGHT_IN, TITLE_IN, FOOT_IN, GAP_IN = 0.8, 0.25, 0.55, 0.65, 0.4
 LEAST_HEIGHT = 0.13
 """The views from above and from the side are at least this part of their width high."""
 
-Extent = tuple[np.ndarray, np.ndarray]
+Extent = tuple[FloatArray, FloatArray]
 """Least and greatest astern, to port, up (3,), m."""
 
 

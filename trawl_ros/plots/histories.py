@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.records.truth import SIDES
 from trawl_ros.report import style
@@ -255,7 +256,7 @@ def _silences(axes: Axes, spans: Sequence[tuple[float, float]], colour: str, num
     return bool(spans)
 
 
-def _with_gaps(series: Series) -> tuple[np.ndarray, np.ndarray]:
+def _with_gaps(series: Series) -> tuple[FloatArray, FloatArray]:
     """Truth with gaps where it was not recorded."""
     if len(series.times) < 2:
         return series.times, series.values

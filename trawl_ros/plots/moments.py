@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.plots.records import TowHistory
 from trawl_ros.records.topics import absolute
@@ -64,7 +65,7 @@ def _decoded(bag: Bag, found: Mapping[str, RawMessage], wanted: int) -> dict[str
     return messages
 
 
-def corners(moment: Moment) -> np.ndarray:
+def corners(moment: Moment) -> FloatArray:
     """Corners (2 N, 3) of the mouth in ``map``: headrope from port, footrope back."""
     points = moment.messages[MOUTH].polygon.points
     return np.array([[point.x, point.y, point.z] for point in points], dtype=float)

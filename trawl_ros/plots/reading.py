@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.from_messages import to_sample, winch_truth
@@ -258,10 +259,10 @@ def _series(rows: dict[str, _Rows], topics: tuple[str, ...], start: int) -> dict
     return found
 
 
-def _continuous(angles: np.ndarray) -> np.ndarray:
+def _continuous(angles: FloatArray) -> FloatArray:
     """Angles without jumps of a whole turn, whatever is missing between them."""
     known = np.isfinite(angles)
-    unwrapped = angles.copy()
+    unwrapped: FloatArray = angles.copy()
     unwrapped[known] = np.unwrap(angles[known])
     return unwrapped
 

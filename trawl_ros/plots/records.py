@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
@@ -16,8 +17,8 @@ SCHOOLS = 'schools'
 class Series:
     """Series of a quantity: times (n,) in s since the tow's start, rising, and values (n,), SI."""
 
-    times: np.ndarray
-    values: np.ndarray
+    times: FloatArray
+    values: FloatArray
 
     def at(self, time: float) -> float:
         """Value at a time (s), by linear interpolation; NaN outside and without any."""
@@ -86,8 +87,8 @@ class Strand:
     """Strand of the gear: pieces (n, 2, 3) of lines, m, each with its colour (n, 3)."""
 
     name: str
-    pieces: np.ndarray
-    colours: np.ndarray
+    pieces: FloatArray
+    colours: FloatArray
 
 
 @dataclass(frozen=True)
@@ -117,5 +118,5 @@ class SonarPicture:
     scan: SonarScanSample
     height: float
     width: float
-    mouth: np.ndarray
+    mouth: FloatArray
     closed: bool

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from scipy.spatial.transform import Rotation
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, corners
@@ -85,14 +86,14 @@ def _strands_of(marker: Any) -> list[Strand]:
     return [Strand(marker.ns, pieces, colours.reshape(-1, 3))]
 
 
-def _plate(middle: np.ndarray, axes: np.ndarray, size: tuple[float, float]) -> np.ndarray:
+def _plate(middle: FloatArray, axes: FloatArray, size: tuple[float, float]) -> FloatArray:
     """Outline (4, 2, 3) of a plate of (length along x, height along z)."""
     along, up = 0.5 * size[0] * axes[:, 0], 0.5 * size[1] * axes[:, 2]
     ring = middle + np.array([along + up, along - up, -along - up, -along + up, along + up])
     return np.stack([ring[:-1], ring[1:]], axis=1)
 
 
-def _rings(marker: Any) -> np.ndarray:
+def _rings(marker: Any) -> FloatArray:
     """Outlines (n, 2, 3) of an ellipsoid with axes along those of ``map``: its three sections."""
     place, size = marker.pose.position, marker.scale
     turn = np.linspace(0.0, 2.0 * np.pi, RING + 1)
@@ -108,7 +109,7 @@ def _rings(marker: Any) -> np.ndarray:
     )
 
 
-def _true_door(tow: TowHistory, side: str, time: float) -> tuple[np.ndarray, np.ndarray] | None:
+def _true_door(tow: TowHistory, side: str, time: float) -> tuple[FloatArray, FloatArray] | None:
     """Position (3,) in ``map`` and axes (3, 3) of a door; its yaw is taken as the ship's."""
     names = [f'{side}_{axis}' for axis in 'xyz']
     if not all(name in tow.truth for name in names) or 'heading' not in tow.truth:
@@ -124,7 +125,7 @@ def _from_truth(
     moment: Moment,
     tow: TowHistory,
     gear: GearRecord,
-    doors: Sequence[tuple[np.ndarray, np.ndarray]],
+    doors: Sequence[tuple[FloatArray, FloatArray]],
 ) -> GearShape | None:
     ship = [tow.truth[name].at(moment.time) for name in ('east', 'north', 'heading')]
     if not all(math.isfinite(value) for value in ship):
@@ -195,11 +196,11 @@ def _from_readings(time: float, tow: TowHistory, gear: GearRecord) -> GearShape 
 
 def _side(
     side: str,
-    block: np.ndarray,
-    door: np.ndarray,
-    axes: np.ndarray,
+    block: FloatArray,
+    door: FloatArray,
+    axes: FloatArray,
     gear: GearRecord,
-    wings: Sequence[np.ndarray],
+    wings: Sequence[FloatArray],
 ) -> list[Strand]:
     """Strands of a side: warp, door and bridles, straight."""
     colour = COLOURS[side]
@@ -214,15 +215,15 @@ def _side(
     ]
 
 
-def _chain(points: np.ndarray) -> np.ndarray:
+def _chain(points: FloatArray) -> FloatArray:
     return np.stack([points[:-1], points[1:]], axis=1)
 
 
-def _one_colour(name: str, pieces: np.ndarray, colour: str) -> Strand:
+def _one_colour(name: str, pieces: FloatArray, colour: str) -> Strand:
     return Strand(name, pieces, np.tile(to_rgb(colour), (len(pieces), 1)))
 
 
-def _in_ships_axes(strand: Strand, origin: np.ndarray, yaw: float) -> Strand:
+def _in_ships_axes(strand: Strand, origin: FloatArray, yaw: float) -> Strand:
     """Transform a strand from ``map`` to the ship's axes: astern, to port, up."""
     ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
     basis = np.array([-ahead, [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.point_clouds import read_point_cloud
@@ -93,7 +94,7 @@ def _picture(sweep: Sweep, moment: Moment, tow: TowHistory) -> SonarPicture:
     return SonarPicture(time, image, scan, height, width, mouth, closed)
 
 
-def _mouth(moment: Moment) -> tuple[np.ndarray, bool]:
+def _mouth(moment: Moment) -> tuple[FloatArray, bool]:
     """Truth in the sonar's plane (n, 2): its section, or the ropes turned into it."""
     if SECTION in moment.messages:
         through = read_point_cloud(SECTION, moment.messages[SECTION], ('x', 'y'))

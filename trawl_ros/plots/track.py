@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.geodesy import Datum, to_east_north
 from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.report import style
@@ -52,7 +53,7 @@ def track_figure(tow: TowHistory) -> Figure | None:
     return figure
 
 
-def fixes_on_map(tow: TowHistory) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+def fixes_on_map(tow: TowHistory) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     """Times (s), east and north (m) of the fixes; the first valid one lies where truth had it,
     or at the origin, for a bag does not say where ``map`` is on Earth.
     """
@@ -94,7 +95,7 @@ def current(tow: TowHistory) -> tuple[Series, Series] | None:
     return None
 
 
-def _known(series: Series) -> tuple[np.ndarray, np.ndarray]:
+def _known(series: Series) -> tuple[FloatArray, FloatArray]:
     known = np.isfinite(series.values)
     if not known.any():
         return np.array([0.0]), np.array([np.nan])
@@ -107,7 +108,7 @@ def _mean(series: Series, time: float) -> float:
     return float(values.mean()) if len(values) else float('nan')
 
 
-def _roomy(axes: Axes, east: np.ndarray, north: np.ndarray) -> None:
+def _roomy(axes: Axes, east: FloatArray, north: FloatArray) -> None:
     size = max(float(np.nanmax(east) - np.nanmin(east)), float(np.nanmax(north) - np.nanmin(north)))
     room = 0.7 * max(size, 20.0)
     for middle, limit in ((east, axes.set_xlim), (north, axes.set_ylim)):
@@ -116,7 +117,7 @@ def _roomy(axes: Axes, east: np.ndarray, north: np.ndarray) -> None:
 
 
 def _arrows(
-    axes: Axes, tow: TowHistory, times: np.ndarray, east: np.ndarray, north: np.ndarray
+    axes: Axes, tow: TowHistory, times: FloatArray, east: FloatArray, north: FloatArray
 ) -> None:
     moments = np.linspace(times[0], times[-1], ARROWS)
     places = np.interp(moments, times, east), np.interp(moments, times, north)
@@ -143,6 +144,6 @@ def _arrows(
     )  # fmt: skip
 
 
-def _words(mean: np.ndarray) -> str:
+def _words(mean: FloatArray) -> str:
     towards = float(np.degrees(np.arctan2(mean[0], mean[1])) % 360.0)
     return f'current, in the mean {np.hypot(*mean):.2f} m/s towards {towards:03.0f}°'

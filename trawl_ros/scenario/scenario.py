@@ -7,8 +7,7 @@ from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import InstrumentError, ScenarioError, TrawlError
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import load_yaml, validated
@@ -246,6 +245,6 @@ def _lengths(record: SteadyStartRecord | StepRecord) -> tuple[float | None, floa
     return record.port_warp_length_m, record.starboard_warp_length_m
 
 
-def true_coefficients(path: str | Path) -> np.ndarray:
+def true_coefficients(path: str | Path) -> FloatArray:
     """Read the coefficients (12,) that a scenario's plant has, in the order of eq. 36."""
     return load_scenario(path).plant.board.coefficients.array()

@@ -26,6 +26,7 @@ from trawl_ros.bags.logs.mapping import (
 from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
 from trawl_ros.bags.possible import impossible, impossible_compass
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, LogError
 from trawl_ros.core.files import new_folder
 from trawl_ros.core.limits import LOG_READINGS
@@ -153,7 +154,7 @@ def compass_yaw(compass: float) -> float:
     return math.remainder(math.pi / 2 - compass, 2 * math.pi)
 
 
-def course_velocity(speed: float, course: float) -> np.ndarray:
+def course_velocity(speed: float, course: float) -> FloatArray:
     """Convert a speed and a compass course (rad) into a velocity (3,) in ``map``."""
     yaw = compass_yaw(course)
     return speed * np.array([math.cos(yaw), math.sin(yaw), 0.0])

@@ -2,7 +2,7 @@
 
 from datetime import date
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -121,5 +121,5 @@ def load_nmea_mapping(path: str | Path) -> NmeaMapping:
     LogError
         If the file is missing, unreadable, or names topics or sentences that do not fit.
     """
-    data: dict[str, Any] = load_yaml(path, LogError)
+    data = load_yaml(path, LogError)
     return validated(_File, data, path, LogError).nmea

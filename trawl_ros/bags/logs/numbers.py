@@ -59,7 +59,8 @@ def parse_degrees(text: str, decimal: Literal['.', ','] = '.') -> float:
         numbers = [float(degrees), numbers[0] - 100 * degrees]
     if not 2 <= len(numbers) <= 3 or min(numbers) < 0 or max(numbers[1:]) >= 60:
         raise expected
-    return sign * sum(number / 60**place for place, number in enumerate(numbers))
+    angle: float = sign * sum(number / 60**place for place, number in enumerate(numbers))
+    return angle
 
 
 def hemisphere_sign(text: str) -> float:

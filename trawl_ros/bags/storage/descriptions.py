@@ -137,6 +137,6 @@ def find_descriptions(data: bytes, seen: set[bytes]) -> Iterator[Description]:
         except DAMAGE:
             continue
         # All lengths within fit the record's.
-        if builder.end() == raw:
+        if builder.end() == raw:  # type: ignore[no-untyped-call]  # of mcap
             seen.add(raw)
             yield record

@@ -77,13 +77,13 @@ class McapOutput:
 
     def flush(self) -> None:
         """End the chunk in progress and hand everything to the operating system."""
-        self._mcap.flush()
+        self._mcap.flush()  # type: ignore[no-untyped-call]  # of mcap
 
     def finish(self) -> None:
         """Write the index and close; a second call does nothing."""
         if self._stream.closed:
             return
-        self._mcap.finish()
+        self._mcap.finish()  # type: ignore[no-untyped-call]  # of mcap
         self._stream.close()
 
     def _register(self, topic: str, definition: Definition) -> int:

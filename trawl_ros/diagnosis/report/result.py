@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, values_of
@@ -13,7 +12,7 @@ from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.records.channels import CHANNELS
 
 
-def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, Any]:
+def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, object]:
     """Build the content of ``diagnosis.json``; numbers that are not finite are null."""
     named, best = found.named, found.best
     sure = found.verdict in ('NAMED', 'AMBIGUOUS')
@@ -65,7 +64,7 @@ def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, Any]:
     }
 
 
-def _effects(found: Diagnosis) -> list[dict[str, Any]]:
+def _effects(found: Diagnosis) -> list[dict[str, object]]:
     best, named = found.best, found.named
     if best is None or named is None:
         return []
@@ -82,7 +81,7 @@ def _effects(found: Diagnosis) -> list[dict[str, Any]]:
     ]
 
 
-def _empirical(found: Diagnosis) -> dict[str, Any] | None:
+def _empirical(found: Diagnosis) -> dict[str, object] | None:
     """Empirical term, labelled as such."""
     if found.empirical is None:
         return None
@@ -104,9 +103,9 @@ def _empirical(found: Diagnosis) -> dict[str, Any] | None:
     }
 
 
-def _next(found: Diagnosis) -> list[dict[str, Any]]:
+def _next(found: Diagnosis) -> list[dict[str, object]]:
     """Checks, which need no tow, and tows with the gain of χ² per hour."""
-    checks = [{'sentence': check, 'states': []} for check in found.checks]
+    checks: list[dict[str, object]] = [{'sentence': check, 'states': []} for check in found.checks]
     return checks + [
         {
             'sentence': str(one),
@@ -119,7 +118,7 @@ def _next(found: Diagnosis) -> list[dict[str, Any]]:
     ]
 
 
-def _evidence(weighed: Sequence[Weighed]) -> dict[str, Any]:
+def _evidence(weighed: Sequence[Weighed]) -> dict[str, object]:
     return {
         ' and '.join(one.refit.names): {
             'delta_chi2': _number(one.delta_chi2),
@@ -134,7 +133,7 @@ def _evidence(weighed: Sequence[Weighed]) -> dict[str, Any]:
     }
 
 
-def _channels(shown: HoldoutComparison | None) -> dict[str, Any]:
+def _channels(shown: HoldoutComparison | None) -> dict[str, object]:
     if shown is None:
         return {}
     return {
@@ -149,7 +148,7 @@ def _channels(shown: HoldoutComparison | None) -> dict[str, Any]:
     }
 
 
-def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, Any]:
+def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, object]:
     if base is None:
         return {}
     return {
@@ -166,8 +165,8 @@ def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, Any]:
     }
 
 
-def _detectable(seen: ScoreTest) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+def _detectable(seen: ScoreTest) -> dict[str, object]:
+    found: dict[str, object] = {}
     for candidate in seen.wanted:
         if candidate.place:
             continue

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 if TYPE_CHECKING:
     from trawl_ros.model.gear_model import GearModel
 
@@ -66,12 +68,12 @@ class Situation:
     hours: float = 0.0
 
     @property
-    def along(self) -> np.ndarray:
+    def along(self) -> FloatArray:
         """Unit vector (2,), east and north, of the track."""
         return self.sense * np.array([math.cos(self.heading), math.sin(self.heading)])
 
     @property
-    def across(self) -> np.ndarray:
+    def across(self) -> FloatArray:
         """Unit vector (2,), east and north, to the left of the track."""
         east, north = self.along
         return np.array([-north, east])
@@ -114,11 +116,11 @@ class Effect:
     instrument: str = ''
 
     @property
-    def neutral(self) -> np.ndarray:
+    def neutral(self) -> FloatArray:
         """Values (m,) at which the effect vanishes."""
         return np.array([parameter.neutral for parameter in self.parameters])
 
-    def starts(self, depths: np.ndarray) -> tuple[np.ndarray, ...]:
+    def starts(self, depths: FloatArray) -> tuple[FloatArray, ...]:
         """Start values (m,) for a search, where more than neutral ones are of use.
 
         Parameters
@@ -128,15 +130,15 @@ class Effect:
         """
         return (self.neutral,)
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         return inputs
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the effect applied."""
         return model
 
-    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Apply to sensors: readings with the effect's errors."""
         return readings
 

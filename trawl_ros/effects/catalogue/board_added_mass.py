@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 class BoardAddedMass(Effect):
     """Added mass across the board's face, as a share of the water in a cylinder around it."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the boards' added mass."""
         board = model.board
         cylinder = 0.25 * np.pi * model.water.density * board.chord**2 * board.span

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 from trawl_ros.model.hooks import LIFT
 
@@ -22,8 +23,8 @@ class Stalled:
     loss: float
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Subtract the loss from C_y^F; drag does not grow by it."""
         above = np.where(np.real(attack) > ONSET, attack - ONSET, 0.0)
         bent = coefficients + 0.0 * attack[..., None]
@@ -34,7 +35,7 @@ class Stalled:
 class BoardStall(Effect):
     """Less lift above 15° of attack."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with boards that stall."""
         return model.with_board(bend=Stalled(float(values[0])))
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 from trawl_ros.model.numerics import length
 
@@ -22,26 +23,29 @@ SLOW = 0.1
 class Ground:
     """Ground force on nodes below a depth: friction, and a vertical reaction of the same size."""
 
-    nodes: np.ndarray
+    nodes: FloatArray
     depth: float
     friction: float
 
-    def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+    def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:
         """Friction against the velocity over ground, and an upward reaction of the same size, N."""
         below = (-positions[..., 2] - self.depth) / SOFT
         hold = 0.5 * self.friction * (1.0 + np.tanh(0.5 * below))
         upward = np.array([0.0, 0.0, 1.0])
-        return hold[..., None] * (upward - velocities / length(velocities, SLOW)[..., None])
+        forces: FloatArray = hold[..., None] * (
+            upward - velocities / length(velocities, SLOW)[..., None]
+        )
+        return forces
 
 
 class BottomContact(Effect):
     """Ground contact of both lower wing tips beyond a depth."""
 
-    def starts(self, depths: np.ndarray) -> tuple[np.ndarray, ...]:
+    def starts(self, depths: FloatArray) -> tuple[FloatArray, ...]:
         """Start values: the ground may lie anywhere between the net's depths."""
         return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, (0.5, 0.75, 0.9)))
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with ground under the wing tips."""
         friction, depth = map(float, values)
         foot = model.layout.footrope

@@ -2,15 +2,17 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 
 class CounterOffset(Effect):
     """Offset of both counters against the warp out, m."""
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Warp lengths without the offset."""
-        return inputs - values[0] * np.array([1.0, 1.0, 0.0])
+        true: FloatArray = inputs - values[0] * np.array([1.0, 1.0, 0.0])
+        return true
 
 
 EFFECT = CounterOffset(

@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 
 class CounterScale(Effect):
     """Counters that show (1 + scale) times the warp out, at port more of it than at starboard."""
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Warp lengths without the scale error."""
         scale, port_more = values
         shown = 1.0 + scale + 0.5 * port_more * np.array([1.0, -1.0])

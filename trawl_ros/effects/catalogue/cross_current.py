@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ ABOVE, BELOW = 20.0, 60.0
 class CrossCurrent(Effect):
     """A current across the track, the same below the surface layer and nothing in it."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model in a current to the left of the track."""
         across = values[0] * at.across
         water = model.water.with_more_current(

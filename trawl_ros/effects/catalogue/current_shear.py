@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ DEEP = 2000.0
 class CurrentShear(Effect):
     """Current linear in depth, zero at the surface."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model in a sheared current along the track."""
         bottom = values[0] * DEEP / PER * at.along
         water = model.water.with_more_current(

@@ -1,7 +1,6 @@
 """Errors of the depth sensors."""
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 
 DOORS = ('port_door_depth', 'starboard_door_depth')
@@ -11,7 +10,7 @@ NET = 'net_depth'
 class DepthSensor(Effect):
     """Offsets of doors and net, and scale and drift of all three depth sensors."""
 
-    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Readings with the errors of the depth sensors."""
         doors, net, scale, drift = values
         offsets = {**dict.fromkeys(DOORS, doors), NET: net}

@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 
 class HeaveEffect(Effect):
     """Increase of mean drag, which goes with the mean of the squared speed."""
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Root-mean-square speed through the water beside both warp lengths."""
         port, starboard, speed = inputs
         return np.array([port, starboard, np.sqrt(speed**2 + values[0])])

@@ -2,8 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ SLOWEST = 0.1
 class NetDrag(Effect):
     """Factor on the drag of netting and its ropes, and an exponent of speed beside the square."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with scaled drag of the net."""
         factor, exponent = values
         return model.with_net(factor * (max(at.speed, SLOWEST) / USUAL_SPEED) ** exponent, 1.0)

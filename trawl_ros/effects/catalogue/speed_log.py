@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 
 class SpeedLogError(Effect):
     """Speed log that shows (1 + scale) times the speed, and a bias."""
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Speed without scale and bias, beside both warp lengths."""
         scale, bias = values
         port, starboard, speed = inputs

@@ -1,7 +1,6 @@
 """Scale and offset of the spread sensor."""
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 
 SPREAD = 'door_spread'
@@ -10,7 +9,7 @@ SPREAD = 'door_spread'
 class SpreadSensor(Effect):
     """Spread sensor that shows (1 + scale) times the spread, and an offset."""
 
-    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Readings with the error of the spread sensor."""
         scale, offset = values
         return readings | {SPREAD: (1.0 + scale) * readings[SPREAD] + offset}

@@ -1,7 +1,6 @@
 """Scale and offset of the tension cells."""
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 
 CELLS = ('port_tension', 'starboard_tension')
@@ -10,7 +9,7 @@ CELLS = ('port_tension', 'starboard_tension')
 class TensionCell(Effect):
     """Tension cells that show (1 + scale) times the tension, and an offset, on both sides."""
 
-    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Readings with the errors of the tension cells."""
         offset, scale = values
         return readings | {name: (1.0 + scale) * readings[name] + offset for name in CELLS}

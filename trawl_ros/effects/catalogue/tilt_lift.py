@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 from trawl_ros.model.hooks import LIFT
 
@@ -19,8 +18,8 @@ class Tilted:
     slope: float
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Multiply C_y^F by the factor of the tilt."""
         bent = coefficients + 0.0 * lean[..., None]
         bent[..., LIFT] = bent[..., LIFT] * (1.0 + self.slope * lean)
@@ -30,7 +29,7 @@ class Tilted:
 class TiltLift(Effect):
     """Lift by the boards' tilt."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with boards whose lift depends on their tilt."""
         return model.with_board(bend=Tilted(float(values[0])))
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 class WarpStrumming(Effect):
     """Additional normal drag of the warps."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with scaled normal drag of the warps."""
         factor = np.where(model.warp_side >= 0, values[0], 1.0)
         bars = replace(model.bars, normal_drag=factor * model.bars.normal_drag)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.model.hooks import CoefficientModifier
@@ -26,12 +27,12 @@ class More:
     """Coefficient modifier: adds to one force coefficient of both boards (2,), after any other."""
 
     place: int
-    sizes: np.ndarray
+    sizes: FloatArray
     before: CoefficientModifier | None
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Return the coefficients with the addition."""
         bent = coefficients + 0.0 * attack[..., None]
         if self.before is not None:
@@ -48,7 +49,7 @@ class BoardForce(EmpiricalTerm):
     place: int = 0
     by_hours: bool = False
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with the force on its boards."""
         sizes = values[0] * (at.hours * BOTH if self.by_hours else SIDES)
         return model.with_board(bend=More(self.place, sizes, model.board.bend))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.model.numerics import dot
@@ -20,7 +21,7 @@ class BridleDrag(EmpiricalTerm):
 
     difference: bool = False
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed drag of the bridles."""
         port, starboard = (
             np.isin(model.ends, np.concatenate(pair)).any(axis=1)
@@ -37,7 +38,7 @@ class BridleDrag(EmpiricalTerm):
 class WarpFriction(EmpiricalTerm):
     """Tangential drag of the warps."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed friction of the warps."""
         factor = np.where(model.warp_side >= 0, 1.0 + values[0], 1.0)
         bars = replace(model.bars, friction=factor * model.bars.friction)
@@ -48,7 +49,7 @@ class WarpFriction(EmpiricalTerm):
 class NetWeight(EmpiricalTerm):
     """Weight of the net in water."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed weight of the net."""
         return model.with_net(1.0, 1.0 + values[0])
 
@@ -57,20 +58,21 @@ class NetWeight(EmpiricalTerm):
 class Lifted:
     """Node force: lift that goes with the square of the speed, ½ρU² times an area."""
 
-    nodes: np.ndarray
+    nodes: FloatArray
     factor: float
 
-    def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+    def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:
         """Lift on the nodes (k, 3), N."""
         upward = np.array([0.0, 0.0, 1.0])
-        return self.factor * dot(velocities, velocities)[..., None] * upward
+        lift: FloatArray = self.factor * dot(velocities, velocities)[..., None] * upward
+        return lift
 
 
 @dataclass(frozen=True)
 class HeadropeLift(EmpiricalTerm):
     """Lift on the middle of the headrope."""
 
-    def gear(self, values: np.ndarray, model: 'GearModel', at: Situation) -> 'GearModel':
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with changed lift of the headrope."""
         head = model.layout.headrope
         factor = 0.5 * model.water.density * values[0]
@@ -82,18 +84,20 @@ class HeadropeLift(EmpiricalTerm):
 class TideAlong(EmpiricalTerm):
     """Tidal current along the track that changes with time."""
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Warp lengths, and the speed through the water with the tide."""
-        return inputs + np.array([0.0, 0.0, values[0] * at.hours])
+        true: FloatArray = inputs + np.array([0.0, 0.0, values[0] * at.hours])
+        return true
 
 
 @dataclass(frozen=True)
 class WarpWithTime(EmpiricalTerm):
     """Drift of both counters per hour: warp out beside the length shown."""
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Warp lengths with the drift, and the speed."""
-        return inputs + np.array([1.0, 1.0, 0.0]) * values[0] * at.hours
+        true: FloatArray = inputs + np.array([1.0, 1.0, 0.0]) * values[0] * at.hours
+        return true
 
 
 def rope_terms() -> Iterator[EmpiricalTerm]:

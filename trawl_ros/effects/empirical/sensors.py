@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Readings, Situation
 from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.records.channels import CHANNELS, MEASURED
@@ -25,7 +24,7 @@ class SensorError(EmpiricalTerm):
     channel: str = ''
     by: str = ''
 
-    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Readings with the channel's error."""
         (value,), there = values, readings[self.channel]
         error = {

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.estimation.checkpoint.names import present
 
 PACKAGES = ('trawl_ros.estimation.', 'trawl_ros.records.', 'trawl_ros.model.', 'trawl_ros.solver.')
@@ -95,7 +96,7 @@ class Packer:
             'has': {key: self.pack(getattr(value, key), f'{path}.{key}') for key in names},
         }
 
-    def _array(self, value: np.ndarray, path: str) -> dict[str, Any]:
+    def _array(self, value: FloatArray | IntArray | BoolArray, path: str) -> dict[str, Any]:
         if value.dtype.str not in NUMBERS:
             raise TypeError(f'{path} has numbers of kind {value.dtype.str}, which are not saved')
         offset = len(self.numbers)
@@ -169,7 +170,7 @@ class Unpacker:
             object.__setattr__(found, key, self.unpack(value))
         return found
 
-    def _array(self, tree: dict[str, Any]) -> np.ndarray:
+    def _array(self, tree: dict[str, Any]) -> FloatArray | IntArray | BoolArray:
         if tree['array'] not in NUMBERS:
             raise ValueError(f'numbers of kind {tree["array"]!r}')
         kind, shape = np.dtype(tree['array']), [int(size) for size in tree['shape']]
@@ -177,7 +178,8 @@ class Unpacker:
             raise ValueError('an array of negative size')
         flat = np.frombuffer(self._numbers, kind, prod(shape), tree['at'])
         # A copy: what was read from bytes could not be written to.
-        return flat.reshape(shape).copy()
+        array: FloatArray | IntArray | BoolArray = flat.reshape(shape).copy()
+        return array
 
 
 def attribute_names(value: Any) -> list[str]:

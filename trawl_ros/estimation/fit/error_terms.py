@@ -12,6 +12,7 @@ from functools import cache
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector, nuisance
@@ -81,7 +82,7 @@ class Scheme:
         )
 
     @property
-    def net_std(self) -> np.ndarray:
+    def net_std(self) -> FloatArray:
         """Prior std of the net's factors (2,) on drag and weight."""
         return np.array([self.net_drag, self.net_weight])
 
@@ -160,18 +161,18 @@ class TowErrors:
         Change by one std of each of `Scheme.model_errors`.
     """
 
-    rows: np.ndarray
-    present: np.ndarray
-    noise: np.ndarray
-    numbers: np.ndarray
-    inputs: np.ndarray
-    input_std: np.ndarray
-    calibration: np.ndarray
-    input_calibration: np.ndarray
-    model: np.ndarray
+    rows: FloatArray
+    present: FloatArray
+    noise: FloatArray
+    numbers: FloatArray
+    inputs: FloatArray
+    input_std: FloatArray
+    calibration: FloatArray
+    input_calibration: FloatArray
+    model: FloatArray
 
 
-def spread(part: Linearised, values: np.ndarray) -> np.ndarray:
+def spread(part: Linearised, values: FloatArray) -> FloatArray:
     """Rows of a window's channels scattered among all channels, 0 for those it has not.
 
     Parameters
@@ -267,14 +268,14 @@ def _own_std(
     return float(np.sqrt(noise**2 + changing))
 
 
-def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> np.ndarray:
+def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> FloatArray:
     depth = part.window.means.get('net_depth', 0.0)
     # The windows of one state come to rest together.
     size = scheme.unsettled * abs(depth) * np.sqrt(in_state[part.window.state])
     return spread(part, size * part.slow)
 
 
-def _calibration(part: Linearised, scheme: Scheme) -> np.ndarray:
+def _calibration(part: Linearised, scheme: Scheme) -> FloatArray:
     # An input read too large makes the prediction differ, not the reading.
     columns = -spread(part, part.by_inputs) @ _of_inputs(part, scheme)
     for column, term in enumerate(TERMS):
@@ -283,7 +284,7 @@ def _calibration(part: Linearised, scheme: Scheme) -> np.ndarray:
     return columns
 
 
-def _of_inputs(part: Linearised, scheme: Scheme) -> np.ndarray:
+def _of_inputs(part: Linearised, scheme: Scheme) -> FloatArray:
     columns = np.zeros((len(INPUTS), len(TERMS)))
     for column, term in enumerate(TERMS):
         if term.channel in INPUTS:
@@ -296,7 +297,7 @@ def _size(part: Linearised, term: ErrorTerm, scheme: Scheme) -> float:
     return scheme.tow_share * term.std * (mean if term.relative else 1.0)
 
 
-def _model(part: Linearised, scheme: Scheme) -> np.ndarray:
+def _model(part: Linearised, scheme: Scheme) -> FloatArray:
     columns = np.zeros((len(MEASURED), len(GROUPS)))
     for name, value in zip(part.channels, part.values, strict=True):
         row = MEASURED.index(name)

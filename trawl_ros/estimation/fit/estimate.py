@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -24,7 +25,7 @@ class Combination:
     """
 
     names: tuple[str, ...]
-    weights: np.ndarray
+    weights: FloatArray
     std: float
 
     def __str__(self) -> str:
@@ -41,9 +42,9 @@ class Innovation:
     """
 
     channels: tuple[str, ...]
-    values: np.ndarray
-    stds: np.ndarray
-    test_ratios: np.ndarray
+    values: FloatArray
+    stds: FloatArray
+    test_ratios: FloatArray
 
 
 @dataclass(frozen=True)
@@ -84,10 +85,10 @@ class Posterior:
     covariance in prior std.
     """
 
-    covariance: np.ndarray
-    singular: np.ndarray
-    directions: np.ndarray
-    root: np.ndarray
+    covariance: FloatArray
+    singular: FloatArray
+    directions: FloatArray
+    root: FloatArray
 
     @property
     def condition_number(self) -> float:
@@ -148,12 +149,12 @@ class Estimate:
     revision: int
     stamp: int
     windows: int
-    values: np.ndarray
-    std: np.ndarray
-    covariance: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    shrink: np.ndarray
+    values: FloatArray
+    std: FloatArray
+    covariance: FloatArray
+    low: FloatArray
+    high: FloatArray
+    shrink: FloatArray
     determined: tuple[bool, ...]
     active_bounds: tuple[str, ...]
     condition_number: float
@@ -175,7 +176,7 @@ class Estimate:
         return float(np.sqrt(np.mean(np.square(list(self.noise_scales.values())))))
 
 
-def posterior_of(rows: np.ndarray, prior_std: np.ndarray, prior_weight: float) -> Posterior:
+def posterior_of(rows: FloatArray, prior_std: FloatArray, prior_weight: float) -> Posterior:
     """Posterior covariance and singular directions.
 
     Parameters
@@ -221,7 +222,7 @@ def undetermined(
     return tuple(sorted(found, key=lambda combination: -combination.std))
 
 
-def _varimax(basis: np.ndarray) -> np.ndarray:
+def _varimax(basis: FloatArray) -> FloatArray:
     """Rotate the columns (12, k) of a basis so that each rests on few coefficients.
 
     Singular vectors of like singular values are arbitrary mixtures; this makes them readable.
@@ -239,14 +240,14 @@ def _varimax(basis: np.ndarray) -> np.ndarray:
     return rotated
 
 
-def is_determined(values: np.ndarray, std: np.ndarray, prior: ParameterVector) -> tuple[bool, ...]:
+def is_determined(values: FloatArray, std: FloatArray, prior: ParameterVector) -> tuple[bool, ...]:
     """Flags of the coefficients that the data determine; the rule stands at `Estimate`."""
     scale = np.maximum(np.abs(values), prior.std)
     well = (std <= DETERMINED_FRACTION * scale) & (std <= DETERMINED_SHRINK * prior.std)
     return tuple(bool(flag) for flag in well)
 
 
-def active_bounds(values: np.ndarray, prior: ParameterVector) -> tuple[str, ...]:
+def active_bounds(values: FloatArray, prior: ParameterVector) -> tuple[str, ...]:
     """Names of the active bounds."""
     at_low, at_high = prior.on_bounds(values)
     found = []
@@ -259,8 +260,8 @@ def active_bounds(values: np.ndarray, prior: ParameterVector) -> tuple[str, ...]
 
 
 def interval(
-    values: np.ndarray, std: np.ndarray, freedom: float, confidence: float, prior: ParameterVector
-) -> tuple[np.ndarray, np.ndarray]:
+    values: FloatArray, std: FloatArray, freedom: float, confidence: float, prior: ParameterVector
+) -> tuple[FloatArray, FloatArray]:
     """Student's interval (12,), (12,) around the values, cut at the bounds."""
     half = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) * std
     return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

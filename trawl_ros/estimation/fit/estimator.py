@@ -8,10 +8,11 @@ would no longer do. There is no forgetting: without excitation it would wind up.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import Estimate, Innovation
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
@@ -24,6 +25,9 @@ from trawl_ros.estimation.fit.posterior import innovation_of, posterior_estimate
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.fit.relinearise import comparable, far, moved, with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
+
+if TYPE_CHECKING:
+    from trawl_ros.solver.equilibrium import Equilibrium
 
 SHORTER = 0.5
 """The part of a step that is taken where full steps lead to and fro."""
@@ -111,7 +115,7 @@ class Estimator:
         return tuple(part.window for part in self._fit.windows)
 
     @property
-    def coefficients(self) -> np.ndarray:
+    def coefficients(self) -> FloatArray:
         """Present coefficients (12,)."""
         return self._fit.coefficients
 
@@ -125,7 +129,7 @@ class Estimator:
         """Number of windows for which the model has no steady state; `finish` tries them again."""
         return len(self._without)
 
-    def add(self, window: SteadyWindow, near: Any = None) -> Estimate | None:
+    def add(self, window: SteadyWindow, near: 'Equilibrium | None' = None) -> Estimate | None:
         """Add one window; None when the model has no steady state there.
 
         ``near`` is a steady state to start from, beside those of other windows.
@@ -163,7 +167,7 @@ class Estimator:
                 self._fit, self._without, self.history = first, without, course
         return self._publish(None, converged, reason) if self._fit.windows else None
 
-    def begin(self, parts: Sequence[Linearised], coefficients: np.ndarray) -> None:
+    def begin(self, parts: Sequence[Linearised], coefficients: FloatArray) -> None:
         """Take windows that were solved elsewhere; `finish` solves them anew where they are wanted
         at these coefficients.
         """
@@ -181,8 +185,8 @@ class Estimator:
         return part
 
     def predictions(
-        self, coefficients: np.ndarray, windows: Sequence[SteadyWindow] | None = None
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, windows: Sequence[SteadyWindow] | None = None
+    ) -> FloatArray:
         """Predict the four channels of eq. 35 at each window's inputs.
 
         Returns
@@ -199,7 +203,7 @@ class Estimator:
                 rows.append(paper_values(dict(zip(part.channels, part.solved, strict=True))))
         return stack(rows)
 
-    def _inputs_of(self, window: SteadyWindow) -> np.ndarray:
+    def _inputs_of(self, window: SteadyWindow) -> FloatArray:
         """Warp lengths and speed of a window, corrected for their estimated errors.
 
         One that is new is taken to share those of the last window of its tow.
@@ -208,7 +212,8 @@ class Estimator:
         found = measured
         for part, inputs in zip(self._fit.windows, self._fit.inputs, strict=True):
             if part.window.index == window.index:
-                return inputs
+                found = inputs
+                break
             if part.window.tow == window.tow:
                 found = measured + inputs - measured_inputs(part.window)
         return found
@@ -216,10 +221,10 @@ class Estimator:
     def _linearise(
         self,
         window: SteadyWindow,
-        coefficients: np.ndarray,
-        inputs: np.ndarray | None = None,
+        coefficients: FloatArray,
+        inputs: FloatArray | None = None,
         *,
-        start: Any = None,
+        start: 'Equilibrium | None' = None,
         near: Sequence[Linearised] = (),
     ) -> Linearised:
         """Linearise the model at a window, from a given state or that of the nearest window."""
@@ -230,7 +235,7 @@ class Estimator:
                 for name in ('port_length', 'starboard_length', 'speed')
             )
 
-        starts: list[Any] = [] if start is None else [start]
+        starts: list[Equilibrium | None] = [] if start is None else [start]
         if known := (*self._fit.windows, *near):
             starts.append(min(known, key=distance).state)
         starts.append(None)

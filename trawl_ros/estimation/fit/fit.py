@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import (
     CALIBRATION,
     GROUP_OF,
@@ -51,11 +52,11 @@ class Fit:
     """
 
     windows: tuple[Linearised, ...]
-    coefficients: np.ndarray
+    coefficients: FloatArray
     scales: tuple[float, ...]
     prior: ParameterVector
     options: EstimatorOptions
-    weights: tuple[np.ndarray, ...] | None = None
+    weights: tuple[FloatArray, ...] | None = None
     known: Known | None = field(default=None, repr=False, compare=False)
 
     @property
@@ -73,7 +74,7 @@ class Fit:
         return Scheme.of(self.options)
 
     @property
-    def net(self) -> np.ndarray | None:
+    def net(self) -> FloatArray | None:
         """Most likely factors (2,) on drag and weight of the net; None where it is held."""
         std = self.scheme.net_std
         if not std.any():
@@ -85,7 +86,7 @@ class Fit:
         return np.maximum(1.0 + std * found, LEAST_FACTOR)
 
     @cached_property
-    def residual(self) -> np.ndarray:
+    def residual(self) -> FloatArray:
         """Residuals (windows, k), measured minus predicted, to first order; 0 where unmeasured."""
         rows = [
             spread(part, part.measured - part.predicted(self.coefficients)) for part in self.windows
@@ -93,7 +94,7 @@ class Fit:
         return np.array(rows).reshape(-1, len(GROUP_OF))
 
     @cached_property
-    def inputs(self) -> np.ndarray:
+    def inputs(self) -> FloatArray:
         """Most likely warp lengths and speed (windows, 3), corrected for their estimated errors."""
         found = np.array([measured_inputs(part.window) for part in self.windows]).reshape(-1, 3)
         for part in self.marginal.tows:
@@ -104,7 +105,7 @@ class Fit:
         return found
 
     @cached_property
-    def jacobian(self) -> np.ndarray:
+    def jacobian(self) -> FloatArray:
         """Sensitivities (windows, k, 12) per prior std."""
         rows = [spread(part, part.by_coefficients * self.prior.std) for part in self.windows]
         return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior))
@@ -114,7 +115,7 @@ class Fit:
         """Square-root information after elimination of all nuisance parameters."""
         return self._marginal(self.errors, self.jacobian)
 
-    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: np.ndarray) -> NuisanceElimination:
+    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: FloatArray) -> NuisanceElimination:
         scales = np.array(self.scales)[GROUP_OF]
         huber = self.options.huber
         return eliminate_nuisance(errors, scales, self.residual, jacobian, huber, self.weights)
@@ -137,7 +138,7 @@ class Fit:
         return float(0.5 * self.options.prior_weight * away @ away)
 
     @cached_property
-    def system(self) -> tuple[np.ndarray, np.ndarray]:
+    def system(self) -> tuple[FloatArray, FloatArray]:
         """Square-root information, prior included: triangle (12, 12) and right side (12,).
 
         The step in prior std minimises ‖triangle · step − right side‖.
@@ -156,12 +157,12 @@ class Fit:
         return posterior_of(self.marginal.triangle, self.prior.std, self.options.prior_weight)
 
     @property
-    def std(self) -> np.ndarray:
+    def std(self) -> FloatArray:
         """Standard deviations (12,) of the coefficients."""
         return np.sqrt(np.diag(self.posterior.covariance))
 
     @cached_property
-    def redundancy_numbers(self) -> np.ndarray:
+    def redundancy_numbers(self) -> FloatArray:
         """Redundancy numbers (windows, k) of the readings, for their own errors."""
         return redundancy_numbers(self.marginal, self.jacobian, self.posterior.root)
 
@@ -192,7 +193,7 @@ class Fit:
         return self.cost + float((self._numbers * np.log(scales)).sum())
 
     @property
-    def _numbers(self) -> np.ndarray:
+    def _numbers(self) -> FloatArray:
         numbers = np.zeros(self.residual.shape)
         for tow in self.errors:
             numbers[tow.rows] = tow.numbers

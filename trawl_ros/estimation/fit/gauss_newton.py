@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import lsq_linear
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.nuisance import reweighted
 
@@ -20,7 +21,7 @@ SETTLED = 1e-3
 are the end."""
 
 
-def gauss_newton_step(fit: Fit, low: np.ndarray, high: np.ndarray) -> Fit:
+def gauss_newton_step(fit: Fit, low: FloatArray, high: FloatArray) -> Fit:
     """Gauss–Newton step: the fit of least cost within bounds, to first order around its windows.
 
     Parameters

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import Observables
 
@@ -65,18 +66,18 @@ class LawQuantities:
         Span of each quantity's law over 15°, without a sign.
     """
 
-    values: np.ndarray
-    sd: np.ndarray
-    span: np.ndarray
+    values: FloatArray
+    sd: FloatArray
+    span: FloatArray
 
     @property
-    def ratio(self) -> np.ndarray:
+    def ratio(self) -> FloatArray:
         """Standard deviation over span (12,), infinite for a law without slope."""
         with np.errstate(divide='ignore'):
             return self.sd / self.span
 
     @property
-    def well_known(self) -> np.ndarray:
+    def well_known(self) -> BoolArray:
         """Flags (12,) of a standard deviation below a fifth of the span."""
         return self.ratio < WELL_KNOWN
 
@@ -105,7 +106,7 @@ def working_angles(seen: Iterable[Observables], slip_sign: int) -> WorkingAngles
     return WorkingAngles(float(attack), float(slip_sign * slip))
 
 
-def law_rows(angles: WorkingAngles) -> np.ndarray:
+def law_rows(angles: WorkingAngles) -> FloatArray:
     """Linear map (12, 12) from the coefficients to the twelve quantities."""
     values, slopes = np.zeros((2, len(LAWS), len(COEFFICIENTS)))
     for row, law in enumerate(LAWS):
@@ -115,7 +116,7 @@ def law_rows(angles: WorkingAngles) -> np.ndarray:
     return np.vstack((values, slopes))
 
 
-def law_spans(coefficients: np.ndarray, std: np.ndarray | None = None) -> np.ndarray:
+def law_spans(coefficients: FloatArray, std: FloatArray | None = None) -> FloatArray:
     """Span (12,) of each quantity's law over 15° of its angle.
 
     Parameters
@@ -133,10 +134,10 @@ def law_spans(coefficients: np.ndarray, std: np.ndarray | None = None) -> np.nda
 
 
 def law_quantities(
-    coefficients: np.ndarray,
-    covariance: np.ndarray,
+    coefficients: FloatArray,
+    covariance: FloatArray,
     angles: WorkingAngles,
-    span: np.ndarray | None = None,
+    span: FloatArray | None = None,
 ) -> LawQuantities:
     """Value and slope of each law, and their std.
 

@@ -3,14 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.prediction import NetPredictor, SteadyPredictor, WindowPredictor
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.channels import INPUTS, MEASURED
+
+if TYPE_CHECKING:
+    from trawl_ros.solver.equilibrium import Equilibrium
 
 
 @dataclass(frozen=True)
@@ -28,31 +32,31 @@ class Linearised:
 
     window: SteadyWindow
     channels: tuple[str, ...]
-    at: np.ndarray
-    inputs: np.ndarray
-    net: np.ndarray
-    measured: np.ndarray
-    values: np.ndarray
-    by_coefficients: np.ndarray
-    by_inputs: np.ndarray
-    by_net: np.ndarray
-    slow: np.ndarray
-    state: Any
+    at: FloatArray
+    inputs: FloatArray
+    net: FloatArray
+    measured: FloatArray
+    values: FloatArray
+    by_coefficients: FloatArray
+    by_inputs: FloatArray
+    by_net: FloatArray
+    slow: FloatArray
+    state: 'Equilibrium'
 
-    def predicted(self, coefficients: np.ndarray) -> np.ndarray:
+    def predicted(self, coefficients: FloatArray) -> FloatArray:
         """Predictions (n,) at other coefficients, to first order."""
         return self.values + self.by_coefficients @ (coefficients - self.at)
 
     @property
-    def solved(self) -> np.ndarray:
+    def solved(self) -> FloatArray:
         """Predictions (n,) with the net as it was when they were solved."""
         return self.values + self.by_net @ (self.net - 1.0)
 
-    def only(self, part: slice) -> 'Linearised':
+    def only(self, part: Slice) -> 'Linearised':
         """Linearisation by some of the parameters; the others stay where it was solved."""
         return replace(self, at=self.at[part], by_coefficients=self.by_coefficients[:, part])
 
-    def followed_by(self, values: np.ndarray, columns: np.ndarray) -> 'Linearised':
+    def followed_by(self, values: FloatArray, columns: FloatArray) -> 'Linearised':
         """Linearisation by m more parameters: at these values (m,), with these columns (n, m)."""
         return replace(
             self,
@@ -60,7 +64,7 @@ class Linearised:
             by_coefficients=np.hstack((self.by_coefficients, columns)),
         )
 
-    def std(self, windows_in_state: int) -> np.ndarray:
+    def std(self, windows_in_state: int) -> FloatArray:
         """Standard deviations (n,) of the measured means."""
         return np.array([self.window.std(name, windows_in_state) for name in self.channels])
 
@@ -69,10 +73,10 @@ def linearise(
     predictor: SteadyPredictor,
     observables: Sequence[str],
     window: SteadyWindow,
-    coefficients: np.ndarray,
-    starts: Sequence[Any] = (None,),
-    inputs: np.ndarray | None = None,
-    net: np.ndarray | None = None,
+    coefficients: FloatArray,
+    starts: Sequence['Equilibrium | None'] = (None,),
+    inputs: FloatArray | None = None,
+    net: FloatArray | None = None,
     *,
     even: bool = True,
 ) -> Linearised:
@@ -141,12 +145,12 @@ def linearise(
     raise failure or NoSteadyState('no start was given to look for a steady state from')
 
 
-def measured_inputs(window: SteadyWindow) -> np.ndarray:
+def measured_inputs(window: SteadyWindow) -> FloatArray:
     """Warp lengths (m) and speed (m/s) of a window as measured, (3,)."""
     return np.array([window.means[name] for name in INPUTS])
 
 
-def _places(inputs: np.ndarray) -> tuple[np.ndarray, ...]:
+def _places(inputs: FloatArray) -> tuple[FloatArray, ...]:
     if inputs[0] == inputs[1]:
         return (inputs,)
     mean = float(inputs[:2].mean())

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.special import erf, ndtr
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import TowErrors
 
 ROUNDS = 50
@@ -52,13 +53,13 @@ class TowPart:
     """
 
     errors: TowErrors
-    std: np.ndarray
-    weights: np.ndarray
-    roots: np.ndarray
-    triangle: np.ndarray
-    own: np.ndarray
-    calibration: np.ndarray
-    inputs: np.ndarray
+    std: FloatArray
+    weights: FloatArray
+    roots: FloatArray
+    triangle: FloatArray
+    own: FloatArray
+    calibration: FloatArray
+    inputs: FloatArray
     cost: float
 
 
@@ -81,20 +82,20 @@ class NuisanceElimination:
     """
 
     tows: tuple[TowPart, ...]
-    triangle: np.ndarray
-    right: np.ndarray
-    model_triangle: np.ndarray
-    model: np.ndarray
+    triangle: FloatArray
+    right: FloatArray
+    model_triangle: FloatArray
+    model: FloatArray
     cost: float
 
 
 def eliminate_nuisance(
     tows: Sequence[TowErrors],
-    scales: np.ndarray,
-    residual: np.ndarray,
-    jacobian: np.ndarray,
+    scales: FloatArray,
+    residual: FloatArray,
+    jacobian: FloatArray,
     huber: float,
-    weights: Sequence[np.ndarray] | None = None,
+    weights: Sequence[FloatArray] | None = None,
 ) -> NuisanceElimination:
     """Eliminate all nuisance parameters, robustly.
 
@@ -129,17 +130,17 @@ def eliminate_nuisance(
     return found
 
 
-def reweighted(found: NuisanceElimination, huber: float) -> tuple[np.ndarray, ...]:
+def reweighted(found: NuisanceElimination, huber: float) -> tuple[FloatArray, ...]:
     """Huber weights (n, k) of each tow for the readings' own errors."""
     return tuple(huber / np.maximum(np.abs(part.own), huber) for part in found.tows)
 
 
 def _solved(
     tows: Sequence[TowErrors],
-    weights: Sequence[np.ndarray],
-    scales: np.ndarray,
-    residual: np.ndarray,
-    jacobian: np.ndarray,
+    weights: Sequence[FloatArray],
+    scales: FloatArray,
+    residual: FloatArray,
+    jacobian: FloatArray,
     huber: float,
 ) -> NuisanceElimination:
     m = tows[0].model.shape[2] if tows else 0
@@ -182,32 +183,32 @@ def _solved(
     )
 
 
-def _roots(tow: TowErrors, std: np.ndarray, weights: np.ndarray) -> np.ndarray:
+def _roots(tow: TowErrors, std: FloatArray, weights: FloatArray) -> FloatArray:
     variance = std**2 / weights
     diagonal = variance[:, :, None] * np.eye(variance.shape[1])
     return np.linalg.cholesky(diagonal + tow.inputs @ tow.inputs.transpose(0, 2, 1))
 
 
-def _eliminated(rows: np.ndarray, number: int) -> np.ndarray:
+def _eliminated(rows: FloatArray, number: int) -> FloatArray:
     """Triangular rows with unit normal priors on the first columns added."""
     prior = np.zeros((number, rows.shape[1]))
     prior[:, :number] = np.eye(number)
     return triangular(np.vstack((prior, rows)))
 
 
-def triangular(rows: np.ndarray) -> np.ndarray:
+def triangular(rows: FloatArray) -> FloatArray:
     """Triangular factor R of a QR decomposition of the rows."""
     return np.asarray(np.linalg.qr(rows, mode='r'))
 
 
 def _explained(
     tow: TowErrors,
-    weights: np.ndarray,
-    std: np.ndarray,
-    roots: np.ndarray,
-    triangle: np.ndarray,
-    model: np.ndarray,
-    residual: np.ndarray,
+    weights: FloatArray,
+    std: FloatArray,
+    roots: FloatArray,
+    triangle: FloatArray,
+    model: FloatArray,
+    residual: FloatArray,
     huber: float,
 ) -> TowPart:
     p, m = len(triangle), len(model)
@@ -235,8 +236,8 @@ def _explained(
 
 
 def redundancy_numbers(
-    marginal: NuisanceElimination, jacobian: np.ndarray, root: np.ndarray
-) -> np.ndarray:
+    marginal: NuisanceElimination, jacobian: FloatArray, root: FloatArray
+) -> FloatArray:
     """Redundancy numbers (windows, k): share of each reading's variance kept by its own error.
 
     The rest goes into inputs, calibration, the model's errors and the coefficients: diagonal of
@@ -268,7 +269,7 @@ def redundancy_numbers(
     return shares
 
 
-def joint_root(marginal: NuisanceElimination, root: np.ndarray) -> np.ndarray:
+def joint_root(marginal: NuisanceElimination, root: FloatArray) -> FloatArray:
     """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
 
     ``root`` (q, q) is that of the coefficients alone.
@@ -282,7 +283,7 @@ def joint_root(marginal: NuisanceElimination, root: np.ndarray) -> np.ndarray:
     return joint
 
 
-def calibration_root(part: TowPart, joint: np.ndarray) -> np.ndarray:
+def calibration_root(part: TowPart, joint: FloatArray) -> FloatArray:
     """Root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
 
     ``joint`` is from `joint_root`.
@@ -292,7 +293,8 @@ def calibration_root(part: TowPart, joint: np.ndarray) -> np.ndarray:
     return np.hstack((solved, -solved @ part.triangle[:, p:] @ joint))
 
 
-def clipped_variance(limit: np.ndarray) -> np.ndarray:
+def clipped_variance(limit: FloatArray) -> FloatArray:
     """Mean of min(|z|, limit)² for a standard normal z."""
     density = np.exp(-0.5 * limit**2) / np.sqrt(2.0 * np.pi)
-    return erf(limit / np.sqrt(2.0)) + 2.0 * limit * (limit * ndtr(-limit) - density)
+    mean: FloatArray = erf(limit / np.sqrt(2.0)) + 2.0 * limit * (limit * ndtr(-limit) - density)
+    return mean

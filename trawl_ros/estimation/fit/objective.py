@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 
 @dataclass(frozen=True)
 class PaperChannel:
@@ -32,12 +34,12 @@ PAPER_CHANNELS = (
 )
 
 
-def paper_values(values: Mapping[str, float]) -> np.ndarray:
+def paper_values(values: Mapping[str, float]) -> FloatArray:
     """Quantities (4,) of eq. 35 from observables or means by name."""
     return np.array([np.mean([values[name] for name in row.observables]) for row in PAPER_CHANNELS])
 
 
-def mnae(predicted: np.ndarray, measured: np.ndarray) -> np.ndarray:
+def mnae(predicted: FloatArray, measured: FloatArray) -> FloatArray:
     """Mean normalised absolute error: mean absolute error over mean measured value, per channel.
 
     Parameters
@@ -53,15 +55,17 @@ def mnae(predicted: np.ndarray, measured: np.ndarray) -> np.ndarray:
     if not np.any(usable):
         return np.full(len(PAPER_CHANNELS), np.nan)
     error = np.abs(predicted[usable] - measured[usable]).mean(axis=0)
-    return error / np.abs(measured[usable]).mean(axis=0)
+    normalised: FloatArray = error / np.abs(measured[usable]).mean(axis=0)
+    return normalised
 
 
-def weights(measured: np.ndarray) -> np.ndarray:
+def weights(measured: FloatArray) -> FloatArray:
     """Weights λ (4,) of eq. 35: 1/(n · mean measured value), so every channel counts alike."""
-    return 1.0 / (len(measured) * np.abs(measured).mean(axis=0))
+    weights: FloatArray = 1.0 / (len(measured) * np.abs(measured).mean(axis=0))
+    return weights
 
 
-def objective(predicted: np.ndarray, measured: np.ndarray) -> float:
+def objective(predicted: FloatArray, measured: FloatArray) -> float:
     """Eq. 35 with these weights: the sum of the four channels' errors as given by `mnae`."""
     usable = np.all(np.isfinite(predicted), axis=1) if len(predicted) else np.zeros(0, bool)
     if not np.any(usable):
@@ -70,6 +74,6 @@ def objective(predicted: np.ndarray, measured: np.ndarray) -> float:
     return float(np.sum(weights(measured[usable]) * deviation))
 
 
-def stack(rows: Sequence[np.ndarray]) -> np.ndarray:
+def stack(rows: Sequence[FloatArray]) -> FloatArray:
     """Rows (4,) as one array (n, 4), also for n = 0."""
     return np.array(rows).reshape(-1, len(PAPER_CHANNELS))

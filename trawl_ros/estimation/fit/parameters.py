@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.core.errors import GearError
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -114,7 +114,7 @@ class ParameterVector:
         """Places of each group of a kind."""
         return tuple(block for group, block in self._placed() if group.kind == kind)
 
-    def slice_of(self, kind: Kind) -> slice:
+    def slice_of(self, kind: Kind) -> Slice:
         """Slice of all groups of a kind; empty where there is none."""
         blocks = self.blocks(kind)
         return slice(blocks[0].start, blocks[-1].stop) if blocks else slice(0, 0)

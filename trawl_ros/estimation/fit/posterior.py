@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.calibration import net_factors, tow_biases
 from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS
 from trawl_ros.estimation.fit.estimate import (
@@ -21,7 +22,7 @@ GATE = 3.0
 """Standard deviations at which an innovation's test ratio is 1."""
 
 
-def innovation_of(part: Linearised, fit: Fit, known: np.ndarray) -> Innovation:
+def innovation_of(part: Linearised, fit: Fit, known: FloatArray) -> Innovation:
     """Innovations of a window.
 
     Parameters

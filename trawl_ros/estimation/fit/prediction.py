@@ -1,32 +1,34 @@
 """Protocols of predictors: the estimator's interface to a model of the gear."""
 
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.windows.records import SteadyWindow
+
+if TYPE_CHECKING:
+    from trawl_ros.solver.equilibrium import Equilibrium
 
 
 class SteadyPrediction(Protocol):
     """Prediction of a steady state."""
 
     @property
-    def values(self) -> np.ndarray:
+    def values(self) -> FloatArray:
         """Observables (n,), SI."""
         ...
 
     @property
-    def jacobian(self) -> np.ndarray:
+    def jacobian(self) -> FloatArray:
         """Derivatives (n, 15) of the observables by coefficients, both warp lengths and speed."""
         ...
 
     @property
-    def slow(self) -> np.ndarray:
+    def slow(self) -> FloatArray:
         """Slow mode in each observable (n,), per m of net depth."""
         ...
 
     @property
-    def state(self) -> Any:
+    def state(self) -> 'Equilibrium':
         """Start value for a nearby solution."""
         ...
 
@@ -36,11 +38,11 @@ class SteadyPredictor(Protocol):
 
     def predict(
         self,
-        coefficients: np.ndarray,
+        coefficients: FloatArray,
         port_length: float,
         starboard_length: float,
         speed: float,
-        start: Any = None,
+        start: 'Equilibrium | None' = None,
     ) -> SteadyPrediction:
         """Solve for coefficients (12,), warp lengths (m) and speed (m/s).
 
@@ -69,6 +71,8 @@ class NetPredictor(SteadyPredictor, Protocol):
         """Return the predictor with these factors on the net's drag and weight in water."""
         ...
 
-    def by_net(self, coefficients: np.ndarray, inputs: np.ndarray, found: Any) -> np.ndarray:
+    def by_net(
+        self, coefficients: FloatArray, inputs: FloatArray, found: 'Equilibrium'
+    ) -> FloatArray:
         """Derivatives (n, 2) by factors on drag and weight at a prediction's ``state``."""
         ...

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
@@ -16,9 +17,9 @@ WELL_KNOWN = 0.5
 
 def far(
     part: Linearised,
-    coefficients: np.ndarray,
-    inputs: np.ndarray,
-    net: np.ndarray | None,
+    coefficients: FloatArray,
+    inputs: FloatArray,
+    net: FloatArray | None,
     threshold: float,
 ) -> bool:
     """True if a window is to be relinearised: readings move by so many std to first order.

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from scipy.special import chdtrc
+
+from trawl_ros.core.arrays import FloatArray
 
 FEWEST = 10
 """With fewer residuals than this the statistic is far from χ² and nothing is said."""
@@ -30,7 +31,7 @@ class Whiteness:
         return self.p_value >= SIGNIFICANT
 
 
-def ljung_box(series: Sequence[np.ndarray], lags: int | None = None) -> Whiteness | None:
+def ljung_box(series: Sequence[FloatArray], lags: int | None = None) -> Whiteness | None:
     """Test the autocorrelations of residuals (Ljung–Box), none of which spans two series.
 
     Q = n (n + 2) Σₖ ρₖ² / (n - k), which is χ² with as many degrees of freedom as there are

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import CALIBRATION, GROUP_OF, Scheme
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
@@ -29,7 +30,7 @@ def information_of(
     prior: ParameterVector,
     options: EstimatorOptions,
     scales: Sequence[float] = AS_STATED,
-) -> np.ndarray:
+) -> FloatArray:
     """Information matrix, square in the `unknowns`, of windows in one steady state.
 
     Parameters
@@ -48,12 +49,13 @@ def information_of(
     std = np.where(errors.present, errors.noise * np.array(scales)[GROUP_OF], 1.0)
     variance = std[:, :, None] ** 2 * np.eye(std.shape[1])
     root = np.linalg.cholesky(variance + errors.inputs @ errors.inputs.transpose(0, 2, 1))
-    rows = np.concatenate((errors.calibration, errors.model, fit.jacobian), axis=2)
-    rows = np.linalg.solve(root, rows).reshape(-1, rows.shape[2])
-    return rows.T @ rows
+    columns = np.concatenate((errors.calibration, errors.model, fit.jacobian), axis=2)
+    rows = np.linalg.solve(root, columns).reshape(-1, columns.shape[2])
+    information: FloatArray = rows.T @ rows
+    return information
 
 
-def information_before(prior: ParameterVector, options: EstimatorOptions) -> np.ndarray:
+def information_before(prior: ParameterVector, options: EstimatorOptions) -> FloatArray:
     """Prior information matrix: of calibration, of the model's errors, and of the coefficients."""
     # As in `know`: where neither data nor prior say anything, a std of a million.
     among = unknowns(prior, options)
@@ -62,7 +64,7 @@ def information_before(prior: ParameterVector, options: EstimatorOptions) -> np.
     return np.diag(weights)
 
 
-def information_in(fit: Fit) -> np.ndarray:
+def information_in(fit: Fit) -> FloatArray:
     """Information matrix of a fit: calibration of its newest tow, model errors, and coefficients.
 
     Parameters
@@ -74,7 +76,7 @@ def information_in(fit: Fit) -> np.ndarray:
     of_tow, of_model = marginal.tows[-1].triangle, marginal.model_triangle
     among = unknowns(fit.prior, fit.options)
     board = among.slice_of('coefficients')
-    rows = [
+    parts = [
         of_tow,
         np.pad(of_model, ((0, 0), (len(CALIBRATION), 0))),
         np.pad(marginal.triangle, ((0, 0), (board.start, 0))),
@@ -82,24 +84,26 @@ def information_in(fit: Fit) -> np.ndarray:
     weights = np.zeros(len(among))
     weights[board] = max(fit.options.prior_weight, 1e-12)
     before = np.diag(weights)
-    return sum((part.T @ part for part in rows), before)
+    information: FloatArray = sum((part.T @ part for part in parts), before)
+    return information
 
 
-def covariance_from(information: np.ndarray, prior: ParameterVector) -> np.ndarray:
+def covariance_from(information: FloatArray, prior: ParameterVector) -> FloatArray:
     """Covariance (12, 12) of the coefficients by an information matrix."""
     root = np.linalg.cholesky(information)
     # The lower right block of the inverse needs the lower right block of the factor alone.
     number = len(prior)
     inverse = solve_triangular(root[-number:, -number:], np.eye(number), lower=True)
-    return inverse.T @ inverse * np.outer(prior.std, prior.std)
+    covariance: FloatArray = inverse.T @ inverse * np.outer(prior.std, prior.std)
+    return covariance
 
 
 def fitted_covariance(
     parts: Sequence[Linearised],
-    coefficients: np.ndarray,
+    coefficients: FloatArray,
     prior: ParameterVector,
     options: EstimatorOptions,
-) -> np.ndarray:
+) -> FloatArray:
     """Posterior covariance (12, 12) that the estimator would give with these windows."""
     numbered = tuple(
         replace(part, window=replace(part.window, index=index)) for index, part in enumerate(parts)

@@ -5,6 +5,7 @@ from itertools import chain
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES, LawQuantities, law_rows
 from trawl_ros.estimation.planning.information import covariance_from, unknowns
 from trawl_ros.estimation.planning.search import Designer
@@ -59,7 +60,7 @@ def limits_of(
     return {quantity: found[quantity] for quantity in QUANTITIES if quantity in found}
 
 
-def _partner(designer: Designer, covariance: np.ndarray, index: int) -> str:
+def _partner(designer: Designer, covariance: FloatArray, index: int) -> str:
     """Name the coefficient of another law whose knowledge would improve a quantity most."""
     row = law_rows(designer.question.angles)[index]
     shared = (covariance @ row) ** 2 / np.diag(covariance)

@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.laws import (
     QUANTITIES,
@@ -128,7 +129,7 @@ class Adviser:
         """Share of all manoeuvres that have been solved."""
         return 0.0 if self._explorer is None else 1.0 - len(self._waiting) / len(self._explorer)
 
-    def look_up(self, coefficients: np.ndarray) -> bool:
+    def look_up(self, coefficients: FloatArray) -> bool:
         """Solve one more manoeuvre; False when there is none left.
 
         Parameters
@@ -201,7 +202,7 @@ class Adviser:
         ability = ability_of(self._gear, tuple(self._known))
         return Timetable(ability, self._windows, self._known.values())
 
-    def _moved(self, before: np.ndarray, now: np.ndarray) -> bool:
+    def _moved(self, before: FloatArray, now: FloatArray) -> bool:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)
 
 
@@ -254,9 +255,9 @@ class _Question:
     estimate, a law that turns out to have no slope could never be known well.
     """
 
-    coefficients: np.ndarray
+    coefficients: FloatArray
     angles: WorkingAngles
-    span: np.ndarray
+    span: FloatArray
 
     @classmethod
     def of(cls, fit: Fit, gear: GearRecord) -> '_Question':
@@ -267,5 +268,5 @@ class _Question:
             law_spans(fit.prior.start, fit.prior.std),
         )
 
-    def quantities(self, covariance: np.ndarray) -> LawQuantities:
+    def quantities(self, covariance: FloatArray) -> LawQuantities:
         return law_quantities(self.coefficients, covariance, self.angles, self.span)

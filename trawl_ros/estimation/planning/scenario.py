@@ -1,12 +1,10 @@
 """Scenario file of a plan, for ``trawl tow``."""
 
-from typing import Any
-
 from trawl_ros.estimation.planning.states import Manoeuvre
 from trawl_ros.estimation.planning.sweep import SweepTrial
 
 
-def scenario_of(trial: SweepTrial, gear: str) -> dict[str, Any]:
+def scenario_of(trial: SweepTrial, gear: str) -> dict[str, object]:
     """Return the content of the scenario file, to be written as YAML.
 
     Parameters

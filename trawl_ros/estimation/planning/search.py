@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities, WorkingAngles, law_quantities
 from trawl_ros.estimation.fit.linearised import Linearised
@@ -48,16 +49,16 @@ class Question:
     ``coefficients`` (12,) as they are believed to be, ``span`` (12,) from `law_spans`.
     """
 
-    coefficients: np.ndarray
+    coefficients: FloatArray
     prior: ParameterVector
     angles: WorkingAngles
-    span: np.ndarray
+    span: FloatArray
     estimator: EstimatorOptions
     windows: WindowOptions
     ability: Ability
     minutes: float
 
-    def quantities(self, covariance: np.ndarray) -> LawQuantities:
+    def quantities(self, covariance: FloatArray) -> LawQuantities:
         """Quantities of the laws with a covariance (12, 12) of the coefficients."""
         return law_quantities(self.coefficients, covariance, self.angles, self.span)
 
@@ -118,16 +119,16 @@ class Designer:
             to_come=rest_of(candidate, question.windows).to_come(question.windows),
         )
 
-    def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> np.ndarray:
+    def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> FloatArray:
         """Information matrix after manoeuvres, each repeated ``times`` times."""
         taught = [self._taught[self._number[one]] for one in manoeuvres]
         return self._before + times * sum(taught)
 
-    def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> np.ndarray:
+    def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
         """Posterior covariance (12, 12) of the coefficients after manoeuvres."""
         return covariance_from(self.information(manoeuvres), self.question.prior)
 
-    def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> np.ndarray:
+    def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
         """Posterior covariance (12, 12) as the estimator itself gives it."""
         question = self.question
         parts = [

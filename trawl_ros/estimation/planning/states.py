@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
@@ -134,7 +135,7 @@ class Explorer:
     def __init__(
         self,
         predictor: Predictor,
-        coefficients: np.ndarray,
+        coefficients: FloatArray,
         limits: Limits | None = None,
     ) -> None:
         self.predictor = predictor

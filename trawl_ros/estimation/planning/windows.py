@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.planning.states import DEPTHS, PLANNED, TowableManoeuvre
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -26,7 +25,7 @@ at the lowest rate that the instrument may have."""
 
 def imagined_windows(
     candidate: TowableManoeuvre,
-    coefficients: np.ndarray,
+    coefficients: FloatArray,
     *,
     state: int,
     number: int,

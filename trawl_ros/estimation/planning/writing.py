@@ -2,7 +2,6 @@
 
 import math
 from pathlib import Path
-from typing import Any
 
 import yaml
 
@@ -51,7 +50,7 @@ def write_plan(plan: TrialPlan, gear: str, folder: Path) -> None:
     load_scenario(folder / SCENARIO)
 
 
-def plan_record(plan: TrialPlan) -> dict[str, Any]:
+def plan_record(plan: TrialPlan) -> dict[str, object]:
     """Plan as JSON content; lengths in m, speeds in m/s, times in minutes."""
     return {
         'gear': plan.gear,
@@ -92,7 +91,7 @@ def _key(trial: SweepTrial) -> str:
     return f'sd_of_span_after_{trial.name}'.replace(', ', '_').replace("'s", '').replace(' ', '_')
 
 
-def _trial(trial: SweepTrial) -> dict[str, Any]:
+def _trial(trial: SweepTrial) -> dict[str, object]:
     def number(known: LawQuantities) -> int:
         return int(known.well_known.sum())
 

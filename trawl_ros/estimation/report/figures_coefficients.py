@@ -5,6 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.special import ndtri
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.style import FAINT, MEASURED, MEASURED_TRUTH, PORT, quiet
@@ -22,7 +23,7 @@ def coefficients_figure(report: Report) -> Figure:
     estimate, prior = report.estimate, report.prior
     place = np.arange(len(COEFFICIENTS))
 
-    def scaled(values: np.ndarray) -> np.ndarray:
+    def scaled(values: FloatArray) -> FloatArray:
         return (values - prior.start) / prior.std
 
     label = 'prior, 95 %' if report.prior_weight else 'prior, 95 %, which was not used'

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.objective import objective
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -18,7 +19,7 @@ def objective_figure(report: Report) -> Figure:
     windows = [*windows[:1], *windows]
     steps = np.arange(len(windows))
 
-    def over_same(values: np.ndarray) -> list[float]:
+    def over_same(values: FloatArray) -> list[float]:
         return [objective(values[:number], report.measured[:number]) for number in windows]
 
     before = over_same(report.at_start)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
@@ -71,7 +72,7 @@ def channels_figure(report: Report) -> Figure:
     return figure
 
 
-def _by_length(length: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _by_length(length: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Means of values of similar warp length, in rising order, so that a line can join them."""
     like = np.round(length / ALIKE_M) * ALIKE_M
     groups = [like == at for at in np.unique(like)]
@@ -107,7 +108,7 @@ def residuals_figure(report: Report) -> Figure:
     return figure
 
 
-def _draw_residuals(axes: Axes, rows: Sequence[ChannelResiduals], at: np.ndarray) -> None:
+def _draw_residuals(axes: Axes, rows: Sequence[ChannelResiduals], at: FloatArray) -> None:
     axes.axhspan(-2.0, 2.0, color=FAINT, alpha=0.15, lw=0)
     axes.axhline(0.0, color=FAINT, lw=0.8)
     for row in rows:
@@ -119,7 +120,7 @@ def _draw_residuals(axes: Axes, rows: Sequence[ChannelResiduals], at: np.ndarray
     quiet(axes)
 
 
-def _colours(speeds: np.ndarray) -> dict[float, tuple[float, float, float, float]]:
+def _colours(speeds: FloatArray) -> dict[float, tuple[float, float, float, float]]:
     """A colour per speed, from dark to light."""
     chosen = matplotlib.colormaps['viridis'](np.linspace(0.0, 0.85, len(speeds)))
     return {float(speed): tuple(colour) for speed, colour in zip(speeds, chosen, strict=True)}

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
@@ -33,7 +34,7 @@ class HeldOut:
 
     by: str
     groups: int
-    predicted: np.ndarray
+    predicted: FloatArray
 
 
 def hold_out(

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from trawl_ros.core.files import made_folder, write_json, write_text
 from trawl_ros.core.version import __version__
@@ -79,10 +78,10 @@ def page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()
     )
 
 
-def _coefficients(report: Report) -> list[dict[str, Any]]:
+def _coefficients(report: Report) -> list[dict[str, object]]:
     estimate, rows = report.estimate, []
     for i, name in enumerate(COEFFICIENTS):
-        row: dict[str, Any] = {
+        row: dict[str, object] = {
             'name': name,
             'start': report.prior.start[i],
             'value': estimate.values[i],
@@ -98,13 +97,13 @@ def _coefficients(report: Report) -> list[dict[str, Any]]:
     return rows
 
 
-def _laws(report: Report) -> list[dict[str, Any]]:
+def _laws(report: Report) -> list[dict[str, object]]:
     """Rows of the laws, none where they are not known."""
     if report.laws is None:
         return []
     known, number = report.laws.quantities, len(LAWS)
 
-    def cells(i: int) -> dict[str, Any]:
+    def cells(i: int) -> dict[str, object]:
         return {'value': known.values[i], 'sd': known.sd[i], 'well': known.well_known[i]}
 
     return [
@@ -113,7 +112,7 @@ def _laws(report: Report) -> list[dict[str, Any]]:
     ]
 
 
-def _residual(row: ChannelResiduals) -> dict[str, Any]:
+def _residual(row: ChannelResiduals) -> dict[str, object]:
     white = row.whiteness
     scale, unit = {'N': (1e-3, 'kN'), 'rad': (180.0 / math.pi, '°')}.get(row.unit, (1.0, row.unit))
     return {
@@ -130,7 +129,7 @@ def _residual(row: ChannelResiduals) -> dict[str, Any]:
     }
 
 
-def _tows(report: Report) -> list[dict[str, Any]]:
+def _tows(report: Report) -> list[dict[str, object]]:
     return [
         {
             'name': tow.name,

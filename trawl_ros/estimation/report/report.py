@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -38,7 +39,7 @@ class TowOutcome:
     name: str
     windows: int
     states: int
-    held_out: np.ndarray
+    held_out: FloatArray
 
 
 @dataclass(frozen=True)
@@ -96,16 +97,16 @@ class Report:
     estimate: Estimate
     prior: ParameterVector
     prior_weight: float
-    truth: np.ndarray | None
+    truth: FloatArray | None
     rejected: dict[str, int]
     found: dict[str, str]
     windows: tuple[SteadyWindow, ...]
     tows: tuple[str, ...]
-    measured: np.ndarray
-    at_start: np.ndarray
-    at_end: np.ndarray
+    measured: FloatArray
+    at_start: FloatArray
+    at_end: FloatArray
     held_out: HeldOut
-    at_truth: np.ndarray | None
+    at_truth: FloatArray | None
     residuals: tuple[ChannelResiduals, ...]
     innovations: tuple[ChannelResiduals, ...]
     course: tuple[WindowUsed, ...]
@@ -114,12 +115,12 @@ class Report:
     laws: KnownLaws | None
 
     @property
-    def inputs(self) -> np.ndarray:
+    def inputs(self) -> FloatArray:
         """Port and starboard warp length (m) and speed (m/s) of each window, (n, 3)."""
         return np.array([[window.means[name] for name in INPUTS] for window in self.windows])
 
     @property
-    def tow_of(self) -> np.ndarray:
+    def tow_of(self) -> FloatArray:
         """Number of the tow (n,) of each window."""
         return np.array([window.tow for window in self.windows])
 
@@ -135,7 +136,7 @@ class Report:
         return found
 
     @property
-    def errors(self) -> dict[str, np.ndarray]:
+    def errors(self) -> dict[str, FloatArray]:
         """Mean normalised absolute errors (4,) at ``start``, ``end`` and ``held_out``."""
         return {
             'start': mnae(self.at_start, self.measured),
@@ -164,7 +165,7 @@ class Report:
 
 def report(
     identification: Identification,
-    truth: np.ndarray | None = None,
+    truth: FloatArray | None = None,
     folds: int = 5,
     tows: Sequence[str] = (),
     gear: GearRecord | None = None,
@@ -237,7 +238,7 @@ def _laws(
     )
 
 
-def _values(parts: Sequence[Linearised | None]) -> np.ndarray:
+def _values(parts: Sequence[Linearised | None]) -> FloatArray:
     """Values of the channels of eq. 35 (n, 4), NaN where there is no steady state."""
     return stack(
         [

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
@@ -31,13 +32,13 @@ class ChannelResiduals:
 
     channel: str
     unit: str
-    windows: np.ndarray
-    tows: np.ndarray
-    values: np.ndarray
-    stds: np.ndarray
+    windows: FloatArray
+    tows: FloatArray
+    values: FloatArray
+    stds: FloatArray
 
     @property
-    def scaled(self) -> np.ndarray:
+    def scaled(self) -> FloatArray:
         """Normalised residuals (n,), over their stated std."""
         return self.values / self.stds
 
@@ -68,7 +69,7 @@ class ChannelResiduals:
 
 
 def solve(
-    estimator: Estimator, coefficients: np.ndarray, net: np.ndarray | None = None
+    estimator: Estimator, coefficients: FloatArray, net: FloatArray | None = None
 ) -> list[Linearised | None]:
     """Solve the model at the inputs of each window, from the nearest one already solved.
 

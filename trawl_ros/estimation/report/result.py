@@ -1,7 +1,6 @@
 """Content of ``identification.json``."""
 
 import math
-from typing import Any
 
 from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.laws import QUANTITIES
@@ -11,7 +10,7 @@ from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
-def result(report: Report) -> dict[str, Any]:
+def result(report: Report) -> dict[str, object]:
     """Build the content of ``identification.json``; numbers that do not exist are None."""
     estimate, errors = report.estimate, report.errors
     return {
@@ -71,7 +70,7 @@ def result(report: Report) -> dict[str, Any]:
     }
 
 
-def _laws(report: Report) -> dict[str, Any] | None:
+def _laws(report: Report) -> dict[str, object] | None:
     """Value and slope of each law at the mean working angle, by name."""
     if report.laws is None:
         return None
@@ -91,7 +90,7 @@ def _laws(report: Report) -> dict[str, Any] | None:
     }
 
 
-def _accepted(report: Report) -> dict[str, Any]:
+def _accepted(report: Report) -> dict[str, object]:
     """Numbers of windows and, per channel, readings in the fit."""
     readings: dict[str, int] = {}
     for window in report.windows:
@@ -100,7 +99,7 @@ def _accepted(report: Report) -> dict[str, Any]:
     return {'windows': len(report.windows), 'readings': readings}
 
 
-def _tows(report: Report) -> list[dict[str, Any]]:
+def _tows(report: Report) -> list[dict[str, object]]:
     tows = []
     for tow in report.by_tow:
         tows.append(
@@ -127,7 +126,7 @@ def _tows(report: Report) -> list[dict[str, Any]]:
     return tows
 
 
-def _statistics(row: ChannelResiduals) -> dict[str, Any]:
+def _statistics(row: ChannelResiduals) -> dict[str, object]:
     white = row.whiteness
     return {
         'unit': row.unit,

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import NAMED_SHARE
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -21,8 +22,8 @@ class Spectrum:
         A unit vector in each row.
     """
 
-    singular: np.ndarray
-    directions: np.ndarray
+    singular: FloatArray
+    directions: FloatArray
 
     def name(self, row: int) -> str:
         """Names of the coefficients with the largest part in a direction."""
@@ -32,7 +33,7 @@ class Spectrum:
         return ' with '.join(named or [COEFFICIENTS[order[0]]])
 
 
-def spectrum(covariance: np.ndarray, prior: ParameterVector, prior_weight: float) -> Spectrum:
+def spectrum(covariance: FloatArray, prior: ParameterVector, prior_weight: float) -> Spectrum:
     """Spectrum of a covariance with the prior's information subtracted.
 
     With C the covariance in prior std, C⁻¹ = V S² Vᵀ + w I: the eigenvalues of C are

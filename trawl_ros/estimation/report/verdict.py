@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.report import Report
@@ -58,7 +59,7 @@ def verdict(report: Report) -> Verdict:
     )
 
 
-def _fit(report: Report, held: np.ndarray, paper: np.ndarray) -> str:
+def _fit(report: Report, held: FloatArray, paper: FloatArray) -> str:
     out = report.held_out
     if not np.all(np.isfinite(held)):
         return (

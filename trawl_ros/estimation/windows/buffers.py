@@ -5,6 +5,7 @@ from bisect import bisect_left
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.windows.records import Rejections
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import NANO
@@ -93,7 +94,7 @@ class ChannelBuffer:
             self._drop_before(self._stamps[CAPACITY // 10])
         return True
 
-    def window(self, start_ns: int, end_ns: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def window(self, start_ns: int, end_ns: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Stamps (n,) in ns, values (n,) and stated std (n,) for a window's start and end (ns)."""
         first = bisect_left(self._stamps, start_ns - self.delay)
         last = bisect_left(self._stamps, end_ns - self.delay)
@@ -110,7 +111,7 @@ class ChannelBuffer:
         """
         return self.first is not None and self.first < end_ns - self.delay
 
-    def outside(self, start_ns: int, end_ns: int) -> np.ndarray:
+    def outside(self, start_ns: int, end_ns: int) -> FloatArray:
         """Values (n,) that a window would have if they were not out of range."""
         start_ns, end_ns = start_ns - self.delay, end_ns - self.delay
         return np.array([value for stamp, value in self._outside if start_ns <= stamp < end_ns])

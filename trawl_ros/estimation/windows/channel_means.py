@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.units import UNITS
 from trawl_ros.estimation.windows.buffers import ChannelBuffer
 from trawl_ros.estimation.windows.operation import Unheld
@@ -69,7 +70,7 @@ def channel_mean(
     return ChannelMean(mean, noise, len(values), excluded, to_come)
 
 
-def _outside(where: str, channel: Channel, outside: np.ndarray) -> Unheld:
+def _outside(where: str, channel: Channel, outside: FloatArray) -> Unheld:
     unit, reads = unit_of(outside, channel), float(np.median(outside))
     if unit is not None:
         return Unheld(

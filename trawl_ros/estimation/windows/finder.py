@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.windows.buffers import ChannelBuffer
 from trawl_ros.estimation.windows.channel_means import ChannelMean, channel_mean
 from trawl_ros.estimation.windows.operation import Block, Operation, Unheld
@@ -88,7 +89,7 @@ class SteadyWindowFinder:
         self._tow += 1
         self._in_state = 0
         self._held = False
-        self._reference: np.ndarray | None = None
+        self._reference: FloatArray | None = None
         self._last_end = 0
         self._stretch: tuple[str, bool] | None = None
         self._began: int | None = None
@@ -188,7 +189,7 @@ class SteadyWindowFinder:
         return 0.0 if self._began is None else (stamp - self._began) / (3600.0 * NANO)
 
     def _summary(self, index: int) -> Block:
-        def values(name: str) -> np.ndarray:
+        def values(name: str) -> FloatArray:
             start_ns = index * self._block_ns
             return self._buffers[name].window(start_ns, start_ns + self._block_ns)[1]
 
@@ -228,7 +229,9 @@ class SteadyWindowFinder:
         self._last_end = end_ns
         return [window]
 
-    def _same_state(self, inputs: np.ndarray) -> bool:
+    def _same_state(self, inputs: FloatArray) -> bool:
+        if self._reference is None:
+            return False
         tolerance = np.array(
             [*(self._options.length_tolerance,) * 2, self._options.speed_tolerance]
         )

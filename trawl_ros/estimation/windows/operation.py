@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.estimation.windows.statistics import circular_median, wrapped
 from trawl_ros.records.channels import CHANNELS, INPUTS
@@ -71,10 +72,13 @@ class Operation:
         """True if settling time and window are both covered."""
         return len(self._blocks) >= self.settle_blocks + self.window_blocks
 
-    def inputs(self) -> np.ndarray:
+    def inputs(self) -> FloatArray:
         """Mean inputs (3,) over the window's blocks; only after `unheld` gave None."""
         window = list(self._blocks)[-self.window_blocks :]
-        return np.mean(np.array([block.inputs for block in window], dtype=float), axis=0)
+        mean: FloatArray = np.mean(
+            np.array([block.inputs for block in window], dtype=float), axis=0
+        )
+        return mean
 
     def unheld(self) -> Unheld | None:
         """Reason why inputs or heading were not held over settling time and window, or None."""

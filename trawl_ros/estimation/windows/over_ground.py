@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.windows.statistics import circular_median
 
-Series = tuple[np.ndarray, np.ndarray]
+Series = tuple[FloatArray, FloatArray]
 """Stamps (n,) in ns and values (n,)."""
 
 PAIRED_NS = 600_000_000
@@ -48,7 +49,7 @@ class GroundTrack:
     copied: bool
 
     @property
-    def current(self) -> np.ndarray:
+    def current(self) -> FloatArray:
         """Current (2,), east and north, m/s."""
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return np.array(

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtr
 
+from trawl_ros.core.arrays import BoolArray, FloatArray
+
 MAD_TO_STD = 1.4826
 
 MOST_CORRELATED = 3.0
@@ -13,7 +15,7 @@ MOST_CORRELATED = 3.0
 not longer than its noise is slow cannot tell."""
 
 
-def effective_number(values: np.ndarray) -> float:
+def effective_number(values: FloatArray) -> float:
     """Effective number of independent readings in ``values`` (n,).
 
     From the lag-1 autocorrelation ρ as n (1 − ρ)/(1 + ρ), with Kendall's correction of the
@@ -33,7 +35,7 @@ def effective_number(values: np.ndarray) -> float:
     return max(1.0, n * (1.0 - rho) / (1.0 + rho))
 
 
-def error_of_mean(values: np.ndarray, stated: float) -> float:
+def error_of_mean(values: FloatArray, stated: float) -> float:
     """Standard error of the mean of ``values`` (n,), ``stated`` std used when they are few.
 
     Autocovariances are summed as long as those of two successive lags together are positive
@@ -73,7 +75,7 @@ class Trend:
         return math.sqrt(max(0.0, self.drift**2 - self.error**2))
 
 
-def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
+def trend(seconds: FloatArray, values: FloatArray) -> Trend:
     """Linear trend of ``values`` (n,) at ``seconds`` (n,), tested against its noise.
 
     The degrees of freedom and the slope's error use the effective number of readings of the
@@ -96,7 +98,7 @@ def trend(seconds: np.ndarray, values: np.ndarray) -> Trend:
     return Trend(slope * span, p_value, error * span)
 
 
-def outliers(values: np.ndarray, stated: float, limit: float) -> np.ndarray:
+def outliers(values: FloatArray, stated: float, limit: float) -> BoolArray:
     """Mask (n,) of values further than ``limit`` robust std from the median (Hampel).
 
     Half the stated std is the least spread assumed: a quantised sensor has a median
@@ -107,18 +109,18 @@ def outliers(values: np.ndarray, stated: float, limit: float) -> np.ndarray:
     return distance > limit * spread
 
 
-def wrapped(angles: np.ndarray) -> np.ndarray:
+def wrapped(angles: FloatArray) -> FloatArray:
     """Wrap angles (n,) in rad into ±π."""
     return (angles + math.pi) % (2.0 * math.pi) - math.pi
 
 
-def circular_median(angles: np.ndarray) -> float:
+def circular_median(angles: FloatArray) -> float:
     """Median of angles (n,) in rad that may lie on both sides of ±π."""
     middle = math.atan2(float(np.sin(angles).sum()), float(np.cos(angles).sum()))
     return middle + float(np.median(wrapped(angles - middle)))
 
 
-def longest_run(values: np.ndarray) -> int:
+def longest_run(values: FloatArray) -> int:
     """Length of the longest run of exactly equal successive values."""
     if len(values) == 0:
         return 0

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.units import UNITS
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel
 
@@ -80,7 +81,7 @@ def towable(means: Mapping[str, float]) -> bool:
     return TOWING[0] <= means['speed'] <= TOWING[1]
 
 
-def unit_of(outside: np.ndarray, channel: Channel) -> str | None:
+def unit_of(outside: FloatArray, channel: Channel) -> str | None:
     """Name the unit in which values (n,), all outside a channel's range, would be plausible."""
     if np.any((outside >= channel.low) & (outside <= channel.high)):
         return None

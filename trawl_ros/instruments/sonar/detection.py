@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import ByteArray, FloatArray, IntArray
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.running import running_mean
 
@@ -13,7 +14,7 @@ _ALONG = 3
 _NOISE_ALONG = 9
 
 
-def contrast(image: np.ndarray, grid: Grid) -> np.ndarray:
+def contrast(image: ByteArray, grid: Grid) -> FloatArray:
     """Contrast of an image against the usual level at each range.
 
     Parameters
@@ -34,7 +35,7 @@ def contrast(image: np.ndarray, grid: Grid) -> np.ndarray:
     return level
 
 
-def clear_echoes(image: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def clear_echoes(image: ByteArray, grid: Grid) -> tuple[IntArray, IntArray]:
     """Detect all echoes.
 
     Returns
@@ -52,10 +53,11 @@ def clear_echoes(image: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]
     # Sorted by run, then brightness: the last of each run is its brightest.
     order = np.lexsort((level[there], run))
     last = order[np.append(np.flatnonzero(np.diff(run[order])), len(order) - 1)]
-    return rows, np.nonzero(there)[1][last]
+    columns: IntArray = np.nonzero(there)[1][last]
+    return rows, columns
 
 
-def first_echoes(image: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def first_echoes(image: ByteArray, grid: Grid) -> tuple[FloatArray, FloatArray]:
     """Detect the nearest echo of each beam.
 
     Returns

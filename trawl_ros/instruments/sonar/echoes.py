@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.instruments.sonar.image import Grid
 from trawl_ros.instruments.sonar.schools import inside
 from trawl_ros.records.truth import SchoolTruth
@@ -30,9 +31,9 @@ class Ping:
     """
 
     angle: float
-    position: np.ndarray
-    axes: np.ndarray
-    section: np.ndarray
+    position: FloatArray
+    axes: FloatArray
+    section: FloatArray
     schools: tuple[SchoolTruth, ...] = ()
     altitude: float = np.inf
 
@@ -47,7 +48,7 @@ class Beam:
     thickness: float
     wave_length: float
 
-    def two_way(self, off: np.ndarray) -> np.ndarray:
+    def two_way(self, off: FloatArray) -> FloatArray:
         """Power gain out and back at angles (rad) off the axis in the plane of the sweep.
 
         That of a line transducer, (sin u / u)⁴: side lobes of -26.5 dB; none behind it.
@@ -71,8 +72,8 @@ class Strengths:
 
 
 def rope_cross_section(
-    diameter: np.ndarray, distance: np.ndarray, beam: Beam, strengths: Strengths
-) -> np.ndarray:
+    diameter: FloatArray, distance: FloatArray, beam: Beam, strengths: Strengths
+) -> FloatArray:
     """Cross-section (m²) of ropes that pass through a beam.
 
     Over the length l = distance × thickness that lies in the beam, a rope of diameter d is hit by
@@ -104,7 +105,7 @@ def echoes(
     strengths: Strengths,
     sounding: Sounding,
     generator: np.random.Generator,
-) -> np.ndarray:
+) -> FloatArray:
     """Mean cross-section received, for each beam and cell.
 
     Parameters
@@ -130,12 +131,12 @@ def echoes(
 
 def _ropes(
     pings: Sequence[Ping],
-    axis: np.ndarray,
+    axis: FloatArray,
     grid: Grid,
     beam: Beam,
     strengths: Strengths,
     stretch: float,
-) -> np.ndarray:
+) -> FloatArray:
     rows = np.repeat(np.arange(len(pings)), [len(ping.section) for ping in pings])
     x, y, diameter = np.concatenate([ping.section for ping in pings]).T
     distance = np.hypot(x, y)
@@ -146,12 +147,12 @@ def _ropes(
 
 def _seabed(
     pings: Sequence[Ping],
-    axis: np.ndarray,
+    axis: FloatArray,
     grid: Grid,
     beam: Beam,
     strengths: Strengths,
     stretch: float,
-) -> np.ndarray:
+) -> FloatArray:
     """Cross-sections of a level seabed in patches, by Lambert's law (cosine squared)."""
     step = grid.angle_increment / SEABED_STEPS
     angle = np.arange(-0.5 * np.pi, 0.5 * np.pi, step)
@@ -170,13 +171,13 @@ def _seabed(
 
 def _fish(
     pings: Sequence[Ping],
-    axis: np.ndarray,
+    axis: FloatArray,
     grid: Grid,
     beam: Beam,
     strengths: Strengths,
     stretch: float,
     generator: np.random.Generator,
-) -> np.ndarray:
+) -> FloatArray:
     """Cross-sections of fish, drawn cell by cell, in their own beam and its neighbours."""
     true_cell = grid.cell / stretch
     ranges = grid.ranges / stretch
@@ -192,13 +193,11 @@ def _fish(
     return strengths.fish * (beam.two_way(_turned(axis[:, None] - axis)) @ fish)
 
 
-def _turned(angle: np.ndarray) -> np.ndarray:
+def _turned(angle: FloatArray) -> FloatArray:
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
-def _gathered(
-    rows: np.ndarray, ranges: np.ndarray, strengths: np.ndarray, grid: Grid
-) -> np.ndarray:
+def _gathered(rows: IntArray, ranges: FloatArray, strengths: FloatArray, grid: Grid) -> FloatArray:
     """Distribute point targets over cells, each shared by the two whose middles are nearest."""
     place = ranges / grid.cell - 0.5
     first = np.floor(place).astype(int)
@@ -214,7 +213,7 @@ def _gathered(
     return total.reshape(grid.beams, grid.cells)
 
 
-def _as_long_as_a_pulse(received: np.ndarray, cells: float) -> np.ndarray:
+def _as_long_as_a_pulse(received: FloatArray, cells: float) -> FloatArray:
     """Smear each cell over a bell curve of so many cells between half-power points.
 
     The peak keeps its height, as a point's echo is as strong as the point for its whole length.
@@ -223,4 +222,5 @@ def _as_long_as_a_pulse(received: np.ndarray, cells: float) -> np.ndarray:
     bell = 0.5 ** ((2 * np.arange(-reach, reach + 1) / cells) ** 2)
     padded = np.pad(received, ((0, 0), (reach, reach)))
     width = received.shape[1]
-    return sum(weight * padded[:, k : k + width] for k, weight in enumerate(bell))
+    filtered: FloatArray = sum(weight * padded[:, k : k + width] for k, weight in enumerate(bell))
+    return filtered

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 BRIGHTEST = 255
 
 
@@ -26,9 +28,9 @@ class Grid:
     span: float
 
     @property
-    def angles(self) -> np.ndarray:
+    def angles(self) -> FloatArray:
         """Angle of each row, (beams,) rad."""
-        return self.angle_min + self.angle_increment * np.arange(self.beams)
+        return self.angle_min + self.angle_increment * np.arange(self.beams, dtype=float)
 
     @property
     def cell(self) -> float:
@@ -36,6 +38,6 @@ class Grid:
         return self.max_range / self.cells
 
     @property
-    def ranges(self) -> np.ndarray:
+    def ranges(self) -> FloatArray:
         """Range of each column, (cells,) m."""
-        return self.cell * (np.arange(self.cells) + 0.5)
+        return self.cell * (np.arange(self.cells, dtype=float) + 0.5)

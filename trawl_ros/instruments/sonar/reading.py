@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import ByteArray, FloatArray, IntArray
 from trawl_ros.instruments.sonar.detection import CLEAR, contrast
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.running import running_least, running_median
@@ -59,7 +60,7 @@ class Openings:
     width: float
 
 
-def read_openings(image: np.ndarray, grid: Grid) -> Openings:
+def read_openings(image: ByteArray, grid: Grid) -> Openings:
     """Read the openings off an image.
 
     Parameters
@@ -77,7 +78,7 @@ def read_openings(image: np.ndarray, grid: Grid) -> Openings:
     return Openings(height, sum(halves))
 
 
-def _sides(grid: Grid) -> list[tuple[np.ndarray, np.ndarray]]:
+def _sides(grid: Grid) -> list[tuple[IntArray, FloatArray]]:
     """Rows of the port and of the starboard side from below upward, and their angles outward."""
     found = []
     for outward in (1.0, -1.0):
@@ -87,7 +88,7 @@ def _sides(grid: Grid) -> list[tuple[np.ndarray, np.ndarray]]:
     return found
 
 
-def _height(level: np.ndarray, grid: Grid) -> float:
+def _height(level: FloatArray, grid: Grid) -> float:
     """Height (m) by the lowest clear echo below the sonar; NaN where there is none."""
     rows = np.flatnonzero(np.abs(grid.angles) < LOW_SECTOR)
     there = level[rows] >= CLEAR
@@ -104,7 +105,7 @@ def _height(level: np.ndarray, grid: Grid) -> float:
     return math.nan if begins.sum() > CROWD else lowest
 
 
-def _half_width(level: np.ndarray, angles: np.ndarray, grid: Grid) -> float:
+def _half_width(level: FloatArray, angles: FloatArray, grid: Grid) -> float:
     """Half width (m) of one side of the net, by a curve through the widest part of its line."""
     line = follow(level)
     beams = np.arange(len(line))
@@ -130,7 +131,7 @@ def _half_width(level: np.ndarray, angles: np.ndarray, grid: Grid) -> float:
     return float(curve(np.linspace(place.min(), place.max(), 25)).max())
 
 
-def _middle(level: np.ndarray, column: int, grid: Grid) -> float:
+def _middle(level: FloatArray, column: int, grid: Grid) -> float:
     """Range (m) of the echo's centre in one beam at a column."""
     around = np.arange(max(column - 3, 0), min(column + 3, grid.cells - 1) + 1)
     weight = np.maximum(level[around] - 0.5 * CLEAR, 0.0) ** 2
@@ -139,7 +140,7 @@ def _middle(level: np.ndarray, column: int, grid: Grid) -> float:
     return float(weight @ grid.ranges[around] / weight.sum())
 
 
-def _seabed(image: np.ndarray, level: np.ndarray, grid: Grid) -> np.ndarray:
+def _seabed(image: ByteArray, level: FloatArray, grid: Grid) -> FloatArray:
     """Range (beams,) from which on a beam may hear the seabed, infinite without one in view.
 
     It is where the brightest echoes of many beams, nearly white, lie on one straight line.

@@ -5,31 +5,30 @@ As scipy.ndimage has them, which would cost each start of the node 12 MB and a q
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
+from trawl_ros.core.arrays import FloatArray
 
 
-def running_mean(values: Values, width: int) -> Values:
+def running_mean(values: FloatArray, width: int) -> FloatArray:
     """Mean over an odd number of neighbours along the last axis (..., n), mirrored at its ends."""
     padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(width // 2,) * 2], mode='symmetric')
     number = values.shape[-1]
-    total = padded[..., :number].copy()
+    total: FloatArray = padded[..., :number].copy()
     for first in range(1, width):
         total += padded[..., first : first + number]
     total /= width
     return total
 
 
-def running_median(values: Values, width: int) -> Values:
+def running_median(values: FloatArray, width: int) -> FloatArray:
     """Median of an odd number of neighbours (n,); the ends go on beyond."""
     return np.asarray(np.median(_windows(values, width), axis=-1))
 
 
-def running_least(values: Values, width: int) -> Values:
+def running_least(values: FloatArray, width: int) -> FloatArray:
     """Least of an odd number of neighbours (n,); the ends go on beyond."""
     return np.asarray(_windows(values, width).min(axis=-1))
 
 
-def _windows(values: Values, width: int) -> Values:
+def _windows(values: FloatArray, width: int) -> FloatArray:
     return sliding_window_view(np.pad(values, width // 2, mode='edge'), width)

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.records.truth import SchoolTruth
 
 
 def inside(
-    school: SchoolTruth, position: np.ndarray, ways: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+    school: SchoolTruth, position: FloatArray, ways: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the distances at which straight lines enter and leave a school.
 
     Parameters

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 
 
-def power(level: np.ndarray | float) -> np.ndarray:
+def power(level: FloatArray | float) -> FloatArray:
     """Convert dB into a ratio of powers."""
     return 10 ** (np.asarray(level) / 10)
 
@@ -27,15 +28,15 @@ class Receiver:
     black: float
     white: float
 
-    def gain(self, ranges: np.ndarray) -> np.ndarray:
+    def gain(self, ranges: FloatArray) -> FloatArray:
         """Time-varied gain (dB) at ranges (m), 40 log r + 2 α r: a point stays as bright."""
         return 40 * np.log10(ranges) + 2 * self.absorption * ranges
 
-    def unwanted(self, level: float, ranges: np.ndarray) -> np.ndarray:
+    def unwanted(self, level: float, ranges: FloatArray) -> FloatArray:
         """Apparent cross-section (m²) of sound of a level (dB re 1 µPa) at ranges (m)."""
         return power(level - self.source_level + self.gain(ranges))
 
-    def brightness(self, strength: np.ndarray, gain: float) -> np.ndarray:
+    def brightness(self, strength: FloatArray, gain: float) -> FloatArray:
         """Image (uint8) of cross-sections (m²), with an excess ``gain`` (dB)."""
         level = 10 * np.log10(np.maximum(strength, np.finfo(float).tiny)) + gain
         share = (level - self.black) / (self.white - self.black)
@@ -52,8 +53,8 @@ class Interference:
 
 
 def heard(
-    echoes: np.ndarray, grid: Grid, receiver: Receiver, true_absorption: float, stretch: float
-) -> np.ndarray:
+    echoes: FloatArray, grid: Grid, receiver: Receiver, true_absorption: float, stretch: float
+) -> FloatArray:
     """Received cross-sections (m²), mean with noise.
 
     The sonar equation: source level - 40 log r - 2 α r + target strength is received, and
@@ -75,8 +76,8 @@ def heard(
 
 
 def interfering(
-    times: np.ndarray, grid: Grid, receiver: Receiver, other: Interference, assumed_speed: float
-) -> np.ndarray:
+    times: FloatArray, grid: Grid, receiver: Receiver, other: Interference, assumed_speed: float
+) -> FloatArray:
     """Apparent cross-sections (beams, cells) of another sonar's pulses, m².
 
     Its pulses come at whole multiples of its period, whatever the ``times`` (beams,) of the
@@ -89,6 +90,6 @@ def interfering(
     return np.where(on, receiver.unwanted(other.level, grid.ranges), 0.0)
 
 
-def speckled(mean: np.ndarray, generator: np.random.Generator) -> np.ndarray:
+def speckled(mean: FloatArray, generator: np.random.Generator) -> FloatArray:
     """Speckle: power of many waves with random phases, Rayleigh in amplitude, here squared."""
     return mean * generator.standard_exponential(mean.shape)

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 REACH = 14
 """A line goes on at most so many cells nearer or further in the next beam."""
 
@@ -12,7 +14,7 @@ ENOUGH = 25.0
 """An echo counts no more for being brighter than this, dB: a fish outshines no row of ropes."""
 
 
-def follow(level: np.ndarray) -> np.ndarray:
+def follow(level: FloatArray) -> FloatArray:
     """Find the line along which the sum of levels is largest.
 
     By dynamic programming, row by row; a line may pass through rows without an echo.

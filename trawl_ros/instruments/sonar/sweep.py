@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import ByteArray, FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.sonar.absorption import absorption
 from trawl_ros.instruments.sonar.detection import clear_echoes
@@ -24,11 +25,11 @@ class Sweep:
     """
 
     stamp: int
-    image: np.ndarray
+    image: ByteArray
     grid: Grid
     pings: tuple[Ping, ...]
 
-    def points(self) -> np.ndarray:
+    def points(self) -> FloatArray:
         """Clear echoes in ``map`` with their brightness, (n, 4).
 
         Each lies where the beam of its row was thought to look from the pose at its ping.
@@ -61,7 +62,7 @@ def image_of(
     gain: float,
     surroundings: Surroundings,
     luck: SweepGenerators,
-) -> np.ndarray:
+) -> ByteArray:
     """Compute the image of a sweep.
 
     Parameters
@@ -105,7 +106,7 @@ def image_of(
     mean = heard(met, grid, receiver, loss, sounding.stretch)
     other = record.other_sonar()
     if other is not None:
-        times = stamp / SECOND + interval_s * np.arange(grid.beams)
+        times = stamp / SECOND + interval_s * np.arange(grid.beams, dtype=float)
         mean += interfering(times, grid, receiver, other, record.assumed_sound_speed_m_s)
     level = speckled(mean, luck.speckle)
     image = np.zeros((grid.beams, grid.cells), dtype=np.uint8)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
@@ -34,7 +35,7 @@ class Counting(Predictor):
 
     def predict(
         self,
-        coefficients: np.ndarray,
+        coefficients: FloatArray,
         port_length: float,
         starboard_length: float,
         speed: float,
@@ -48,13 +49,13 @@ class Counting(Predictor):
 class FiniteDifferencePredictor(Counting):
     """Predictor with derivatives by forward differences, each a warm steady state."""
 
-    def __init__(self, model: GearModel, std: np.ndarray) -> None:
+    def __init__(self, model: GearModel, std: FloatArray) -> None:
         super().__init__(model)
         self._steps = DIFFERENCE * np.concatenate([std, np.ones(len(INPUTS))])
 
     def predict(
         self,
-        coefficients: np.ndarray,
+        coefficients: FloatArray,
         port_length: float,
         starboard_length: float,
         speed: float,
@@ -72,7 +73,7 @@ class FiniteDifferencePredictor(Counting):
         model = self.model.with_coefficients(at[:-3])
         return Prediction(values, jacobian, slow_mode(model, found).shape, found)
 
-    def _solve(self, at: np.ndarray, start: Equilibrium | None) -> Equilibrium:
+    def _solve(self, at: FloatArray, start: Equilibrium | None) -> Equilibrium:
         self.solves += 1
         model = self.model.with_coefficients(at[:-3])
         return find_equilibrium(model, OperatingPoint(*at[-3:]), start)
@@ -129,7 +130,7 @@ class CoordinateSearch:
                     break
         return Searched(least, self.solves, least <= target)
 
-    def _try(self, coefficients: np.ndarray, least: float) -> float:
+    def _try(self, coefficients: FloatArray, least: float) -> float:
         """Objective; the states found become the starts when it is lower than ``least``."""
         model = self._model.with_coefficients(coefficients)
         found: list[Equilibrium] = []

@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import CONVERGED_S, FROM, TO, Error, HaulManoeuvre, error, haul_of
 from trawl_ros.lab.benchmark.timing import factor_cost, median_s, timed
@@ -79,7 +79,7 @@ def measure(small: bool) -> Findings:
     )
 
 
-def _run(haul: HaulManoeuvre, step_s: float, converged: np.ndarray) -> Run:
+def _run(haul: HaulManoeuvre, step_s: float, converged: FloatArray) -> Run:
     try:
         ride, seconds = timed(lambda: haul.run(step_s))
     except StepFailed:

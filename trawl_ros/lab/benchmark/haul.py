@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
@@ -42,7 +43,7 @@ class Ride:
     `LOOK_EVERY_S` seconds; ``factorisations`` of the stepper's matrix.
     """
 
-    seen: np.ndarray
+    seen: FloatArray
     factorisations: int
 
 
@@ -128,7 +129,7 @@ class Error:
     worst: str
 
 
-def error(seen: np.ndarray, converged: np.ndarray) -> Error:
+def error(seen: FloatArray, converged: FloatArray) -> Error:
     """Error of a run against the converged one."""
     difference = np.abs(seen - converged).max(axis=0)
     by_range = difference / np.ptp(converged, axis=0)

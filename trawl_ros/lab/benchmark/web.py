@@ -8,6 +8,7 @@ from statistics import median
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
 from trawl_ros.lab.reference_codes.moordyn_web import Web, towed, web_of
@@ -153,7 +154,7 @@ def largest_stable(
 
 
 def _stable_runs(
-    web: Web, scheme: str, step: float, duration: float, repeats: int, reference: np.ndarray
+    web: Web, scheme: str, step: float, duration: float, repeats: int, reference: FloatArray
 ) -> Iterator[float]:
     """Yield the factors of runs, until one is unstable."""
     for _ in range(repeats):

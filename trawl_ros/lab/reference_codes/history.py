@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 
 @dataclass(frozen=True)
 class History:
@@ -21,9 +23,9 @@ class History:
         CPU time that the motion took, s.
     """
 
-    times: np.ndarray
-    depth: np.ndarray
-    tension: np.ndarray
+    times: FloatArray
+    depth: FloatArray
+    tension: FloatArray
     seconds: float
 
     @property

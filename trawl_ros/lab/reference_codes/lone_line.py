@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -100,7 +101,7 @@ def loaded(model: GearModel, mass: float, volume: float, drag_area: float) -> Ge
     )
 
 
-def holding(length: float, start: np.ndarray, end: np.ndarray, speed: float = 0.0) -> Tow:
+def holding(length: float, start: FloatArray, end: FloatArray, speed: float = 0.0) -> Tow:
     """Hold a line of unstretched ``length`` (m) at two points (3,), towed along x (m/s)."""
     return Tow(
         blocks=np.stack([start, end]),
@@ -110,7 +111,7 @@ def holding(length: float, start: np.ndarray, end: np.ndarray, speed: float = 0.
     )
 
 
-def lying(nodes: np.ndarray, velocity: np.ndarray) -> State:
+def lying(nodes: FloatArray, velocity: FloatArray) -> State:
     """A line at ``nodes`` (n, 3), all of it moving with one velocity (3,), m/s."""
     return State(
         nodes=nodes,
@@ -123,7 +124,7 @@ def lying(nodes: np.ndarray, velocity: np.ndarray) -> State:
     )
 
 
-def settled(model: GearModel, nodes: np.ndarray, tow: Tow) -> State:
+def settled(model: GearModel, nodes: FloatArray, tow: Tow) -> State:
     """The steady state of a line that starts from ``nodes`` (n, 3).
 
     Raises

@@ -5,6 +5,8 @@ from math import cos, pi, sin
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 TURN_RATE = float(np.radians(0.5))
 """Of the ship in the turn, rad/s."""
 
@@ -78,12 +80,12 @@ class WireManoeuvre:
         """Rate of the unstretched length, m/s, out positive."""
         return self.haul.rate(time)
 
-    def velocity(self, time: float) -> np.ndarray:
+    def velocity(self, time: float) -> FloatArray:
         """Velocity (3,) of the block, m/s."""
         course = self.turn.covered(time)
         return self.speed * np.array([cos(course), sin(course), 0.0])
 
-    def track(self, times: np.ndarray) -> np.ndarray:
+    def track(self, times: FloatArray) -> FloatArray:
         """Places (n, 3) of the block at rising, closely spaced times, m; Simpson's rule."""
         ends = np.array([self.velocity(t) for t in times])
         middles = np.array([self.velocity(t) for t in 0.5 * (times[1:] + times[:-1])])

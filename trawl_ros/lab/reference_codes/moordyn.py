@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.absent import PeerFailed, peer
 
 HEADER = 9
@@ -36,7 +37,7 @@ class MoorDyn:
         If MoorDyn does not take the input.
     """
 
-    def __init__(self, text: str, places: np.ndarray, velocities: np.ndarray) -> None:
+    def __init__(self, text: str, places: FloatArray, velocities: FloatArray) -> None:
         self._module: Any = peer('moordyn')
         self._system: Any = None
         self._folder = TemporaryDirectory(prefix='moordyn_')
@@ -53,8 +54,8 @@ class MoorDyn:
         self._lines: dict[int, Any] = {}
 
     def step(
-        self, places: np.ndarray, velocities: np.ndarray, time: float, step: float
-    ) -> np.ndarray:
+        self, places: FloatArray, velocities: FloatArray, time: float, step: float
+    ) -> FloatArray:
         """Advance by ``step`` seconds from ``time``, with the coupled points at ``places``
         (c, 3) at its start and moving with ``velocities`` (c, 3) throughout; forces (c, 3) on
         them at its end, in N.
@@ -70,7 +71,7 @@ class MoorDyn:
             raise PeerFailed(f'MoorDyn broke down at {time:.2f} s: {error}') from None
         return np.reshape(force, (-1, 3))
 
-    def restart(self, places: np.ndarray, velocities: np.ndarray) -> None:
+    def restart(self, places: FloatArray, velocities: FloatArray) -> None:
         """Set all points, (p, 3) m in their order, and their velocities, (p, 3) m/s; those that
         are coupled stay where they are. For lines of one segment this is the whole state.
         """
@@ -85,7 +86,7 @@ class MoorDyn:
         file.write_bytes(content)
         self._module.LoadState(self._system, str(file))
 
-    def place(self, point: int) -> np.ndarray:
+    def place(self, point: int) -> FloatArray:
         """Position of a point (from 0), (3,) m."""
         if point not in self._points:
             self._points[point] = self._module.GetPoint(self._system, point + 1)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.moordyn import MoorDyn
 from trawl_ros.lab.reference_codes.moordyn_input import Line, LineType, Options, Point, input_file
 from trawl_ros.model.assembly import points_of, rest_lengths
@@ -34,8 +35,8 @@ class Web:
     kinds: tuple[LineType, ...]
     points: tuple[Point, ...]
     lines: tuple[Line, ...]
-    places: np.ndarray
-    velocities: np.ndarray
+    places: FloatArray
+    velocities: FloatArray
     density: float
     gravity: float
 
@@ -82,7 +83,7 @@ def web_of(model: GearModel, state: State, tow: Tow, damping: float) -> Web:
     )
 
 
-def towed(web: Web, scheme: str, step: float, duration: float) -> tuple[np.ndarray, float]:
+def towed(web: Web, scheme: str, step: float, duration: float) -> tuple[FloatArray, float]:
     """Tow a web straight on.
 
     Returns
@@ -106,15 +107,16 @@ def towed(web: Web, scheme: str, step: float, duration: float) -> tuple[np.ndarr
     return np.array(forces), seconds
 
 
-def _columns(bars: BarProperties) -> np.ndarray:
+def _columns(bars: BarProperties) -> FloatArray:
     columns = (
         bars.stiffness, bars.mass, bars.volume, bars.normal_area * bars.normal_drag,
         bars.wet_area * bars.friction, bars.added_normal, bars.added_tangential,
     )  # fmt: skip
-    return np.array(columns).T
+    table: FloatArray = np.array(columns).T
+    return table
 
 
-def _line_type(row: np.ndarray, density: float, damping: float) -> LineType:
+def _line_type(row: FloatArray, density: float, damping: float) -> LineType:
     """Line type with a bar's own areas, on the diameter of its displaced volume."""
     stiffness, mass, volume, across, along, added, added_along = (float(x) for x in row)
     diameter = float(np.sqrt(4.0 * volume / np.pi))

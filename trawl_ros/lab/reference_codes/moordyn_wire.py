@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.history import History
 from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
 from trawl_ros.lab.reference_codes.moordyn import MoorDyn
@@ -86,7 +87,7 @@ class MoorDynWire:
     def follow(self, manoeuvre: WireManoeuvre) -> History:
         """Follow a manoeuvre; positions are those of the ends of steps."""
         count = round(manoeuvre.duration / self._coupling)
-        times = self._coupling * np.arange(count + 1)
+        times = self._coupling * np.arange(count + 1, dtype=float)
         track = manoeuvre.track(times)
         lengths = [manoeuvre.length_at(t) for t in times]
         depth, pull = [self.depth()], [np.nan]
@@ -105,7 +106,7 @@ class MoorDynWire:
         """Depth of the lump, m."""
         return float(-self._system.place(LUMP)[2])
 
-    def _advance(self, velocity: np.ndarray, step: float) -> np.ndarray:
+    def _advance(self, velocity: FloatArray, step: float) -> FloatArray:
         force = self._system.step(self._block, velocity, self._time, step)
         self._block = self._block + step * velocity
         self._time += step

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.history import History
 from trawl_ros.lab.reference_codes.lone_line import holding, loaded, lone_line, settled
 from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
@@ -81,12 +82,12 @@ def own_history(model: GearModel, start: State, manoeuvre: WireManoeuvre, step: 
     )
 
 
-def tows_of(manoeuvre: WireManoeuvre, step: float) -> tuple[list[Tow], np.ndarray]:
+def tows_of(manoeuvre: WireManoeuvre, step: float) -> tuple[list[Tow], FloatArray]:
     """Towing boundaries of a manoeuvre at the end of each step, from time 0 on, and those times."""
     count = round(manoeuvre.duration / step)
     finer = int(np.ceil(step / TRACK_STEP))
-    times = step * np.arange(count + 1)
-    track = manoeuvre.track(step / finer * np.arange(count * finer + 1))[::finer]
+    times: FloatArray = step * np.arange(count + 1, dtype=float)
+    track = manoeuvre.track(step / finer * np.arange(count * finer + 1, dtype=float))[::finer]
     tows = []
     for t, place in zip(times, track, strict=True):
         length, rate, velocity = (

@@ -67,11 +67,13 @@ class ConnectedNode(Node):
 
     def full_name(self, topic: str) -> str:
         """Return a topic's full name after namespace and remapping."""
-        return self.resolve_topic_name(topic)
+        name: str = self.resolve_topic_name(topic)
+        return name
 
     def now(self) -> int:
         """Return the time of the node's clock, ns."""
-        return self.get_clock().now().nanoseconds
+        stamp: int = self.get_clock().now().nanoseconds
+        return stamp
 
     def advertise(
         self, topic: str, type_name: str | None = None, profile: QoSProfile | None = None

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, diagnose, values_of
@@ -55,9 +56,9 @@ ABOUT_SCALE, ABOUT_OFFSET = (2.0, 4.5), (9.0, 17.0)
 class CounterTable:
     """Table of true wire (n,) and the readings of both winches' counters (n,), m."""
 
-    wire: np.ndarray
-    port: np.ndarray
-    starboard: np.ndarray
+    wire: FloatArray
+    port: FloatArray
+    starboard: FloatArray
 
     def lines(self) -> tuple[float, float]:
         """Scale and offset (m) of straight lines through both sides, on average."""
@@ -68,7 +69,7 @@ class CounterTable:
     def hidden(self) -> Hidden:
         """Hidden effect: counters with the errors of this table."""
 
-        def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+        def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
             port = np.interp(inputs[0], self.port, self.wire)
             starboard = np.interp(inputs[1], self.starboard, self.wire)
             return np.array([port, starboard, inputs[2]])

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.random import Generator
+from numpy.typing import NDArray
 
 from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.fields import fields_of
@@ -108,9 +109,10 @@ def _other(value: Any, rng: Generator) -> Any:
     return value
 
 
-def _other_array(values: np.ndarray, rng: Generator) -> np.ndarray:
-    changed = values.copy()
+def _other_array(values: NDArray[np.generic], rng: Generator) -> NDArray[np.generic]:
+    changed: NDArray[np.generic] = values.copy()
     if changed.size and changed.dtype.kind == 'f' and rng.random() < 0.7:
         changed[rng.integers(changed.size)] = rng.choice(NUMBERS)
-        return changed
-    return np.resize(changed, int(rng.integers(0, MOST_ENTRIES)))
+    else:
+        changed = np.resize(changed, int(rng.integers(0, MOST_ENTRIES)))
+    return changed

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.linalg import block_diag
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.studies.identification.plant import Look
 from trawl_ros.lab.studies.identification.readings import Sensors
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
@@ -13,7 +14,7 @@ from trawl_ros.records.observables import OBSERVABLES
 ROWS = [OBSERVABLES.index(name) for name in MEASURED]
 
 
-def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> np.ndarray:
+def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> FloatArray:
     """Fisher information (12, 12) of the coefficients in the windows of some tows.
 
     The covariance is the true one: noise of the windows' means, offsets and errors of scale that
@@ -34,7 +35,7 @@ def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> np.ndarray:
     return total
 
 
-def _covariance(looks: Sequence[Look], sensors: Sensors) -> np.ndarray:
+def _covariance(looks: Sequence[Look], sensors: Sensors) -> FloatArray:
     """Covariance of measured less predicted at the measured inputs, over all windows of a tow."""
     own = np.diag([sensors.mean_std(name) ** 2 for name in MEASURED])
     inputs = np.diag([sensors.mean_std(name) ** 2 for name in INPUTS])
@@ -49,10 +50,11 @@ def _covariance(looks: Sequence[Look], sensors: Sensors) -> np.ndarray:
         scale = np.concatenate([_effect(look, name) * _size(look, name) for look in looks])
         columns += [factor * channel.bias * offset, factor * channel.bias_fraction * scale]
     shared = np.column_stack(columns)
-    return np.asarray(block_diag(*blocks)) + shared @ shared.T
+    covariance: FloatArray = np.asarray(block_diag(*blocks)) + shared @ shared.T
+    return covariance
 
 
-def _effect(look: Look, name: str) -> np.ndarray:
+def _effect(look: Look, name: str) -> FloatArray:
     """Sensitivity (k,) of the residuals to an offset of a channel or input."""
     if name in INPUTS:
         return -look.by_inputs[ROWS, INPUTS.index(name)]

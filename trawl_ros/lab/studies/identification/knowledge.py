@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.planning.plan import plan_trial
@@ -71,7 +72,7 @@ def model_error_rows(gear: str, cut: Cut) -> list[MeasuredValue]:
     return rows
 
 
-def _looks(gear: GearRecord) -> np.ndarray:
+def _looks(gear: GearRecord) -> FloatArray:
     """Observables (states, 22) of a gear."""
     model = build_model(gear)
     found = []

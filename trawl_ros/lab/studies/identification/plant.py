@@ -6,6 +6,7 @@ from itertools import chain
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.gear.load import load_gear
@@ -75,9 +76,9 @@ class Look:
     """
 
     state: State
-    values: np.ndarray
-    by_inputs: np.ndarray
-    by_coefficients: np.ndarray
+    values: FloatArray
+    by_inputs: FloatArray
+    by_coefficients: FloatArray
 
     @property
     def inputs(self) -> tuple[float, float, float]:
@@ -94,7 +95,7 @@ class TowedBoard:
     were drawn that do not, by reason.
     """
 
-    coefficients: np.ndarray
+    coefficients: FloatArray
     tows: tuple[tuple[Look, ...], ...]
     rejected: Counter[str]
 

@@ -7,6 +7,7 @@ from itertools import count
 import numpy as np
 from scipy.signal import lfilter
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.windows.records import SteadyWindow, WindowOptions
@@ -50,12 +51,13 @@ class SensorKind:
         correlated = self.correlated**2 * float(np.mean(self.lag**apart))
         return float(np.sqrt(self.white**2 / self.number + correlated))
 
-    def noise(self, chance: np.random.Generator, number: int | None = None) -> np.ndarray:
+    def noise(self, chance: np.random.Generator, number: int | None = None) -> FloatArray:
         """Errors (n,) of so many readings, those of a window if None."""
         drawn = chance.standard_normal(self.number if number is None else number)
         drawn[1:] *= np.sqrt(1.0 - self.lag**2)
         slow = lfilter([1.0], [1.0, -self.lag], drawn)
-        return self.white * chance.standard_normal(len(drawn)) + self.correlated * slow
+        noise: FloatArray = self.white * chance.standard_normal(len(drawn)) + self.correlated * slow
+        return noise
 
 
 _DEGREE = np.pi / 180.0

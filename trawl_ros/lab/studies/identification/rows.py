@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.stats import binomtest
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
@@ -85,13 +86,14 @@ def spread_rows(trials: Sequence[EstimationTrial], prior: ParameterVector) -> li
     known = np.array([trial.information for trial in trials])
     before = np.diag(prior.std**-2)
 
-    def ratio(some: np.ndarray) -> np.ndarray:
+    def ratio(some: IntArray) -> FloatArray:
         bound = np.linalg.inv(known[some].mean(axis=0) + before)
-        return np.sqrt((error[some] ** 2).mean(axis=0) / np.diag(bound))
+        found: FloatArray = np.sqrt((error[some] ** 2).mean(axis=0) / np.diag(bound))
+        return found
 
     at_hand = np.sqrt(np.diagonal(np.linalg.inv(known + before), axis1=1, axis2=2))
 
-    def figures(some: np.ndarray) -> np.ndarray:
+    def figures(some: IntArray) -> FloatArray:
         """The figures over all coefficients, and the ratio of each (16,)."""
         each = ratio(some)
         by_trial = np.mean((error[some] / at_hand[some]) ** 2, axis=1)
@@ -156,7 +158,7 @@ def held_out_rows(trials: Sequence[EstimationTrial]) -> list[MeasuredValue]:
         for part in (measured, predicted - measured, perfect - measured)
     )
 
-    def figures(some: np.ndarray) -> np.ndarray:
+    def figures(some: IntArray) -> FloatArray:
         """Per channel the error in %, and that over the one of a perfect model (2, n)."""
         of, by, floor = wrong[some].sum(axis=0), size[some].sum(axis=0), least[some].sum(axis=0)
         return np.array([100.0 * of / by, of / floor])
@@ -213,13 +215,13 @@ def board_rows(trials: Sequence[EstimationTrial]) -> list[MeasuredValue]:
     ]
 
 
-def _array(trials: Sequence[EstimationTrial], name: str) -> np.ndarray:
+def _array(trials: Sequence[EstimationTrial], name: str) -> FloatArray:
     return np.array([getattr(trial, name) for trial in trials], dtype=float)
 
 
 def _interval(
-    figures: Callable[[np.ndarray], np.ndarray], number: int
-) -> tuple[np.ndarray, np.ndarray]:
+    figures: Callable[[IntArray], FloatArray], number: int
+) -> tuple[FloatArray, FloatArray]:
     """Bootstrap 95 % intervals of figures (n,) over trials."""
     if number < 2:
         nothing = np.full(figures(np.arange(number)).shape, np.nan)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
@@ -151,7 +152,7 @@ def run_trial(task: Task) -> EstimationTrial:
     )
 
 
-def _perfect(board: TowedBoard, means: list[Mapping[str, float]]) -> np.ndarray:
+def _perfect(board: TowedBoard, means: list[Mapping[str, float]]) -> FloatArray:
     """Predictions (n, 4) of the plant itself at the inputs as measured."""
     rows = []
     for look, seen in zip(board.tows[-1], means, strict=True):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.files import finite
 from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.studies.sonar.study import SHOWN, STATES, SonarMeasurement, figures
@@ -57,7 +58,7 @@ def _together(scatters: Sequence[float]) -> float:
 
 
 def _row(measured: SonarMeasurement) -> dict[str, Any]:
-    def side(readings: np.ndarray, truth: np.ndarray) -> dict[str, float | None]:
+    def side(readings: FloatArray, truth: FloatArray) -> dict[str, float | None]:
         found = {'truth': float(truth.mean()), **asdict(figures(readings, truth))}
         return {key: finite(value) for key, value in found.items()}
 

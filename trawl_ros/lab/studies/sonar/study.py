@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.errors.instrument import SeedPlan
@@ -97,10 +98,10 @@ class SonarMeasurement:
     """
 
     case: SonarCase
-    height: np.ndarray
-    width: np.ndarray
-    true_height: np.ndarray
-    true_width: np.ndarray
+    height: FloatArray
+    width: FloatArray
+    true_height: FloatArray
+    true_width: FloatArray
     image: SonarImageSample
     scan: SonarScanSample
     net: NetTruth
@@ -117,7 +118,7 @@ class Figures:
     unread: int
 
 
-def figures(readings: np.ndarray, truth: np.ndarray) -> Figures:
+def figures(readings: FloatArray, truth: FloatArray) -> Figures:
     """Return the figures of readings (n,) against truth (n,), m."""
     errors = (readings - truth)[np.isfinite(readings)]
     unread = len(readings) - len(errors)

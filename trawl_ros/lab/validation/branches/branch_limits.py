@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.branches.lattices import ANGLES, SPEED
@@ -52,12 +53,12 @@ class Curve:
 
     sweep: Sweep
     points: list[BranchPoint]
-    attack: np.ndarray
-    inclination: np.ndarray
-    worst: np.ndarray
+    attack: FloatArray
+    inclination: FloatArray
+    worst: FloatArray
 
     @property
-    def values(self) -> np.ndarray:
+    def values(self) -> FloatArray:
         """The parameter at all points."""
         return np.array([here.value for here in self.points])
 
@@ -171,7 +172,7 @@ def limits(curve: Curve) -> Iterator[Limit]:
 
 
 def _limit(curve: Curve, k: int, share: float, kind: str, eigenvalue: complex, mode: str) -> Limit:
-    def between(values: np.ndarray) -> float:
+    def between(values: FloatArray) -> float:
         return float(values[k - 1] + share * (values[k] - values[k - 1]))
 
     return Limit(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.lab.validation.branches.continuation import SAME, distance
 from trawl_ros.model.gear_model import GearModel
@@ -44,7 +45,7 @@ class Tally:
         return self.good + self.refused.total() + self.other
 
 
-def attitudes(turn: tuple[float, float]) -> np.ndarray:
+def attitudes(turn: tuple[float, float]) -> FloatArray:
     """Rotations (2, 3, 3) of both boards at an attitude of `TURNS`."""
     yaw, lean = np.radians(turn)
     port = about_axis(2, yaw) @ about_axis(0, lean)

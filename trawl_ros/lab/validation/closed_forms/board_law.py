@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import BoardRecord, GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
@@ -51,7 +52,7 @@ class LoadDifferences:
 
 
 def moving_at(
-    model: GearModel, random: np.random.Generator, attack: np.ndarray, slip: np.ndarray
+    model: GearModel, random: np.random.Generator, attack: FloatArray, slip: FloatArray
 ) -> State:
     """Both boards at random places and attitudes, met by the flow at given angles (2,).
 

@@ -1,11 +1,13 @@
 """Hanging wire, and wire sagging between two points, against closed forms."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import root
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
@@ -58,8 +60,8 @@ class Sagging:
     both holds, N.
     """
 
-    places: np.ndarray
-    pulls: np.ndarray
+    places: FloatArray
+    pulls: FloatArray
 
 
 def elastic_catenary(points: int) -> Sagging:
@@ -70,15 +72,18 @@ def elastic_catenary(points: int) -> Sagging:
     z = (w s² / 2 - V s) / EA + (√(H² + (w s - V)²) - √(H² + V²)) / w.
     """
 
-    def place(s: np.ndarray, across: float, up: float) -> tuple[np.ndarray, np.ndarray]:
+    def place(s: FloatArray, across: float, up: float) -> tuple[FloatArray, FloatArray]:
         below = WEIGHT * s - up
         x = across * s / STIFFNESS
         x = x + across / WEIGHT * (np.arcsinh(below / across) + np.arcsinh(up / across))
         z = (0.5 * WEIGHT * s**2 - up * s) / STIFFNESS
         return x, z + (np.hypot(across, below) - np.hypot(across, up)) / WEIGHT
 
-    def missed(pull: np.ndarray) -> np.ndarray:
-        return np.array(place(np.array(SAGGING_LENGTH), *pull)) - (END - START)[[0, 2]]
+    def missed(pull: FloatArray) -> FloatArray:
+        distance: FloatArray = (
+            np.array(place(np.array(SAGGING_LENGTH), *pull)) - (END - START)[[0, 2]]
+        )
+        return distance
 
     half = 0.5 * WEIGHT * SAGGING_LENGTH
     across, up = root(missed, np.array([half, half]), tol=1e-13).x
@@ -217,11 +222,11 @@ def _sagging_checks(model: Sagging, exact: Sagging) -> list[MeasuredValue]:
         'start': (f'pull at the start {what}', model.pulls, exact.pulls, 'N'),
         'end': (f'pull at the end {what}', model.pulls, exact.pulls, 'N'),
     }
-    read = {
+    read: dict[str, Callable[[FloatArray], float]] = {
         'lowest_node': lambda a: a[:, 2].min(),
         'horizontal': lambda a: a[0, 0],
-        'start': lambda a: np.linalg.norm(a[0]),
-        'end': lambda a: np.linalg.norm(a[1]),
+        'start': lambda a: float(np.linalg.norm(a[0])),
+        'end': lambda a: float(np.linalg.norm(a[1])),
     }
     return [
         MeasuredValue(

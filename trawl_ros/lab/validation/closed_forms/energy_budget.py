@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
@@ -53,7 +54,7 @@ class WireHaul:
         wave = RAMP / np.pi
 
         def ramped(s: float) -> float:
-            return 0.5 * RATE * (s - wave * np.sin(s / wave))
+            return 0.5 * RATE * (s - wave * float(np.sin(s / wave)))
 
         wire = ramped(up) + RATE * on + RATE * down - ramped(down)
         rate = 0.5 * RATE * (np.cos(down / wave) - np.cos(up / wave))
@@ -87,16 +88,17 @@ class Budget:
     done.
     """
 
-    times: np.ndarray
-    works: np.ndarray
-    stores: np.ndarray
+    times: FloatArray
+    works: FloatArray
+    stores: FloatArray
     drum: float
     steps: int
 
     @property
-    def residual(self) -> np.ndarray:
+    def residual(self) -> FloatArray:
         """Residual of the budget, (k,) J: work done less energy gained."""
-        return self.works.sum(1) - self.stores.sum(1)
+        residual: FloatArray = self.works.sum(1) - self.stores.sum(1)
+        return residual
 
     def work(self, key: str) -> float:
         """Work of one kind over the whole manoeuvre, J."""

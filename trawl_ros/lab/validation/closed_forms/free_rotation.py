@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import WIRE, holding, lone_line, lying
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
@@ -38,10 +39,10 @@ class Spin:
     as shares of it; ``upright`` (k, 2) cosine between each board's z axis and its first.
     """
 
-    times: np.ndarray
-    momentum: np.ndarray
-    energy: np.ndarray
-    upright: np.ndarray
+    times: FloatArray
+    momentum: FloatArray
+    energy: FloatArray
+    upright: FloatArray
 
 
 def spinning() -> tuple[GearModel, State, Tow]:
@@ -64,7 +65,7 @@ def spinning() -> tuple[GearModel, State, Tow]:
     return model, state, tow
 
 
-def momentum_and_energy(model: GearModel, state: State) -> tuple[np.ndarray, float]:
+def momentum_and_energy(model: GearModel, state: State) -> tuple[FloatArray, float]:
     """Angular momentum (2, 3) about the centres of gravity, N m s, and kinetic energy of both
     boards, J, from the gear file's inertia in each board's own axes.
     """

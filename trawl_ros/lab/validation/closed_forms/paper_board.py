@@ -11,6 +11,7 @@ from math import asin, copysign, cos, hypot, pi, radians, sqrt
 import numpy as np
 from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import BoardRecord
 
 INNER, OUTER = radians(-40.0), radians(90.0)
@@ -55,14 +56,14 @@ class PaperBoard:
 
     record: BoardRecord
     port: bool
-    a: np.ndarray
-    b: np.ndarray
-    c: np.ndarray
-    va: np.ndarray
-    vb: np.ndarray
-    vc: np.ndarray
-    rate: np.ndarray
-    water: np.ndarray
+    a: FloatArray
+    b: FloatArray
+    c: FloatArray
+    va: FloatArray
+    vb: FloatArray
+    vc: FloatArray
+    rate: FloatArray
+    water: FloatArray
     density: float
     gravity: float
 
@@ -71,7 +72,7 @@ class PaperBoard:
         """Handedness of the frame: 1 on starboard (left-handed), -1 on port (eq. 8)."""
         return -1.0 if self.port else 1.0
 
-    def axes(self) -> list[np.ndarray]:
+    def axes(self) -> list[FloatArray]:
         """Axes x, y, z of the board in fixed axes (eq. 7-11).
 
         The turn between model frame and board is that of the vertices in the gear file.
@@ -94,7 +95,7 @@ class PaperBoard:
         x, y, z = (float(relative @ axis) for axis in self.axes())
         return x, y, z
 
-    def load(self) -> tuple[np.ndarray, np.ndarray]:
+    def load(self) -> tuple[FloatArray, FloatArray]:
         """Force (3,) N and moment (3,) N m in fixed axes: eq. 12-14, 19, and turning."""
         record, n = self.record, self.axes()
         ux, uy, uz = self.relative_flow()
@@ -143,7 +144,7 @@ class PaperBoard:
         return about(b, chord), 0.0, about(chord, b)
 
 
-def _model_axes(a: np.ndarray, b: np.ndarray, c: np.ndarray, k_d: float) -> list[np.ndarray]:
+def _model_axes(a: FloatArray, b: FloatArray, c: FloatArray, k_d: float) -> list[FloatArray]:
     """Axes x, y, z of the model frame from its vertices (eq. 7-10)."""
     ac, bc = a - c, b - c
     z = bc / np.linalg.norm(bc)

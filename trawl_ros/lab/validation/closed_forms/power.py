@@ -16,6 +16,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model import line
 from trawl_ros.model.assembly import (
     Points,
@@ -35,7 +36,7 @@ from trawl_ros.model.numerics import dot, length
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.stepper import Motion
 
-Quantity = float | np.ndarray
+Quantity = float | FloatArray
 
 WORKS: Mapping[str, str] = MappingProxyType(
     {
@@ -63,7 +64,7 @@ STORES: Mapping[str, str] = MappingProxyType(
 """Terms of energy in the gear, key → words."""
 
 
-def strain_energy(strain: np.ndarray) -> np.ndarray:
+def strain_energy(strain: FloatArray) -> FloatArray:
     """Strain energy: integral of `line.taut`, per EA and unstretched length (eq. 20)."""
     w = SLACK_WIDTH
     corner = (np.clip(strain, -w, w) + w) ** 3 / (12.0 * w)
@@ -103,7 +104,7 @@ class Ledger:
             ),
         )
 
-    def powers(self, now: Motion, tow: Tow) -> np.ndarray:
+    def powers(self, now: Motion, tow: Tow) -> FloatArray:
         """Powers of all terms in `WORKS`, W, positive where they add to the gear's energy."""
         model, state = self.model, now.state
         points = points_of(model, state, tow)
@@ -133,7 +134,7 @@ class Ledger:
         }
         return np.array([works[key] for key in WORKS])
 
-    def energies(self, state: State, tow: Tow) -> np.ndarray:
+    def energies(self, state: State, tow: Tow) -> FloatArray:
         """Energies of all terms in `STORES`, J."""
         model = self.model
         points = points_of(model, state, tow)
@@ -161,21 +162,22 @@ class Ledger:
         pull = length(block_forces(self.model, state, tow))
         return -float(np.sum(pull * tow.length_rates))
 
-    def _place(self, own: Quantity, volume: Quantity, height: np.ndarray) -> np.ndarray:
+    def _place(self, own: Quantity, volume: Quantity, height: FloatArray) -> FloatArray:
         """Potential energy of weight and buoyancy of masses (kg) at heights (m), J."""
         water = self.model.water
         heavy = own - water.density * volume
         return water.gravity * (heavy * height + 0.5 * water.density_gradient * volume * height**2)
 
-    def _place_per_metre(self, height: np.ndarray) -> np.ndarray:
+    def _place_per_metre(self, height: FloatArray) -> FloatArray:
         """Potential energy of bars (m,) per metre, at heights of their middle, J/m."""
         return self._place(self.model.bars.mass, self.model.bars.volume, height)
 
-    def _motion_per_metre(self, points: Points) -> np.ndarray:
+    def _motion_per_metre(self, points: Points) -> FloatArray:
         """Kinetic energy of bars (m,), half their mass at either end, J/m.
 
         The half at a block moves with the ship and is no part of the gear.
         """
         square = dot(points.velocities, points.velocities)
         square[self.model.nodes + 6 :] = 0.0
-        return 0.25 * self.model.bars.mass * square[self.model.ends].sum(1)
+        energies: FloatArray = 0.25 * self.model.bars.mass * square[self.model.ends].sum(1)
+        return energies

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_line, lying
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
@@ -33,12 +34,12 @@ class Sinking:
     at the end, m/s.
     """
 
-    times: np.ndarray
-    velocities: np.ndarray
+    times: FloatArray
+    velocities: FloatArray
     uneven: float
 
 
-def terminal(slope: float) -> np.ndarray:
+def terminal(slope: float) -> FloatArray:
     """Terminal speeds (2,) m/s along and across a line, at which drag balances its weight.
 
     w sin φ = ½ ρ C_t π d u², w cos φ = ½ ρ C_n d u².
@@ -49,7 +50,7 @@ def terminal(slope: float) -> np.ndarray:
     return np.sqrt(weights / (0.5 * SEA.density * diameter * drags))
 
 
-def fall(slope: float, times: np.ndarray) -> np.ndarray:
+def fall(slope: float, times: FloatArray) -> FloatArray:
     """Speeds (k, 2) m/s along and across a line let go from rest: U tanh(w t / m U).
 
     Across the line the water it displaces is carried along (added mass 1), along it none is.
@@ -85,7 +86,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
         velocity = motion.state.node_velocities[middle]
         speeds.append(np.array([velocity @ along, velocity @ across]))
     return Sinking(
-        times=TIME_STEP * np.arange(steps + 1),
+        times=TIME_STEP * np.arange(steps + 1, dtype=float),
         velocities=np.array(speeds),
         uneven=float(np.ptp(motion.state.node_velocities, axis=0).max()),
     )

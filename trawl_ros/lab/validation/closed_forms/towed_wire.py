@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
@@ -38,7 +39,7 @@ class Wire:
     depth: float
     lag: float
     tension: float
-    places: np.ndarray
+    places: FloatArray
 
 
 def integrated(points: int) -> Wire:
@@ -53,7 +54,7 @@ def integrated(points: int) -> Wire:
     along = 0.5 * SEA.density * WIRE['tangential_drag'] * np.pi * diameter
     flow = np.array([-SPEED, 0.0])
 
-    def slope(_: float, y: np.ndarray) -> np.ndarray:
+    def slope(_: float, y: FloatArray) -> FloatArray:
         tension = np.hypot(y[0], y[1])
         t = y[:2] / tension
         slide = flow @ t

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -31,7 +32,7 @@ class RefinementRow:
 
     name: str
     nodes: int
-    seen: np.ndarray
+    seen: FloatArray
 
 
 def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> RefinementRow:
@@ -59,7 +60,7 @@ def _solved(model: GearModel, length: float, start: Equilibrium | None) -> Equil
         return None
 
 
-def differences(seen: np.ndarray, fine: np.ndarray) -> np.ndarray:
+def differences(seen: FloatArray, fine: FloatArray) -> FloatArray:
     """Differences from the finer gear as shares: of its value, or of `REFERENCE` for angles
     around zero. All arrays end with the observables.
     """

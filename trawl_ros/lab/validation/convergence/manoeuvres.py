@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
@@ -31,8 +32,8 @@ class SteppedManoeuvre:
     """
 
     step: float
-    seen: np.ndarray
-    places: np.ndarray
+    seen: FloatArray
+    places: FloatArray
 
 
 def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
@@ -90,5 +91,5 @@ def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) ->
     return SteppedManoeuvre(step, np.array(seen), np.array(places))
 
 
-def _places(state: State) -> np.ndarray:
+def _places(state: State) -> FloatArray:
     return np.concatenate([state.nodes, state.board_positions])

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
@@ -59,20 +60,21 @@ class Convergence:
     the observable changes in it; ``places`` (steps, points) that of nodes and boards, m.
     """
 
-    steps: np.ndarray
-    errors: np.ndarray
-    places: np.ndarray
+    steps: FloatArray
+    errors: FloatArray
+    places: FloatArray
 
     @property
-    def norm(self) -> np.ndarray:
+    def norm(self) -> FloatArray:
         """Root mean square (steps,) of all observables' errors."""
-        return np.sqrt((self.errors**2).mean(1))
+        norm: FloatArray = np.sqrt((self.errors**2).mean(1))
+        return norm
 
-    def order(self, errors: np.ndarray) -> float:
+    def order(self, errors: FloatArray) -> float:
         """Slope of errors (steps,) over the step, both as logarithms."""
         return float(np.polyfit(np.log(self.steps), np.log(errors), 1)[0])
 
-    def orders(self) -> np.ndarray:
+    def orders(self) -> FloatArray:
         """Order (observables,) of each observable."""
         return np.array([self.order(column) for column in self.errors.T])
 

@@ -10,12 +10,14 @@ from trawl_ros.lab.validation.paper.sweeps import INSTALLATION, TURN, Sighting
 
 def percent(after: Sighting, before: Sighting, quantity: str) -> float:
     """Relative change of an observable, %."""
-    return 100.0 * (getattr(after.seen, quantity) / getattr(before.seen, quantity) - 1.0)
+    change: float = 100.0 * (getattr(after.seen, quantity) / getattr(before.seen, quantity) - 1.0)
+    return change
 
 
 def board_percent(after: Sighting, before: Sighting, quantity: str) -> float:
     """Relative change of a quantity of the port board, %."""
-    return 100.0 * (getattr(after.board, quantity) / getattr(before.board, quantity) - 1.0)
+    change: float = 100.0 * (getattr(after.board, quantity) / getattr(before.board, quantity) - 1.0)
+    return change
 
 
 class Changes:

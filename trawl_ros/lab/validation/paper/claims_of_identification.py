@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
 from trawl_ros.lab.validation.paper.claim import Claim, claim
 from trawl_ros.lab.validation.paper.refit import PaperRefit
@@ -134,7 +135,7 @@ def _slopes(fit: PaperRefit) -> list[Claim]:
 
 
 def _deviations(fit: PaperRefit) -> list[Claim]:
-    def away(slope: str, attack: np.ndarray) -> np.ndarray:
+    def away(slope: str, attack: FloatArray) -> FloatArray:
         return np.abs(
             fit.line(fit.estimate.values, slope, attack) - fit.line(fit.truth, slope, attack)
         )

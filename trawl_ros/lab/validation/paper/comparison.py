@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, paper_values, stack
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -52,22 +53,22 @@ class Comparison:
     """
 
     speed: float
-    lengths: np.ndarray
+    lengths: FloatArray
     sightings: tuple[Sighting, ...]
-    six: np.ndarray
-    three: np.ndarray
+    six: FloatArray
+    three: FloatArray
     attack: float
     slip: float
     point_lift: float
     lean: float
     windows: tuple[SteadyWindow, ...]
     on_line: tuple[int, ...]
-    trial: np.ndarray
-    trial_six: np.ndarray
-    trial_three: np.ndarray
-    trial_leaning: np.ndarray
+    trial: FloatArray
+    trial_six: FloatArray
+    trial_three: FloatArray
+    trial_leaning: FloatArray
 
-    def error(self, predicted: np.ndarray, channel: str) -> float:
+    def error(self, predicted: FloatArray, channel: str) -> float:
         """Mean error over mean measured value of one channel on the trial's windows, %."""
         return 100.0 * float(mnae(predicted, self.trial)[column(channel)])
 
@@ -139,7 +140,7 @@ def _as_found(near: Equilibrium) -> Observables:
     return near.observables
 
 
-def _rows(states: Sequence[Equilibrium | None], see: Seen) -> np.ndarray:
+def _rows(states: Sequence[Equilibrium | None], see: Seen) -> FloatArray:
     """The quantities of eq. 35 for each state, NaN where there is none."""
     rows = []
     for state in states:

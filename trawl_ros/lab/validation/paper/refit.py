@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.resources import share_path
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -39,7 +40,7 @@ class _Remembering(Predictor):
 
     def predict(
         self,
-        coefficients: np.ndarray,
+        coefficients: FloatArray,
         port_length: float,
         starboard_length: float,
         speed: float,
@@ -63,21 +64,23 @@ class PaperRefit:
 
     estimate: Estimate
     prior: ParameterVector
-    truth: np.ndarray
-    objective: np.ndarray
+    truth: FloatArray
+    objective: FloatArray
     attack: tuple[float, float]
 
-    def line(self, values: np.ndarray, slope: str, attack: np.ndarray) -> np.ndarray:
+    def line(self, values: FloatArray, slope: str, attack: FloatArray) -> FloatArray:
         """A straight line of eq. 14, drag (``a1``) or lift (``a2``), at angles in rad."""
         first = COEFFICIENTS.index(slope)
-        return values[first] * attack + values[first + 1]
+        law: FloatArray = values[first] * attack + values[first + 1]
+        return law
 
-    def half_width(self, slope: str, attack: np.ndarray) -> np.ndarray:
+    def half_width(self, slope: str, attack: FloatArray) -> FloatArray:
         """Standard deviation of the fitted line at angles in rad."""
         first = COEFFICIENTS.index(slope)
         part = self.estimate.covariance[first : first + 2, first : first + 2]
         basis = np.stack([attack, np.ones_like(attack)], -1)
-        return np.sqrt(np.sum(basis @ part * basis, -1))
+        std: FloatArray = np.sqrt(np.sum(basis @ part * basis, -1))
+        return std
 
 
 @cache

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 from trawl_ros.bags.samples import SampleStream
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.resources import share_path
 from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
@@ -43,7 +44,7 @@ def warp_length(window: SteadyWindow) -> float:
     return 0.5 * (window.means['port_length'] + window.means['starboard_length'])
 
 
-def measured(windows: Sequence[SteadyWindow]) -> np.ndarray:
+def measured(windows: Sequence[SteadyWindow]) -> FloatArray:
     """The four quantities of eq. 35, (n, 4)."""
     return stack([paper_values(window.means) for window in windows])
 

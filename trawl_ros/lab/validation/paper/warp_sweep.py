@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_least
 from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.validation.cases import ValidationCase
@@ -59,7 +60,7 @@ def run(small: bool) -> Findings:
     )
 
 
-def _figure(lengths: np.ndarray, angles: dict[str, np.ndarray]) -> Figure:
+def _figure(lengths: FloatArray, angles: dict[str, FloatArray]) -> Figure:
     figure = Figure(figsize=(7.5, 4.5), layout='constrained')
     axes = figure.subplots()
     for name, style, label in (

@@ -10,18 +10,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.model.gear_model import GearModel
 
 Readings = dict[str, float]
 
 
-def ahead(at: Situation) -> np.ndarray:
+def ahead(at: Situation) -> FloatArray:
     """Unit vector (2,), east and north, of the heading."""
     return np.array([np.cos(at.heading), np.sin(at.heading)])
 
 
-def _towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+def _towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
     return inputs
 
 
@@ -54,7 +55,7 @@ class Hidden:
     unit: str
     probe: float
     most: tuple[float, float]
-    towed: Callable[[float, np.ndarray, Situation], np.ndarray] = _towed
+    towed: Callable[[float, FloatArray, Situation], FloatArray] = _towed
     gear: Callable[[float, GearModel, Situation], GearModel] = _gear
     shown: Callable[[float, Readings, Situation], Readings] = _shown
 

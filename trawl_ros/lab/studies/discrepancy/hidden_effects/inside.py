@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
 from trawl_ros.model.gear_model import GearModel
@@ -51,7 +52,7 @@ def speed_log(chance: np.random.Generator) -> Hidden:
     """A log with an error of scale that differs a little with the speed."""
     bend = chance.uniform(-0.3, 0.3)
 
-    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         port, starboard, speed = inputs
         scale = size * (1.0 + bend * (speed / USUAL_SPEED - 1.0))
         return np.array([port, starboard, speed / (1.0 + scale)])
@@ -80,7 +81,7 @@ def counter_scale(chance: np.random.Generator) -> Hidden:
     """Counters that slip, and the more, the more warp is out and pulls."""
     bend = chance.uniform(-0.1, 0.2)
 
-    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         slip = size * (1.0 + bend * (inputs[:2] / USUAL_LENGTH - 1.0))
         return np.array([*(inputs[:2] / (1.0 + slip)), inputs[2]])
 
@@ -91,7 +92,7 @@ def counter_offset(chance: np.random.Generator) -> Hidden:
     """Counters that were set to zero at another mark, not quite alike on both sides."""
     uneven = chance.uniform(-0.03, 0.03)
 
-    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         sides = size * np.array([1.0 + uneven, 1.0 - uneven])
         return np.array([*(inputs[:2] - sides), inputs[2]])
 
@@ -102,7 +103,7 @@ def warp_asymmetry(chance: np.random.Generator) -> Hidden:
     """A port warp that is longer, and the more, the more is out."""
     bend = chance.uniform(-0.2, 0.2)
 
-    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         more = size * (1.0 + bend * (inputs[0] / USUAL_LENGTH - 1.0))
         return np.array([inputs[0] + 0.5 * more, inputs[1] - 0.5 * more, inputs[2]])
 
@@ -143,8 +144,8 @@ class Stalling:
     power: float
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Subtract the lost lift."""
         above = np.where(np.real(attack) > self.onset, attack - self.onset, 1e-9)
         bent = coefficients + 0.0 * attack[..., None]
@@ -171,8 +172,8 @@ class Leaning:
     bend: float
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Change the lift by the lean."""
         bent = coefficients + 0.0 * lean[..., None]
         bent[..., 1] = bent[..., 1] * (1.0 + self.size * lean * (1.0 + self.bend * lean))
@@ -246,7 +247,7 @@ def heave(chance: np.random.Generator) -> Hidden:
     """A sea that goes down or gets up during the tows."""
     change = chance.uniform(-0.1, 0.1)
 
-    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         variance = size * (1.0 + change * at.hours)
         return np.array([*inputs[:2], np.sqrt(inputs[2] ** 2 + variance)])
 
@@ -257,17 +258,18 @@ def heave(chance: np.random.Generator) -> Hidden:
 class Drag:
     """Node force: mud or sand that holds what is below a depth."""
 
-    nodes: np.ndarray
+    nodes: FloatArray
     depth: float
     hold: float
     carry: float
-    ahead: np.ndarray
+    ahead: FloatArray
 
-    def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+    def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:
         """Return friction, and the vertical reaction of part of it."""
         under = 0.5 * (1.0 + np.tanh((-positions[..., 2] - self.depth) / 6.0))
         way = np.array([*-self.ahead, self.carry])
-        return self.hold * under[..., None] * way + 0.0 * velocities
+        forces: FloatArray = self.hold * under[..., None] * way + 0.0 * velocities
+        return forces
 
 
 def bottom_contact(chance: np.random.Generator) -> Hidden:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import CABLES, Draw
@@ -24,8 +25,8 @@ class MoreLoad:
     side: int | None = None
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Add to the coefficient."""
         bent = coefficients + 0.0 * attack[..., None]
         more = self.size * (attack / USUAL_ATTACK) ** self.power
@@ -114,7 +115,7 @@ def tide(chance: np.random.Generator) -> Hidden:
 def counter_drift(chance: np.random.Generator) -> Hidden:
     """Counters that lose a little at each haul, so that they drift through the tow."""
 
-    def towed(size: float, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         return np.array([*(inputs[:2] - size * (at.hours - 1.4)), inputs[2]])
 
     return Hidden('counter_drift', 'm per h', 10.0, (60.0, 60.0), towed=towed)

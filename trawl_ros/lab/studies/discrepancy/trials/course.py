@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.lab.studies.discrepancy.trials.tows import PlannedTow
 from trawl_ros.lab.studies.identification.plant import Look
@@ -39,13 +40,13 @@ class Course:
         Time (s) of each state.
     """
 
-    times: np.ndarray
-    inputs: np.ndarray
-    values: np.ndarray
+    times: FloatArray
+    inputs: FloatArray
+    values: FloatArray
     heading: float
     moments: tuple[float, ...]
 
-    def at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Inputs (m, 3) and values (m, 22) at other times (m,)."""
         inputs, values = (
             np.column_stack([np.interp(times, self.times, column) for column in table.T])

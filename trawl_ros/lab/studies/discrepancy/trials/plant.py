@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
@@ -39,7 +40,7 @@ class Clean:
     """Plant without hidden effects in one state; ``slow`` as in `Prediction`."""
 
     look: Look
-    slow: np.ndarray
+    slow: FloatArray
     state: Equilibrium
 
 
@@ -48,7 +49,7 @@ class Plant:
     """Plant with a board of its own, and its states without hidden effects."""
 
     model: GearModel
-    coefficients: np.ndarray
+    coefficients: FloatArray
     clean: dict[State, Clean]
 
     def at(self, state: State) -> Clean:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.lab.studies.discrepancy.trials.course import Course
@@ -37,7 +38,7 @@ GROUND_STD = 0.03
 PLACES = {'port_door_depth': 'port', 'starboard_door_depth': 'starboard', 'net_depth': 'sonar'}
 DISTANCES = {'door_spread': 'spread', 'vertical_opening': 'opening_height'}
 
-Readings = tuple[np.ndarray, np.ndarray]
+Readings = tuple[FloatArray, FloatArray]
 """Times (n,), s, and values (n,) of one channel."""
 
 
@@ -136,7 +137,7 @@ def _together(first: Readings, second: Readings) -> Iterator[tuple[float, float,
 
 
 def _ship(
-    course: Course, found: dict[str, Readings], current: np.ndarray, chance: np.random.Generator
+    course: Course, found: dict[str, Readings], current: FloatArray, chance: np.random.Generator
 ) -> Iterator[Sample]:
     ahead = np.array([np.cos(course.heading), np.sin(course.heading)])
     times, _ = found['speed']

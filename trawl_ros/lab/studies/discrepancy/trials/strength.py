@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import norm
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures, values_vector
 from trawl_ros.diagnosis.evidence import POWER, Evidence, evidence
@@ -118,7 +119,7 @@ class Likelihood:
         return evidence(self.fit, self._mimics, units)
 
     @cached_property
-    def _mimics(self) -> list[np.ndarray]:
+    def _mimics(self) -> list[FloatArray]:
         predictor = Predictor(self.plant.model, without=frozenset(range(self.plan.baseline)))
         return signatures(predictor, self.fit.windows, self.wanted)
 

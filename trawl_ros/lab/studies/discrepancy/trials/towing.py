@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
@@ -31,17 +32,17 @@ class InTime(Effect):
 
     hidden: Hidden | None = None
 
-    def apply_to_inputs(self, values: np.ndarray, inputs: np.ndarray, at: Situation) -> np.ndarray:
+    def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Apply to inputs: true warp lengths and speed (3,)."""
         assert self.hidden is not None
         return self.hidden.towed(float(values[0]), inputs, at)
 
-    def gear(self, values: np.ndarray, model: GearModel, at: Situation) -> GearModel:
+    def gear(self, values: FloatArray, model: GearModel, at: Situation) -> GearModel:
         """Gear model with the hidden effect."""
         assert self.hidden is not None
         return self.hidden.gear(float(values[0]), model, at)
 
-    def apply_to_sensors(self, values: np.ndarray, readings: Readings, at: Situation) -> Readings:
+    def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Apply to sensors: readings with the hidden effect."""
         assert self.hidden is not None
         return self.hidden.shown(float(values[0]), readings, at)
@@ -110,7 +111,7 @@ def towed_in_time(
     return Course(np.array(times), np.array(inputs), np.array(values), heading, tuple(moments))
 
 
-def _shown(now: Instant, there: EffectSet, heading: float, hours: float) -> np.ndarray:
+def _shown(now: Instant, there: EffectSet, heading: float, hours: float) -> FloatArray:
     """Indicated inputs by fixed-point iteration, from the true ones."""
     towed = np.array([now.winches[0].length, now.winches[1].length, now.ship.speed])
     shown = towed
@@ -121,8 +122,8 @@ def _shown(now: Instant, there: EffectSet, heading: float, hours: float) -> np.n
 
 
 def _seen(
-    simulation: Simulation, there: EffectSet, sense: float, shown: np.ndarray, hours: float
-) -> np.ndarray:
+    simulation: Simulation, there: EffectSet, sense: float, shown: FloatArray, hours: float
+) -> FloatArray:
     """Readings (22,) of the sensors."""
     now, model = simulation.now, simulation.model
     state = now.motion.state
