@@ -3,15 +3,24 @@
 import ast
 import doctest
 import inspect
+import re
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import trawl_ros
-from trawl_ros import api
+
+ROOT = Path(trawl_ros.__file__).parents[1]
+
+TOW = """
+description: Six seconds of a steady tow
+gear: coarse.yaml
+start: {warp_length_m: 300.0, speed_m_s: 2.3}
+steps: [{name: steady, minutes: 0.1}]
+truth_rate_hz: 2.0
+"""
 
 
 def test_it_is_some_forty_names_each_with_a_docstring():
@@ -53,16 +62,31 @@ def test_functions_name_parameters_and_errors():
             text = inspect.getdoc(found)
             for parameter in inspect.signature(found).parameters:
                 assert parameter in text, f'{name}: {parameter}'
-            if found.__module__ == api.__name__:
-                assert 'Raises\n------' in text, name
+            for section in ('Raises', 'Examples'):
+                assert f'{section}\n---' in text, f'{name}: {section}'
+            assert re.search('(Returns|Yields)\n---', text), name
 
 
-@pytest.mark.parametrize('name', ['read_bag', 'trim', 'plot', 'validate'])
-def test_examples_hold(name, monkeypatch):
-    monkeypatch.chdir(Path(trawl_ros.__file__).parents[1])
-    failed, tried = doctest.testmod(import_module(trawl_ros._HOMES[name]))
-    assert tried > 0
-    assert failed == 0
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory, steady_tow, coarse_gear):
+    """A folder like a checkout, with the coarse gear and a bag of two steady states of it."""
+    folder = tmp_path_factory.mktemp('examples')
+    for name in ('bags', 'config'):
+        (folder / name).symlink_to(ROOT / name)
+    (folder / 'coarse.yaml').symlink_to(coarse_gear)
+    (folder / 'tow.yaml').write_text(TOW)
+    steady_tow.bag(folder / 'tow_1')
+    return folder
+
+
+@pytest.mark.parametrize('name', trawl_ros.__all__)
+def test_examples_hold(name, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (example,) = doctest.DocTestFinder(recurse=False).find(getattr(trawl_ros, name), name, globs={})
+    assert example.examples, f'{name} has no example'
+    report = []
+    doctest.DocTestRunner().run(example, out=report.append)
+    assert not report, ''.join(report)
 
 
 def test_what_runs_on_a_ship_imports_no_lab():

@@ -60,6 +60,13 @@ class TowedBag:
         Length of the tow, and of the scenario, s.
     complete
         True if the scenario was towed to its end.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> bag = trawl_ros.tow('tow.yaml', 'towed')
+    >>> bag.duration_s, bag.planned_s, bag.complete
+    (6.0, 6.0, True)
     """
 
     path: Path
@@ -93,8 +100,8 @@ def simulate(scenario: str | Path) -> Iterator[Truth]:
     --------
     >>> from itertools import islice
     >>> import trawl_ros
-    >>> [round(truth.winches[0].length) for truth in islice(trawl_ros.simulate('demo'), 2)]
-    [400, 400]
+    >>> [round(truth.winches[0].length) for truth in islice(trawl_ros.simulate('tow.yaml'), 2)]
+    [300, 300]
     """
     trial = Trial(load_scenario(scenario))
     while (truth := trial.step()) is not None:
@@ -121,12 +128,26 @@ def tow(
     on_progress
         Called as the tow goes on.
 
+    Returns
+    -------
+    TowedBag
+        Its path, counts by topic, and how long was towed.
+
     Raises
     ------
     BagError
         If ``out`` exists, or cannot be written to.
     ScenarioError, NoSteadyState
         As in `simulate`.
+
+    Examples
+    --------
+    Six seconds on the coarse gear:
+
+    >>> import trawl_ros
+    >>> bag = trawl_ros.tow('tow.yaml', 'my_tow')
+    >>> bag.messages['/trawl/winch/joint_states']
+    13
     """
     out = new_folder(Path(out), BagError)
     loaded = load_scenario(scenario)
@@ -226,6 +247,20 @@ def identify(
     ------
     TrawlError
         If no bag has a steady window, with the reason, or ``out`` holds files already.
+
+    Notes
+    -----
+    Several bags are read by processes that import the script which calls this: what that does
+    must stand under ``if __name__ == '__main__':``.
+
+    Examples
+    --------
+    A bag with two steady states of the coarse gear:
+
+    >>> import trawl_ros
+    >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml')
+    >>> report.estimate.values.shape, len(report.windows)
+    ((12,), 2)
     """
     if out is not None:
         empty_folder(Path(out), force=force)
@@ -279,6 +314,14 @@ def diagnose(
     ------
     TrawlError
         If a bag cannot be read, or ``out`` holds files already.
+
+    Examples
+    --------
+    Two steady states are too few to tell anything:
+
+    >>> import trawl_ros
+    >>> trawl_ros.diagnose(['tow_1'], gear='coarse.yaml').verdict
+    'NOT_TESTABLE'
     """
     if out is not None:
         empty_folder(Path(out), force=force)
@@ -325,10 +368,24 @@ def plan_trial(
     on_progress
         Called as manoeuvres are explored.
 
+    Returns
+    -------
+    TrialPlan
+        The ``trial`` with its legs, what each leg gains, and the paper's sweep beside it.
+
     Raises
     ------
     TrawlError
         If there is nothing to choose from, or no time for two legs.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> from trawl_ros.estimation.planning.states import Limits
+    >>> limits = Limits(lengths=(300.0, 400.0), speeds=(2.1, 2.3), shorter=())
+    >>> plan = trawl_ros.plan_trial('coarse.yaml', hours=1.5, limits=limits)
+    >>> len(plan.gains)
+    5
     """
     if out is not None:
         empty_folder(Path(out), force=force)

@@ -66,10 +66,22 @@ def check_bag(
         Groups (see `GROUPS`) or topics, relative or in full, that must be there. What else the
         contract has and the bag has not is no finding: nobody records everything.
 
+    Returns
+    -------
+    BagCheck
+        ``sound``, its ``findings``, and counts, rates (Hz), gaps (s) and stamps by topic.
+
     Raises
     ------
     BagError
         If there is no bag at all, or a required name is no group and no topic's.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> bag = trawl_ros.tow('tow.yaml', 'checked')
+    >>> trawl_ros.check_bag(bag.path, required=['truth']).sound
+    True
     """
     wanted = _required(required, namespace)
     bag = Bag(path, namespace=namespace, lenient=True)

@@ -71,11 +71,24 @@ def export_bag(
     on_progress
         Called after each row, with the recorded time (s) that is done.
 
+    Returns
+    -------
+    Exported
+        File and number of rows by topic, the fields left out, and problems of the bag.
+
     Raises
     ------
     BagError
         If there is no bag, no such topic, nothing that can be written, or the folder exists or
         cannot be written.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> bag = trawl_ros.tow('tow.yaml', 'exported')
+    >>> done = trawl_ros.export_bag(bag.path, 'tables', topics=['door/spread'])
+    >>> [(table.file.name, table.rows) for table in done.topics]
+    [('trawl.door.spread.csv', 4)]
     """
     folder = new_folder(Path(folder), BagError)
     bag = Bag(path, namespace=namespace, lenient=True)

@@ -71,6 +71,15 @@ class Bag:
     ------
     BagError
         If there is no bag, or, unless ``lenient``, its metadata and its content disagree.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> bag = trawl_ros.Bag('bags/sea_trial')
+    >>> bag.topics['/trawl/door/spread']
+    'sensor_msgs/msg/Range'
+    >>> bag.problems
+    []
     """
 
     def __init__(
@@ -273,10 +282,22 @@ def read_messages(
     problems
         Takes a sentence for each thing found wrong, once all messages were read.
 
+    Yields
+    ------
+    Received
+        Full ``topic``, ``type``, ``log_time`` (ns) and the decoded ``message``, by log time.
+
     Raises
     ------
     BagError
         See `Bag`.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> first = next(trawl_ros.read_messages('bags/sea_trial', ['/trawl/winch/joint_states']))
+    >>> first.topic, list(first.message.name)
+    ('/trawl/winch/joint_states', ['port_warp', 'starboard_warp'])
     """
     bag = Bag(path)
     yield from bag.messages(topics)

@@ -67,11 +67,26 @@ def repair_bag(
     on_progress
         Called after each message, with the recorded time (s) of its file that is done.
 
+    Returns
+    -------
+    Repair
+        With ``out``, messages ``saved`` and ``lost`` by topic, and the ``problems`` found.
+
     Raises
     ------
     BagError
         If there is no bag of MCAP files, nothing of it can be saved, or the new one cannot be
         written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import trawl_ros
+    >>> bag = trawl_ros.tow('tow.yaml', 'cut_short')
+    >>> (bag.path / 'metadata.yaml').unlink()
+    >>> repair = trawl_ros.repair_bag(bag.path, Path('repaired'))
+    >>> repair.whole, repair.saved['/trawl/door/spread']
+    (True, 4)
     """
     with reading(path, BagError):
         damaged = _Damaged(path)

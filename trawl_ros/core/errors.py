@@ -13,15 +13,43 @@ Refusal = Literal[
 
 
 class TrawlError(Exception):
-    """Base class of all errors of the input; commands print them and exit with 1."""
+    """Base class of all errors of the input; commands print them and exit with 1.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> try:
+    ...     trawl_ros.load_gear('no_such_gear')
+    ... except trawl_ros.TrawlError as reason:
+    ...     print(type(reason).__name__)
+    GearError
+    """
 
 
 class GearError(TrawlError):
-    """Gear file that is missing, unreadable or says something impossible."""
+    """Gear file that is missing, unreadable or says something impossible.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> trawl_ros.load_gear('no_such.yaml')
+    Traceback (most recent call last):
+        ...
+    trawl_ros.core.errors.GearError: no_such.yaml: no such file
+    """
 
 
 class ScenarioError(TrawlError):
-    """Scenario file that is missing, unreadable or asks for something impossible."""
+    """Scenario file that is missing, unreadable or asks for something impossible.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> trawl_ros.load_scenario('no_such.yaml')
+    Traceback (most recent call last):
+        ...
+    trawl_ros.core.errors.ScenarioError: no_such.yaml: no such file
+    """
 
 
 class InstrumentError(TrawlError):
@@ -33,7 +61,16 @@ class MessageError(TrawlError):
 
 
 class BagError(TrawlError):
-    """Bag that is missing, damaged, or does not hold what was asked for."""
+    """Bag that is missing, damaged, or does not hold what was asked for.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> trawl_ros.check_bag('no_such_bag')
+    Traceback (most recent call last):
+        ...
+    trawl_ros.core.errors.BagError: no_such_bag: no such bag
+    """
 
 
 class LogError(TrawlError):
@@ -54,6 +91,16 @@ class NoSteadyState(TrawlError):
     """Gear without usable steady state at the wanted warp length and speed.
 
     ``reason`` says why in a word; where a root was found, which of its faults came first.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> try:
+    ...     trawl_ros.steady_state(model, warp_length=50.0, speed=2.1)
+    ... except trawl_ros.NoSteadyState as reason:
+    ...     print(f'{reason.reason}: {reason}')
+    surfaced: warp 50 m at 2.1 m/s: the gear breaks the surface by 1.2 m
     """
 
     def __init__(self, message: str, reason: Refusal = 'none found') -> None:

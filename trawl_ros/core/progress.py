@@ -19,6 +19,14 @@ class WorkProgress:
         Of both: ``'s'`` for simulated or recorded time, or a noun such as ``'bags'``.
     detail
         A few words more, such as the step of a scenario.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> stages = set()
+    >>> bag = trawl_ros.tow('tow.yaml', 'watched', on_progress=lambda at: stages.add(at.stage))
+    >>> sorted(stages)
+    ['looking for the steady states', 'towing']
     """
 
     stage: str

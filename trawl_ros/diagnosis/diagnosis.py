@@ -78,6 +78,13 @@ class Diagnosis:
         tows.
     empirical
         The term that explains what no effect does, where there is one.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> diagnosis = trawl_ros.diagnose(['tow_1'], gear='coarse.yaml')
+    >>> diagnosis.tows, diagnosis.named is None
+    (('tow_1',), True)
     """
 
     verdict: Verdict

@@ -23,10 +23,22 @@ GROUP = 'trawl_ros.effects'
 def catalogue() -> Mapping[str, Effect]:
     """All effects by name, in the order of the names.
 
+    Returns
+    -------
+    Mapping
+        Name → `Effect`; read only.
+
     Raises
     ------
     TrawlError
         If an entry point cannot be loaded, is no effect, or has a name that is taken.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> effect = trawl_ros.catalogue()['warp_strumming']
+    >>> effect.sentence
+    'The warps vibrate in the flow, or are fouled, and meet more drag across them.'
     """
     found: dict[str, Effect] = {}
     for source, effect in (*_own(), *_foreign()):

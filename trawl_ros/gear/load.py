@@ -16,10 +16,22 @@ def load_gear(path: str | Path) -> GearRecord:
     path
         A file, or the name of a gear that comes with the package, such as ``'kaifuha'``.
 
+    Returns
+    -------
+    GearRecord
+        Frozen, each value with its unit in its name.
+
     Raises
     ------
     GearError
         Naming file, key, what was found and what was expected.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> gear = trawl_ros.load_gear('kaifuha')
+    >>> gear.warp.diameter_m, gear.board.area_m2
+    (0.032, 12.0)
     """
     path = packaged(path, 'gear', GearError)
     return validated(GearRecord, load_yaml(path, GearError), path, GearError)

@@ -289,7 +289,34 @@ class EffectRecord(Record):
 
 
 class GearRecord(Record):
-    """Gear: the records of a whole gear file."""
+    """Gear: the records of a whole gear file.
+
+    Attributes
+    ----------
+    name
+        Of the gear.
+    water, ship, winch
+        Density, gravity, current and temperature; towing blocks; speed of the winches.
+    warp, bridle, headrope, footrope
+        Ropes: lengths (m), diameters (m), weight in water (N/m), stiffness EA (N), drag.
+    board
+        Otter board: mass (kg), inertia (kg m²), area (m²), coefficients of eq. 14, fastening (m).
+    netting
+        Sections of the net, and how finely it is cut.
+    kite, clump, floats
+        What lifts and weighs down the mouth.
+    identification
+        Start values, standard deviations and bounds of the twelve coefficients.
+    effects
+        Effects beyond the model, at most 20.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> gear = trawl_ros.load_gear('kaifuha')
+    >>> gear.netting.around, gear.refined(net=0.25).netting.around
+    (48, 12)
+    """
 
     name: str
     water: WaterRecord

@@ -220,10 +220,21 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
         A file that ends in ``.yaml``, or the name of a set that comes with the package. A file
         with the key ``base`` names a set of the package and says only what differs from it.
 
+    Returns
+    -------
+    InstrumentParameters
+        Errors and timing of all instruments, each value with its unit in its name.
+
     Raises
     ------
     InstrumentError
         Naming file, key, what was found and what was expected.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> trawl_ros.load_instruments().winch.rate_hz
+    2.0
     """
     path = packaged(path, 'instruments', InstrumentError)
     data = load_yaml(path, InstrumentError)

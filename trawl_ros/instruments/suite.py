@@ -33,6 +33,20 @@ class InstrumentSuite:
     ----------
     panel : FaultPanel
         Switches of faults.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> from trawl_ros.instruments.errors.instrument import SeedPlan
+    >>> from trawl_ros.records.surroundings import Surroundings
+    >>> suite = trawl_ros.InstrumentSuite(
+    ...     trawl_ros.load_instruments('worn'),
+    ...     surroundings=Surroundings(pressure_at=lambda depth: 101_325.0 + 10_052.0 * depth),
+    ...     draws=SeedPlan(seed=3),
+    ... )
+    >>> samples = suite.observe(next(trawl_ros.simulate('tow.yaml')))
+    >>> type(samples[0]).__name__
+    'WinchSample'
     """
 
     def __init__(

@@ -53,6 +53,13 @@ class GearModel:
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
     Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m², ``lump_added``
     kg per kg/m³ of water. ``node_forces`` are forces beyond the paper's.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> model.ends.shape == (len(model.rest), 2), model.lump_mass.shape == (model.nodes,)
+    (True, True)
     """
 
     gear: GearRecord
@@ -251,7 +258,30 @@ def _add_bridles(
 
 
 def build_model(gear: GearRecord) -> GearModel:
-    """Turn a gear file's record into arrays."""
+    """Turn a gear file's record into arrays.
+
+    Parameters
+    ----------
+    gear
+        From `load_gear`, perhaps cut finer or coarser with `GearRecord.refined`.
+
+    Returns
+    -------
+    GearModel
+        Without state: any number of tows may share it.
+
+    Raises
+    ------
+    GearError
+        If the net cannot be cut as the file says.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> model.nodes, model.dof == 3 * model.nodes + 12
+    (142, True)
+    """
     water, board = build_water(gear), build_board(gear)
     mesh = build_net(gear.netting, gear.kite.chord_m)
     build = _Builder()

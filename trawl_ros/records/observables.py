@@ -15,6 +15,14 @@ class Observables:
     Tension, ``divergence`` (outward positive, against the ship's course) and ``declination``
     (down positive) belong to the warp at its block. ``pitch`` is nose down and ``roll`` top to
     starboard positive in the door frame; ``attack``, ``slip``, ``inclination`` are α, β, δ.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> seen = trawl_ros.steady_state(model, 500.0, 2.1).observables
+    >>> round(seen.warp_tension / 1000), seen.array().shape
+    (157, (22,))
     """
 
     door_spread: float

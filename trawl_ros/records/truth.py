@@ -122,7 +122,28 @@ class SeabedTruth:
 
 @dataclass(frozen=True)
 class Truth:
-    """Truth at one instant. ``doors`` and ``winches`` are in the order of `SIDES`."""
+    """Truth at one instant. ``doors`` and ``winches`` are in the order of `SIDES`.
+
+    Attributes
+    ----------
+    stamp
+        ns.
+    doors, winches
+        Poses, flow angles and loads of the boards; lengths, speeds and tensions of the warps.
+    net
+        Mouth (2 N, 3), openings and depth of the headrope, m.
+    vessel
+        Position, heading and velocities of the ship.
+    schools, seabed
+        Fish, and depths of the bottom (m).
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> truth = next(trawl_ros.simulate('tow.yaml'))
+    >>> truth.winches[0].length, truth.doors[0].position.shape
+    (300.0, (3,))
+    """
 
     stamp: int
     doors: tuple[DoorTruth, DoorTruth]

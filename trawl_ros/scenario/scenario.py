@@ -44,6 +44,14 @@ class Scenario:
 
     ``path`` is the file, ``gear`` what it says of the gear as it stands in the gear file,
     ``plant`` that gear with the scenario's refinement, coefficients and water: the truth.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> scenario = trawl_ros.load_scenario('config/scenarios/demo.yaml')
+    >>> begin, command = scenario.commands[1]
+    >>> begin, command.port_length, command.speed
+    (552.0, 350.0, 2.2)
     """
 
     path: Path
@@ -162,10 +170,22 @@ def load_scenario(path: str | Path) -> Scenario:
         and instrument files that it names are sought beside it if their names end in ``.yaml``,
         else among those that come with the package.
 
+    Returns
+    -------
+    Scenario
+        Checked, with gear and instruments loaded.
+
     Raises
     ------
     ScenarioError
         Naming file, key, what was found and what was expected.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> scenario = trawl_ros.load_scenario('config/scenarios/demo.yaml')
+    >>> scenario.duration_s, len(scenario.commands)
+    (3126.0, 5)
     """
     path = packaged(path, 'scenarios', ScenarioError)
     record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)

@@ -75,6 +75,19 @@ class Simulation:
         If the gear has none to start from.
     ScenarioError
         If it is to start in a turn, or on the seabed (`SeabedTouched`).
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> simulation = trawl_ros.Simulation(model, trawl_ros.Command(500.0, 500.0, 2.1))
+    >>> simulation.command = trawl_ros.Command(500.0, 500.0, 2.3)
+    >>> for _ in range(100):
+    ...     now = simulation.advance()
+    >>> now.stamp, bool(now.ship.speed > 2.1)
+    (10000000000, True)
+    >>> round(simulation.truth().winches[0].length)
+    500
     """
 
     def __init__(

@@ -127,7 +127,25 @@ def find_equilibrium(
 
 @dataclass(frozen=True)
 class SteadyState:
-    """Steady state: an equilibrium that is stable, under water and within the board's law."""
+    """Steady state: an equilibrium that is stable, under water and within the board's law.
+
+    Attributes
+    ----------
+    equilibrium
+        State of all nodes and boards, its operating point, and what the solver left over (N).
+    stability
+        Eigenvalues (1/s) of the slowest motions about it.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> steady = trawl_ros.steady_state(model, 500.0, 2.1)
+    >>> bool(steady.stability.eigenvalues.real.max() < 0.0)
+    True
+    >>> trawl_ros.steady_state(model, 510.0, 2.1, start=steady.equilibrium).equilibrium.point.speed
+    2.1
+    """
 
     equilibrium: Equilibrium
     stability: Stability
@@ -166,11 +184,25 @@ def steady_state(
     near
         A shape close to the one sought, at this very operating point.
 
+    Returns
+    -------
+    SteadyState
+        With `observables` (m, N, rad), the `equilibrium` that a neighbouring search may start from,
+        and its `stability`.
+
     Raises
     ------
     NoSteadyState
         There is none, it is unstable, the gear breaks the surface, or a board works outside
         the range of its law.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
+    >>> seen = trawl_ros.steady_state(model, warp_length=500.0, speed=2.1).observables
+    >>> print(f'{seen.door_spread:.0f} m apart, {seen.door_depth:.0f} m deep')
+    144 m apart, 102 m deep
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
     effects = effects_of(model.gear)

@@ -72,7 +72,7 @@ def import_log(
     *,
     leave_out: bool = False,
 ) -> Imported:
-    """Turn a CSV log into a bag.
+    r"""Turn a CSV log into a bag.
 
     Parameters
     ----------
@@ -99,6 +99,20 @@ def import_log(
         If log or mapping are missing or wrong; names file, line and column.
     BagError
         If the bag exists or cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import trawl_ros
+    >>> _ = Path('log.csv').write_text('s,depth\n0,61.5\n1,61.7\n')
+    >>> _ = Path('log.yaml').write_text('''
+    ... clock: {columns: [s], format: elapsed seconds, start: '2026-08-01 12:00:00'}
+    ... water: {density_kg_m3: 1025.0}
+    ... topics: {door/port/pressure: {fields: {depth: {column: depth, unit: m}}}}
+    ... ''')
+    >>> done = trawl_ros.import_log('log.csv', 'log.yaml', 'from_log')
+    >>> done.rows, dict(done.counts)
+    (2, {'/trawl/door/port/pressure': 2})
     """
     path = Path(csv_path)
     reading = _Reading(path, load_mapping(mapping_path), leave_out)

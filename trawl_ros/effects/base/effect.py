@@ -36,6 +36,12 @@ class Parameter:
         Bounds of its possible values; assumed.
     std
         Prior standard deviation about the neutral value, assumed; scales the estimate.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> trawl_ros.Parameter('area', 'm²', neutral=0.0, low=0.0, high=40.0, std=10.0).neutral
+    0.0
     """
 
     name: str
@@ -104,6 +110,21 @@ class Effect:
         Direct check without any tow, in one sentence; empty where there is none.
     instrument
         Instrument whose error it is, where that may have others too; empty for physics.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> class LateLog(trawl_ros.Effect):
+    ...     def apply_to_inputs(self, values, inputs, at):
+    ...         return inputs + [0.0, 0.0, values[0]]
+    >>> late = LateLog(
+    ...     name='late_log',
+    ...     sentence='The log shows less than the speed through the water.',
+    ...     parameters=(trawl_ros.Parameter('less', 'm/s', 0.0, -0.5, 0.5, 0.1),),
+    ...     excited_by='speed',
+    ... )
+    >>> late.neutral
+    array([0.])
     """
 
     name: str

@@ -73,6 +73,15 @@ class TrialPlan:
         Quantities of the laws before any tow.
     sweeps
         The paper's sweep in the same time, with all planned channels and with the paper's.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> from trawl_ros.estimation.planning.states import Limits
+    >>> limits = Limits(lengths=(300.0,), speeds=(2.1, 2.3), shorter=())
+    >>> plan = trawl_ros.plan_trial('coarse.yaml', hours=1.0, limits=limits)
+    >>> plan.gains[-1].well_known >= plan.gains[0].well_known
+    True
     """
 
     gear: str

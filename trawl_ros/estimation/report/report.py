@@ -92,6 +92,13 @@ class Report:
         Information of the data by direction.
     laws
         Quantities of the boards' laws; None where the gear is not at hand.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml')
+    >>> report.measured.shape, report.rejected
+    ((2, 4), {'unsteady': 1})
     """
 
     estimate: Estimate
