@@ -304,7 +304,7 @@ class GearRecord(Record):
     netting
         Sections of the net, and how finely it is cut.
     kite, clump, floats
-        What lifts and weighs down the mouth.
+        Kite, weights and floats of the mouth.
     identification
         Start values, standard deviations and bounds of the twelve coefficients.
     effects

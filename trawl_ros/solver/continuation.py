@@ -55,7 +55,7 @@ def branch(family: Family, value: float, state: State, *, scale: float) -> Itera
     family
         Gear and boundary over the parameter.
     value, state
-        Where the branch starts, and a steady shape there.
+        Start of the branch, and a steady shape there.
     scale
         Change of the parameter that counts as one; its sign is the direction taken first.
     """
