@@ -205,6 +205,8 @@ def test_a_node_that_is_killed_goes_on_after_its_last_window(replay, bag, offlin
         player._pause()
         # What was dealt with is saved.
         graph.until(lambda: player._consumers.slowest() > second)
+        # Another topic brings what was said of it, and may be slower.
+        graph.until(lambda: len(listener.covariances) >= 2)
         process = processes._running.pop('identification_node')
         process.send_signal(signal.SIGKILL)
         process.wait()

@@ -132,6 +132,15 @@ class TestSource:
         assert all(self.taken(source, (7, 8, 11, 1, 2)))
         assert source.lost == 2
 
+    def test_a_node_that_was_killed_and_started_anew_is_heard_from_its_first_message(self):
+        source = Source(lambda: 2, Wall(), namesakes=lambda: True)
+        assert self.taken(source, (7, 8, 1, 2, 3)) == [True] * 5
+
+    def test_of_twins_the_younger_one_stays(self):
+        source = Source(lambda: 2, Wall(), namesakes=lambda: True)
+        assert self.taken(source, (50, 1, 51, 2, 52, 3)) == [True, True, False, True, False, True]
+        assert not source.take(55), 'a loss of the elder one is no new start'
+
     def test_without_numbers_none_of_two_is_used(self):
         assert Source(lambda: 1).take(None)
         assert not Source(lambda: 2).take(None)

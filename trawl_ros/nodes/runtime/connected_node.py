@@ -19,6 +19,7 @@ from trawl_ros.core.limits import SENTENCE
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.nodes.runtime.graph_checks import (
     SHARED,
+    of_one_node,
 )
 from trawl_ros.nodes.runtime.incoming import (
     Incoming,
@@ -118,7 +119,10 @@ class ConnectedNode(Node):
         if full == CLOCK.name and not kwargs.get('raw'):
             callback = believing_clock(callback, lambda reason: self.refuse(full, reason))
         # Made before the subscription that it asks.
-        source = Source(lambda: subscription.get_publisher_count())
+        source = Source(
+            lambda: subscription.get_publisher_count(),
+            namesakes=lambda: of_one_node(self.get_publishers_info_by_topic(full)),
+        )
         subscription = super().create_subscription(
             msg_type,
             topic,

@@ -1,11 +1,12 @@
 """Checks of the ROS graph: two clocks or sources, other types or QoS than expected."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rclpy.duration import Infinite
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.records.topics import CLOCK, COMMANDS, find_topic
@@ -13,6 +14,10 @@ from trawl_ros.records.topics import CLOCK, COMMANDS, find_topic
 SYNC = 'sync/progress'
 SHARED = ('/diagnostics', SYNC, *(topic.name for topic in COMMANDS))
 """Topics on which several may speak."""
+
+
+UNKNOWN = '_NODE_NAME_UNKNOWN_'
+"""Name that the middleware gives a node of which it has heard nothing but the publisher."""
 
 
 def clock_status(node: Node) -> Status:
@@ -35,6 +40,12 @@ def clock_status(node: Node) -> Status:
         message = f'{names} publishes /clock, but use_sim_time is not set; expected one clock'
         return Status('clock', WARN, message, values)
     return Status('clock', OK, 'simulated time' if publishers else 'system time', values)
+
+
+def of_one_node(publishers: Sequence[TopicEndpointInfo]) -> bool:
+    """True if publishers belong to nodes of one known name: one that was started anew, or twins."""
+    names = {(info.node_namespace, info.node_name) for info in publishers}
+    return len(names) == 1 and UNKNOWN not in next(iter(names))
 
 
 @dataclass(frozen=True)

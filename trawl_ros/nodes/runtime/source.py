@@ -34,6 +34,8 @@ class Source:
     """Source: the publisher that was heard first, as long as it is heard.
 
     Two sources of one quantity contradict each other, and a mixture of both is worse than either.
+    A node that was killed and started anew is the source again from its first message, though the
+    middleware has both for some seconds: it bears the name of the other and counts from one.
 
     Parameters
     ----------
@@ -41,6 +43,8 @@ class Source:
         Gives how many publishers are matched just now.
     clock
         Gives wall time in s.
+    namesakes
+        Gives whether all of them belong to nodes of one name.
 
     Attributes
     ----------
@@ -49,10 +53,14 @@ class Source:
     """
 
     def __init__(
-        self, publishers: Callable[[], int], clock: Callable[[], float] = time.monotonic
+        self,
+        publishers: Callable[[], int],
+        clock: Callable[[], float] = time.monotonic,
+        namesakes: Callable[[], bool] = lambda: False,
     ) -> None:
         self._publishers = publishers
         self._clock = clock
+        self._namesakes = namesakes
         self._source: _Publisher | None = None
         self._others: list[_Publisher] = []
         self.lost = 0
@@ -80,6 +88,11 @@ class Source:
             return True
         if other is None:
             other = _Publisher(number, now)
+            if number < source.number and self._namesakes():
+                # Were they twins, the younger one would stay: the other's numbers are higher.
+                self._others = [source]
+                self._source = other
+                return True
             self._others = [*self._others[1 - MOST_PUBLISHERS :], other]
         else:
             other.heard(number, now)
