@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model import board as board_physics
 from trawl_ros.model import kite as kite_physics
 from trawl_ros.model import line
@@ -17,13 +18,13 @@ from trawl_ros.model.bar import between
 from trawl_ros.model.bar_pass import add_bar_blocks, add_bar_forces, add_bar_masses, water_of
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.line import BarMotion
+from trawl_ros.model.line import BarMotion, Chosen
 from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
 from trawl_ros.model.numerics import STEP, cross, outer, rotation, skew
 from trawl_ros.model.state import State, Tow
 
 
-def rest_lengths(model: GearModel, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
+def rest_lengths(model: GearModel, tow: Tow) -> tuple[FloatArray, FloatArray]:
     """Unstretched lengths of all bars and their rates; a warp is cut into equal bars."""
     lengths = tow.lengths / model.warp_segments
     rest, rate = model.rest.astype(lengths.dtype), np.zeros(len(model.rest))
@@ -33,7 +34,7 @@ def rest_lengths(model: GearModel, tow: Tow) -> tuple[np.ndarray, np.ndarray]:
     return rest, rate
 
 
-def fastening(model: GearModel) -> np.ndarray:
+def fastening(model: GearModel) -> FloatArray:
     """Fastening points (2, 3, 3) of both boards in their door frames."""
     points = model.board.fastening_points
     return np.stack([points, points * np.array([1.0, -1.0, 1.0])])
@@ -45,9 +46,9 @@ class Points:
     (2, 3, 3) from the boards' centres of gravity to their fastening points, fixed axes.
     """
 
-    positions: np.ndarray
-    velocities: np.ndarray
-    arms: np.ndarray
+    positions: FloatArray
+    velocities: FloatArray
+    arms: FloatArray
 
 
 def points_of(model: GearModel, state: State, tow: Tow) -> Points:
@@ -62,9 +63,7 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     )
 
 
-def motion_of(
-    model: GearModel, points: Points, tow: Tow, chosen: np.ndarray | slice = slice(None)
-) -> BarMotion:
+def motion_of(model: GearModel, points: Points, tow: Tow, chosen: Chosen = ...) -> BarMotion:
     """Motion of all bars, or of the ``chosen`` ones."""
     rest, rate = rest_lengths(model, tow)
     ends = model.ends[chosen]
@@ -77,19 +76,19 @@ def motion_of(
 
 @compiled
 def _motion(
-    ends: np.ndarray,
-    x: np.ndarray,
-    v: np.ndarray,
-    vector: np.ndarray,
-    stretching: np.ndarray,
-    velocity: np.ndarray,
-    height: np.ndarray,
+    ends: IntArray,
+    x: FloatArray,
+    v: FloatArray,
+    vector: FloatArray,
+    stretching: FloatArray,
+    velocity: FloatArray,
+    height: FloatArray,
 ) -> None:
     for n in range(len(ends)):
         height[n] = between(x, v, ends[n, 0], ends[n, 1], vector[n], stretching[n], velocity[n])
 
 
-def lump_forces(model: GearModel, state: State) -> np.ndarray:
+def lump_forces(model: GearModel, state: State) -> FloatArray:
     """Drag (eq. 22), weight and buoyancy (eq. 28) of knots, floats and weights, (n, 3) N."""
     x, v, *lumps = alike(
         state.nodes, state.node_velocities, model.lump_mass, model.lump_volume, model.lump_drag_area
@@ -102,7 +101,7 @@ def lump_forces(model: GearModel, state: State) -> np.ndarray:
     return force
 
 
-def board_loads(model: GearModel, state: State) -> np.ndarray:
+def board_loads(model: GearModel, state: State) -> FloatArray:
     """Force and moment (2, 6) on both boards that do not come from ropes."""
     return board_physics.own_load(
         model.board,
@@ -116,7 +115,7 @@ def board_loads(model: GearModel, state: State) -> np.ndarray:
     )
 
 
-def kite_load(model: GearModel, state: State) -> np.ndarray:
+def kite_load(model: GearModel, state: State) -> FloatArray:
     """Force (3,) on the kite."""
     held = model.layout.kite
     front, rear = held.weights @ state.nodes[held.nodes]
@@ -125,8 +124,8 @@ def kite_load(model: GearModel, state: State) -> np.ndarray:
 
 
 def bar_end_forces(
-    model: GearModel, points: Points, tow: Tow, chosen: np.ndarray | slice = slice(None)
-) -> tuple[np.ndarray, np.ndarray]:
+    model: GearModel, points: Points, tow: Tow, chosen: Chosen = ...
+) -> tuple[FloatArray, FloatArray]:
     """Forces (m, 3) that bars put on the points at their two ends: pull and half the load."""
     motion = motion_of(model, points, tow, chosen)
     bars = model.bars.chosen(chosen)
@@ -137,7 +136,7 @@ def bar_end_forces(
     return pull + 0.5 * load, -pull + 0.5 * load
 
 
-def forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
     points = points_of(model, state, tow)
     x, v, rest, rate = alike(points.positions, points.velocities, *rest_lengths(model, tow))
@@ -152,7 +151,7 @@ def forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     return np.concatenate([total[:n].ravel(), boards.ravel()])
 
 
-def block_forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Force (2, 3) of each warp on its towing block, N.
 
     With the half segment of load that a lumped line hangs on its fixed end, so that the
@@ -162,7 +161,7 @@ def block_forces(model: GearModel, state: State, tow: Tow) -> np.ndarray:
     return bar_end_forces(model, points_of(model, state, tow), tow, top)[0]
 
 
-def bar_tensions(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+def bar_tensions(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Tension (m,) of every bar, N."""
     return line.tension(model.bars, motion_of(model, points_of(model, state, tow), tow))[0]
 
@@ -171,9 +170,9 @@ def bar_tensions(model: GearModel, state: State, tow: Tow) -> np.ndarray:
 class LinearisedForces:
     """Forces (dof,), K = -∂F/∂q and C = -∂F/∂v as data on the model's pattern."""
 
-    force: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
+    force: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
 
 
 def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
@@ -214,7 +213,7 @@ def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
     return LinearisedForces(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
 
 
-def _lift(model: GearModel, points: Points) -> np.ndarray:
+def _lift(model: GearModel, points: Points) -> FloatArray:
     """B of `_rigged_blocks` beside the identity of the bar's other end, (r, 6, 9)."""
     lift = np.zeros((len(model.pattern.rigged), 6, 9))
     lift[:, :3, :3] = np.eye(3)
@@ -227,10 +226,10 @@ def _rigged_blocks(
     model: GearModel,
     state: State,
     points: Points,
-    forces: np.ndarray,
-    k: np.ndarray,
-    c: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
+    forces: FloatArray,
+    k: FloatArray,
+    c: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
     """Bars that start at a fastening point p = X + a: δp = B (δX, δθ), B = [I, -S(a)]."""
     arm = skew(points.arms[model.pattern.rig_board, model.pattern.rig_point])
     spin = skew(state.board_rates[model.pattern.rig_board])
@@ -245,7 +244,7 @@ def _rigged_blocks(
     return rig_k, back @ c @ lift
 
 
-def _board_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _board_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Boards' own loads by the complex step in their 12 positions and velocities."""
     turn = np.zeros((12, 1, 3), complex)
     shift = np.zeros((12, 1, 3), complex)
@@ -268,7 +267,7 @@ def _board_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarra
     return -slopes[..., :6], -slopes[..., 6:], load[0].real
 
 
-def _kite_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The kite's load by the complex step in its two carriers' positions and velocities."""
     held = model.layout.kite
     steps = (1j * STEP * np.eye(12)).reshape(12, 2, 2, 3)
@@ -280,7 +279,7 @@ def _kite_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray
     return -blocks[:1], -blocks[1:], load[0].real
 
 
-def _lump_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray]:
+def _lump_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray]:
     stiffness, damping = np.empty((2, model.nodes, 3, 3))
     fill_lump_slopes(
         *alike(state.nodes, state.node_velocities, model.lump_volume, model.lump_drag_area),
@@ -298,7 +297,7 @@ def _lump_blocks(model: GearModel, state: State) -> tuple[np.ndarray, np.ndarray
     return stiffness, damping
 
 
-def mass(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+def mass(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Mass matrix with added mass (eq. 15, 16, 25-27, 29) as data on the pattern.
 
     Bars give half of their mass to either end, boards their inertia in fixed axes, and

@@ -5,10 +5,9 @@ gear. Vectors are arrays (3,), some of them to be filled in; numbers are real, o
 complex step where no slopes are asked for.
 """
 
-from typing import Any
-
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.compiled import compiled
 
 SLACK_WIDTH = 1e-4
@@ -20,24 +19,25 @@ STILL = 1e-6
 
 @compiled
 def between(
-    x: np.ndarray,
-    v: np.ndarray,
+    x: FloatArray,
+    v: FloatArray,
     start: int,
     end: int,
-    vector: np.ndarray,
-    stretching: np.ndarray,
-    velocity: np.ndarray,
-) -> Any:
+    vector: FloatArray,
+    stretching: FloatArray,
+    velocity: FloatArray,
+) -> float:
     """Fill in the motion of a bar between two points, and return its mean height."""
     for i in range(3):
         vector[i] = x[end, i] - x[start, i]
         stretching[i] = v[end, i] - v[start, i]
         velocity[i] = 0.5 * (v[start, i] + v[end, i])
-    return 0.5 * (x[start, 2] + x[end, 2])
+    height: float = 0.5 * (x[start, 2] + x[end, 2])
+    return height
 
 
 @compiled
-def bowed_at(strain: Any, bow: float) -> Any:
+def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
     """Elastic strain of a bar that bows under a load across it, and its first two derivatives.
 
     The bow takes (Q / T)² / 24 of the bar's length, with the load Q on all of it and the tension T.
@@ -57,7 +57,7 @@ def bowed_at(strain: Any, bow: float) -> Any:
 
 
 @compiled
-def taut_at(strain: Any, bow: float) -> Any:
+def taut_at(strain: float, bow: float) -> tuple[float, float, float]:
     """Elastic strain of a bar, and its first two derivatives: the positive part with a rounded
     corner or, where the bar bows, as `bowed_at` has it.
     """
@@ -75,15 +75,15 @@ def taut_at(strain: Any, bow: float) -> Any:
 def tension_at(
     stiffness: float,
     damping_time: float,
-    bow: Any,
-    vector: np.ndarray,
-    stretching: np.ndarray,
-    rest: Any,
-    rest_rate: Any,
-    along: np.ndarray,
-) -> Any:
+    bow: float,
+    vector: FloatArray,
+    stretching: FloatArray,
+    rest: float,
+    rest_rate: float,
+    along: FloatArray,
+) -> float:
     """Tension of a bar (eq. 20, 21); ``along`` gets its unit vector."""
-    span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    span: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     closing = -rest_rate * span / rest
     for i in range(3):
         along[i] = vector[i] / span
@@ -96,11 +96,11 @@ def tension_at(
 def drag_at(
     normal_area: float,
     sliding_area: float,
-    rest: Any,
-    density: Any,
-    flow: np.ndarray,
-    along: np.ndarray,
-    force: np.ndarray,
+    rest: float,
+    density: float,
+    flow: FloatArray,
+    along: FloatArray,
+    force: FloatArray,
 ) -> None:
     """Fill in the drag on a bar (eq. 23, 24); the areas include their coefficients."""
     tangential = 0 * rest
@@ -122,15 +122,15 @@ def drag_at(
 def pull_slopes_at(
     stiffness: float,
     damping_time: float,
-    bow: Any,
-    vector: np.ndarray,
-    stretching: np.ndarray,
+    bow: float,
+    vector: FloatArray,
+    stretching: FloatArray,
     rest: float,
     rest_rate: float,
     force: float,
-    along: np.ndarray,
-    by_vector: np.ndarray,
-    by_stretching: np.ndarray,
+    along: FloatArray,
+    by_vector: FloatArray,
+    by_stretching: FloatArray,
 ) -> None:
     """Fill in the slopes (3, 3) of a bar's tension times its unit vector."""
     span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
@@ -158,11 +158,11 @@ def load_slopes_at(
     sliding_area: float,
     rest: float,
     density: float,
-    flow: np.ndarray,
-    vector: np.ndarray,
-    along: np.ndarray,
-    by_vector: np.ndarray,
-    by_velocity: np.ndarray,
+    flow: FloatArray,
+    vector: FloatArray,
+    along: FloatArray,
+    by_vector: FloatArray,
+    by_velocity: FloatArray,
 ) -> None:
     """Fill in the slopes (3, 3) of `drag_at` by the bar's vector and by its velocity, which is
     minus the flow's.
@@ -200,7 +200,7 @@ def load_slopes_at(
 
 @compiled
 def mass_at(
-    own: float, normal: float, tangential: float, vector: np.ndarray, matrix: np.ndarray
+    own: float, normal: float, tangential: float, vector: FloatArray, matrix: FloatArray
 ) -> None:
     """Fill in the mass and added mass (3, 3) of a bar (eq. 25, 26)."""
     square = vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2

@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar import (
     between,
     drag_at,
@@ -21,7 +22,7 @@ from trawl_ros.model.compiled import compiled
 from trawl_ros.model.current import current_at
 from trawl_ros.model.water import Water
 
-WaterTable: TypeAlias = tuple[float, float, float, np.ndarray, np.ndarray]
+WaterTable: TypeAlias = tuple[float, float, float, FloatArray, FloatArray]
 
 
 def water_of(water: Water) -> WaterTable:
@@ -36,14 +37,14 @@ def water_of(water: Water) -> WaterTable:
 
 @compiled
 def add_bar_forces(
-    ends: np.ndarray,
-    x: np.ndarray,
-    v: np.ndarray,
-    rest: np.ndarray,
-    rest_rate: np.ndarray,
-    bars: tuple[np.ndarray, ...],
+    ends: IntArray,
+    x: FloatArray,
+    v: FloatArray,
+    rest: FloatArray,
+    rest_rate: FloatArray,
+    bars: tuple[FloatArray, ...],
     water: WaterTable,
-    total: np.ndarray,
+    total: FloatArray,
 ) -> None:
     """Add to the points (p, 3) at both ends of the bars their pull and half of their load each."""
     stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
@@ -72,21 +73,21 @@ def add_bar_forces(
 
 @compiled
 def add_bar_blocks(
-    ends: np.ndarray,
-    order: np.ndarray,
-    x: np.ndarray,
-    v: np.ndarray,
-    rest: np.ndarray,
-    rest_rate: np.ndarray,
-    bars: tuple[np.ndarray, ...],
+    ends: IntArray,
+    order: IntArray,
+    x: FloatArray,
+    v: FloatArray,
+    rest: FloatArray,
+    rest_rate: FloatArray,
+    bars: tuple[FloatArray, ...],
     water: WaterTable,
-    slots: np.ndarray,
-    total: np.ndarray,
-    stiffness_data: np.ndarray,
-    damping_data: np.ndarray,
-    k_others: np.ndarray,
-    c_others: np.ndarray,
-    start_force: np.ndarray,
+    slots: IntArray,
+    total: FloatArray,
+    stiffness_data: FloatArray,
+    damping_data: FloatArray,
+    k_others: FloatArray,
+    c_others: FloatArray,
+    start_force: FloatArray,
 ) -> None:
     """The same, with K = -∂F/∂q and C = -∂F/∂v of the bars.
 
@@ -175,15 +176,15 @@ def add_bar_blocks(
 
 @compiled
 def add_bar_masses(
-    ends: np.ndarray,
-    order: np.ndarray,
-    x: np.ndarray,
-    rest: np.ndarray,
-    bars: tuple[np.ndarray, ...],
+    ends: IntArray,
+    order: IntArray,
+    x: FloatArray,
+    rest: FloatArray,
+    bars: tuple[FloatArray, ...],
     water: WaterTable,
-    slots: np.ndarray,
-    data: np.ndarray,
-    others: np.ndarray,
+    slots: IntArray,
+    data: FloatArray,
+    others: FloatArray,
 ) -> None:
     """Add half of the mass of the bars at either end, as `add_bar_blocks` does; of those that are
     not plain comes one half (r, 3, 3).

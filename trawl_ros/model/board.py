@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import water_of
 from trawl_ros.model.board_law import (
     fill_coefficients,
@@ -59,39 +60,39 @@ class Board:
 
     mass: float
     volume: float
-    inertia: np.ndarray
+    inertia: FloatArray
     area: float
     span: float
     chord: float
-    points: np.ndarray
+    points: FloatArray
     installation: tuple[float, float, float]
     moment_signs: tuple[float, float, float]
     slip_sign: float
     flow_axes: bool
     rotary_slope: float
-    added_mass: np.ndarray
+    added_mass: FloatArray
     bend: CoefficientModifier | None = None
 
     @cached_property
-    def fastening_points(self) -> np.ndarray:
+    def fastening_points(self) -> FloatArray:
         """Fastening points (3, 3) in the outward board frame, installation angles applied."""
         yaw, pitch, roll = self.installation
         turn = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
         return self.points @ turn
 
     @property
-    def rotary_areas(self) -> np.ndarray:
+    def rotary_areas(self) -> FloatArray:
         """Second moments of the board's area about its x and z axes, m⁴, none about y."""
         b, chord = self.span, self.chord
         return np.array([chord * b**3 / 12, 0.0, b * chord**3 / 12])
 
     @property
-    def levers(self) -> np.ndarray:
+    def levers(self) -> FloatArray:
         """Lever lengths d_x, d_y, d_z of eq. 13, m."""
         return np.array([self.span, np.hypot(self.span, self.chord), self.chord])
 
 
-def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) -> np.ndarray:
+def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) -> FloatArray:
     """The six force and moment coefficients at given angles (eq. 14).
 
     Parameters
@@ -117,7 +118,7 @@ def coefficients_at(values: np.ndarray, attack: np.ndarray, slip: np.ndarray) ->
     return coefficients.reshape(*shape, 6)
 
 
-def mirrored_axes(outward: np.ndarray) -> np.ndarray:
+def mirrored_axes(outward: FloatArray) -> FloatArray:
     """Signs (..., 3) that turn the outward frame's axes into the door frame's."""
     signs = np.ones((*outward.shape, 3))
     signs[..., 1] = outward
@@ -130,20 +131,20 @@ class BoardFlow:
     density (kg/m³), and the vertical part ``lean`` of the outward normal.
     """
 
-    attack: np.ndarray
-    slip: np.ndarray
-    flow: np.ndarray
-    density: np.ndarray
-    lean: np.ndarray
+    attack: FloatArray
+    slip: FloatArray
+    flow: FloatArray
+    density: FloatArray
+    lean: FloatArray
 
 
 def flow_at(
     board: Board,
-    outward: np.ndarray,
-    position: np.ndarray,
-    rotation: np.ndarray,
-    velocity: np.ndarray,
-    rate: np.ndarray,
+    outward: FloatArray,
+    position: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    rate: FloatArray,
     water: Water,
 ) -> BoardFlow:
     """Relative water velocity and orientation angles (eq. 1-4).
@@ -176,8 +177,8 @@ def flow_at(
 
 
 def hydrodynamics(
-    board: Board, values: np.ndarray, flow: BoardFlow
-) -> tuple[np.ndarray, np.ndarray]:
+    board: Board, values: FloatArray, flow: BoardFlow
+) -> tuple[FloatArray, FloatArray]:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
     coefficients = coefficients_at(values, flow.attack, board.slip_sign * flow.slip)
     if board.bend is not None:
@@ -191,7 +192,7 @@ def hydrodynamics(
     return force.reshape(flow.flow.shape), moment.reshape(flow.flow.shape)
 
 
-def world_inertia(board: Board, outward: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+def world_inertia(board: Board, outward: FloatArray, rotation: FloatArray) -> FloatArray:
     """Inertia about the centre of gravity in fixed axes, (..., 3, 3) kg m²."""
     mirror = mirrored_axes(outward)
     body = mirror[..., :, None] * board.inertia * mirror[..., None, :]
@@ -200,14 +201,14 @@ def world_inertia(board: Board, outward: np.ndarray, rotation: np.ndarray) -> np
 
 def own_load(
     board: Board,
-    values: np.ndarray,
-    outward: np.ndarray,
-    position: np.ndarray,
-    rotation: np.ndarray,
-    velocity: np.ndarray,
-    rate: np.ndarray,
+    values: FloatArray,
+    outward: FloatArray,
+    position: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    rate: FloatArray,
     water: Water,
-) -> np.ndarray:
+) -> FloatArray:
     """Force and moment (..., 6) in fixed axes that do not come from ropes.
 
     Hydrodynamics (eq. 12-14), weight and buoyancy (eq. 19) and the gyroscopic moment
@@ -259,7 +260,7 @@ def own_load(
     return total.reshape(*shape, 6)
 
 
-def _flat(array: np.ndarray, shape: tuple[int, ...], *tail: int) -> np.ndarray:
+def _flat(array: FloatArray, shape: tuple[int, ...], *tail: int) -> FloatArray:
     """The array for one board after another."""
     whole = (*shape, *tail)
     if np.shape(array) != whole:
@@ -267,14 +268,14 @@ def _flat(array: np.ndarray, shape: tuple[int, ...], *tail: int) -> np.ndarray:
     return array.reshape(-1, *tail)
 
 
-def inclination(rotation: np.ndarray) -> np.ndarray:
+def inclination(rotation: FloatArray) -> FloatArray:
     """Inclination δ (rad, unsigned) of the board's z axis against the vertical (eq. 38)."""
     upright = rotation[..., 2, 2]
     flat = np.sqrt(rotation[..., 0, 2] ** 2 + rotation[..., 1, 2] ** 2)
     return angle(flat, upright)
 
 
-def pitch_and_roll(rotation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def pitch_and_roll(rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Pitch (nose down positive) and roll (top to starboard positive), rad, as
     R = Rz(yaw) Ry(pitch) Rx(roll) in the right-handed door frame.
     """

@@ -4,34 +4,34 @@ Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards; numbers 
 for a complex step.
 """
 
-from math import atan2
-from typing import Any
+from math import atan2, cos, radians
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled
 from trawl_ros.model.current import current_at
 
-LAW_RANGE = (0.0, np.radians(40.0))
+LAW_RANGE = (0.0, radians(40.0))
 """Attack angles (rad) for which eq. 14 holds as it stands."""
 
-LAW_END = (np.radians(-40.0), np.radians(90.0))
+LAW_END = (radians(-40.0), radians(90.0))
 """Attack angles (rad) at which, outside that range, lift and moments have faded to nothing."""
 
-SLIP_LIMIT = np.radians(40.0)
+SLIP_LIMIT = radians(40.0)
 """Slip angle (rad) beyond which its part of eq. 14 stays constant."""
 
-LEAST_ACROSS = np.cos(SLIP_LIMIT) ** 2
+LEAST_ACROSS = cos(SLIP_LIMIT) ** 2
 """Part of the squared flow that lies in the board's x-y plane below which, the flow then running
 along the span, the law's forces and moments fade with that part."""
 
-ROUNDING = np.radians(4.0)
+ROUNDING = radians(4.0)
 """Width (rad) over which an angle comes to rest outside its range."""
 
 
 @compiled
-def angle_at(y: Any, x: Any) -> Any:
+def angle_at(y: float, x: float) -> float:
     """``arctan2`` that carries an infinitesimal imaginary part along."""
     square = x.real**2 + y.real**2
     inverse = 1.0 / square if square > 0.0 else 0.0
@@ -40,7 +40,7 @@ def angle_at(y: Any, x: Any) -> Any:
 
 
 @compiled
-def _settled(value: Any, low: float, high: float) -> Any:
+def _settled(value: float, low: float, high: float) -> float:
     """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
     if value.real > high:
         if value.real - high < ROUNDING:
@@ -54,7 +54,7 @@ def _settled(value: Any, low: float, high: float) -> Any:
 
 
 @compiled
-def _fading(attack: Any) -> Any:
+def _fading(attack: float) -> float:
     """Fade factor of the law: 1 inside its range, falling smoothly to 0 at `LAW_END`."""
     share = 0 * attack
     if attack.real > LAW_RANGE[1]:
@@ -67,7 +67,7 @@ def _fading(attack: Any) -> Any:
 
 
 @compiled
-def _folded(attack: Any) -> Any:
+def _folded(attack: float) -> float:
     """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
     if attack.real >= 0.0:
         return attack
@@ -77,16 +77,16 @@ def _folded(attack: Any) -> Any:
 
 
 @compiled
-def _across(flow: np.ndarray) -> Any:
+def _across(flow: FloatArray) -> float:
     """Fade factor of α: 1, but smoothly 0 where the flow runs along the span and α is undefined."""
     plane = flow[0] ** 2 + flow[1] ** 2
-    part = plane / (plane + flow[2] ** 2 + 1e-18) / LEAST_ACROSS
+    part: float = plane / (plane + flow[2] ** 2 + 1e-18) / LEAST_ACROSS
     return part * (2.0 - part) if part.real < 1.0 else 0 * part + 1.0
 
 
 @compiled
 def fill_coefficients(
-    values: np.ndarray, attack: np.ndarray, slip: np.ndarray, coefficients: np.ndarray
+    values: FloatArray, attack: FloatArray, slip: FloatArray, coefficients: FloatArray
 ) -> None:
     """Fill in the coefficients (n, 6) of eq. 14."""
     a1, c1, a2, c2, b3, c3 = values[0], values[1], values[2], values[3], values[4], values[5]
@@ -106,14 +106,14 @@ def fill_coefficients(
 
 @compiled
 def fill_flow(
-    middle: np.ndarray,
-    outward: np.ndarray,
-    rotation: np.ndarray,
-    water_less_velocity: np.ndarray,
-    rate: np.ndarray,
-    flow: np.ndarray,
-    attack: np.ndarray,
-    slip: np.ndarray,
+    middle: FloatArray,
+    outward: FloatArray,
+    rotation: FloatArray,
+    water_less_velocity: FloatArray,
+    rate: FloatArray,
+    flow: FloatArray,
+    attack: FloatArray,
+    slip: FloatArray,
 ) -> None:
     """Fill in the flow (n, 3) in the outward frame and its angles (n,), eq. 1-4."""
     arm, relative = np.empty((2, 3), flow.dtype)
@@ -137,13 +137,13 @@ def fill_flow(
 @compiled
 def fill_loads(
     area: float,
-    levers: np.ndarray,
+    levers: FloatArray,
     flow_axes: bool,
-    density: np.ndarray,
-    flow: np.ndarray,
-    coefficients: np.ndarray,
-    force: np.ndarray,
-    moment: np.ndarray,
+    density: FloatArray,
+    flow: FloatArray,
+    coefficients: FloatArray,
+    force: FloatArray,
+    moment: FloatArray,
 ) -> None:
     """Fill in force and moment (n, 3) in the outward frame (eq. 12); levers have their signs."""
     for n in range(len(flow)):
@@ -162,17 +162,17 @@ def fill_loads(
 
 @compiled
 def fill_total(
-    inertia: np.ndarray,
-    slowing: np.ndarray,
-    heavy: np.ndarray,
-    outward: np.ndarray,
-    rotation: np.ndarray,
-    rate: np.ndarray,
-    density: np.ndarray,
-    flow: np.ndarray,
-    force: np.ndarray,
-    moment: np.ndarray,
-    total: np.ndarray,
+    inertia: FloatArray,
+    slowing: FloatArray,
+    heavy: FloatArray,
+    outward: FloatArray,
+    rotation: FloatArray,
+    rate: FloatArray,
+    density: FloatArray,
+    flow: FloatArray,
+    force: FloatArray,
+    moment: FloatArray,
+    total: FloatArray,
 ) -> None:
     """Fill in the whole load (n, 6) in fixed axes: weight, and moments of a turning board, too.
 
@@ -213,18 +213,18 @@ def fill_own_loads(
     mass: float,
     volume: float,
     area: float,
-    levers: np.ndarray,
-    inertia: np.ndarray,
-    slowing: np.ndarray,
-    values: np.ndarray,
-    middle: np.ndarray,
-    outward: np.ndarray,
-    position: np.ndarray,
-    rotation: np.ndarray,
-    velocity: np.ndarray,
-    rate: np.ndarray,
+    levers: FloatArray,
+    inertia: FloatArray,
+    slowing: FloatArray,
+    values: FloatArray,
+    middle: FloatArray,
+    outward: FloatArray,
+    position: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    rate: FloatArray,
     water: WaterTable,
-    total: np.ndarray,
+    total: FloatArray,
 ) -> None:
     """All of the above, one after another: the whole load (n, 6) of boards in the water."""
     surface_density, gradient, gravity, knots, cubics = water

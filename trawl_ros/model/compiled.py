@@ -1,17 +1,40 @@
 """Compilation of loops, cached beside the module so that only the first start pays for it."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import ParamSpec, Protocol, TypeVar, cast
 
 import numpy as np
 from numba import njit
 
-compiled: Any = njit(cache=True, error_model='numpy')
+from trawl_ros.core.arrays import FloatArray
 
-fused: Any = njit(cache=True, error_model='numpy', fastmath={'contract', 'reassoc', 'nsz'})
-"""The same for sums of products, which may be fused and taken in any order."""
+Given = ParamSpec('Given')
+Result = TypeVar('Result')
+Returned = TypeVar('Returned', covariant=True)
 
 
-def alike(*arrays: np.ndarray) -> list[np.ndarray]:
+class Compiled(Protocol[Returned]):
+    """Compiled function: it takes arrays by their place, real or complex, of which its
+    annotations name the real ones.
+    """
+
+    def __call__(self, *given: object) -> Returned:
+        """Call it."""
+        ...
+
+
+def compiled(function: Callable[Given, Result]) -> Compiled[Result]:
+    """Compile a function."""
+    return cast(Compiled[Result], njit(cache=True, error_model='numpy')(function))
+
+
+def fused(function: Callable[Given, Result]) -> Compiled[Result]:
+    """Compile sums of products, which may be fused and taken in any order."""
+    options = {'contract', 'reassoc', 'nsz'}
+    return cast(Compiled[Result], njit(cache=True, error_model='numpy', fastmath=options)(function))
+
+
+def alike(*arrays: FloatArray) -> list[FloatArray]:
     """Arrays of one kind, all real or all complex, as compiled loops take them."""
     kind = complex if 'c' in [array.dtype.kind for array in arrays] else float
     return [np.ascontiguousarray(array, kind) for array in arrays]

@@ -1,15 +1,12 @@
 """Current of the water at a height, as compiled loops take it."""
 
-from typing import Any
-
-import numpy as np
-
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.compiled import compiled
 
 
 @compiled
 def current_at(
-    knots: np.ndarray, cubics: np.ndarray, z: Any, flow: np.ndarray, slope: np.ndarray
+    knots: FloatArray, cubics: FloatArray, z: float, flow: FloatArray, slope: FloatArray
 ) -> None:
     """Current (3,) at one height and its derivative by height, from `Water.profile`."""
     depth, place = -z.real, 0
@@ -27,7 +24,7 @@ def current_at(
 
 @compiled
 def fill_currents(
-    knots: np.ndarray, cubics: np.ndarray, z: np.ndarray, flow: np.ndarray, slope: np.ndarray
+    knots: FloatArray, cubics: FloatArray, z: FloatArray, flow: FloatArray, slope: FloatArray
 ) -> None:
     """Currents (n, 3) at heights (n,) and their derivatives by height."""
     for n in range(len(z)):

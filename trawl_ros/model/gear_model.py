@@ -7,10 +7,10 @@ three per node, then six per board: translation and rotation vector, both in fix
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.gear.records import BridleRecord, FrameRopeRecord, GearRecord, RopeRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.hooks import NodeForce
@@ -35,14 +35,14 @@ class NodeLayout:
     everything to be drawn.
     """
 
-    warps: tuple[np.ndarray, np.ndarray]
-    bridles: tuple[np.ndarray, ...]
-    net: np.ndarray
-    headrope: np.ndarray
-    footrope: np.ndarray
+    warps: tuple[IntArray, IntArray]
+    bridles: tuple[IntArray, ...]
+    net: IntArray
+    headrope: IntArray
+    footrope: IntArray
     kite: KiteNodes
-    top_warp_bars: np.ndarray
-    lines: tuple[tuple[str, np.ndarray, np.ndarray], ...]
+    top_warp_bars: IntArray
+    lines: tuple[tuple[str, IntArray, IntArray], ...]
 
 
 @dataclass(frozen=True)
@@ -66,17 +66,17 @@ class GearModel:
     water: Water
     board: Board
     kite: Kite
-    coefficients: np.ndarray
+    coefficients: FloatArray
     bars: BarProperties
-    ends: np.ndarray
-    rest: np.ndarray
-    warp_side: np.ndarray
-    lump_mass: np.ndarray
-    lump_volume: np.ndarray
-    lump_drag_area: np.ndarray
-    lump_added: np.ndarray
+    ends: IntArray
+    rest: FloatArray
+    warp_side: IntArray
+    lump_mass: FloatArray
+    lump_volume: FloatArray
+    lump_drag_area: FloatArray
+    lump_added: FloatArray
     layout: NodeLayout
-    first_guess: np.ndarray
+    first_guess: FloatArray
     net_mesh: NetMesh
     pattern: SparsityPattern
     node_forces: tuple[NodeForce, ...] = ()
@@ -97,17 +97,19 @@ class GearModel:
         return self.gear.warp.segments
 
     @cached_property
-    def warp_bars(self) -> tuple[np.ndarray, np.ndarray]:
+    def warp_bars(self) -> tuple[IntArray, IntArray]:
         """Bars of the port and of the starboard warp."""
         return np.flatnonzero(self.warp_side == 0), np.flatnonzero(self.warp_side == 1)
 
-    def with_coefficients(self, values: np.ndarray) -> 'GearModel':
+    def with_coefficients(self, values: FloatArray) -> 'GearModel':
         """The same gear with other board coefficients, in the order of eq. 36."""
         return replace(self, coefficients=np.asarray(values))
 
-    def with_board(self, **changes: Any) -> 'GearModel':
+    def with_board(self, **changes: object) -> 'GearModel':
         """The same gear with a changed board, such as its points or installation angles."""
-        return replace(self, board=replace(self.board, **changes))
+        # Names and types are the caller's: `replace` refuses what a board has not.
+        board = replace(self.board, **changes)  # type: ignore[arg-type]
+        return replace(self, board=board)
 
     def with_net(self, drag: float, weight: float) -> 'GearModel':
         """The same gear with this many times the drag coefficients and the weight in water of all
@@ -140,7 +142,7 @@ class _Builder:
         self.side: list[int] = []
         self.lines: list[tuple[str, list[int], list[int]]] = []
 
-    def nodes(self, number: int) -> np.ndarray:
+    def nodes(self, number: int) -> IntArray:
         first = self.count
         self.count += number
         return np.arange(first, self.count)
@@ -239,7 +241,7 @@ def _frame_rests(rope: FrameRopeRecord, edge: float, wing_rows: int, bars: int) 
 
 def _add_bridles(
     build: _Builder, record: BridleRecord, row: tuple[float, ...], tips: list[int]
-) -> list[np.ndarray]:
+) -> list[IntArray]:
     """Four bridles: port upper, port lower, starboard upper, starboard lower."""
     nodes = []
     names = (

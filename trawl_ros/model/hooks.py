@@ -7,7 +7,7 @@ derivatives are taken by the complex step.
 
 from typing import Protocol
 
-import numpy as np
+from trawl_ros.core.arrays import FloatArray
 
 LIFT = 1
 """Place of C_y^F among the coefficients that a board's law gives."""
@@ -17,8 +17,8 @@ class CoefficientModifier(Protocol):
     """Coefficient modifier: changes the law of the boards (eq. 14)."""
 
     def __call__(
-        self, coefficients: np.ndarray, attack: np.ndarray, slip: np.ndarray, lean: np.ndarray
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
         """Return the modified force and moment coefficients (..., 6).
 
         Parameters
@@ -38,10 +38,10 @@ class NodeForce(Protocol):
     """A force on some nodes, each by its own position and velocity alone."""
 
     @property
-    def nodes(self) -> np.ndarray:
+    def nodes(self) -> FloatArray:
         """Numbers (k,) of the nodes, each once."""
         ...
 
-    def __call__(self, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+    def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:
         """Force (k, 3), N, at positions (m) and velocities (m/s), both (k, 3) in ``map`` axes."""
         ...

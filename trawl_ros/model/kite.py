@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.numerics import angle, dot, length
 from trawl_ros.model.water import Water
 
@@ -29,20 +30,21 @@ class KiteNodes:
     and ``weights`` (2, 3) that make its front and rear carrying points of them.
     """
 
-    nodes: np.ndarray
-    weights: np.ndarray
+    nodes: IntArray
+    weights: FloatArray
 
     @property
-    def shares(self) -> np.ndarray:
+    def shares(self) -> FloatArray:
         """Share (3,) of the kite's load on each node; both carriers hold half of it."""
-        return self.weights.mean(axis=0)
+        shares: FloatArray = self.weights.mean(axis=0)
+        return shares
 
 
 NO_KITE = KiteNodes(np.zeros(3, int), np.zeros((2, 3)))
 """For gear without a kite, whose area and mass are zero as well."""
 
 
-def attack_angle(kite: Kite, front: np.ndarray, rear: np.ndarray, flow: np.ndarray) -> np.ndarray:
+def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArray) -> FloatArray:
     """Attack angle a_c (rad): pitch of the line through both carrying nodes in the vertical
     plane (eq. 31), plus the rise of the flow (eq. 32), plus the setting angle.
     """
@@ -54,12 +56,12 @@ def attack_angle(kite: Kite, front: np.ndarray, rear: np.ndarray, flow: np.ndarr
 
 def load(
     kite: Kite,
-    front: np.ndarray,
-    rear: np.ndarray,
-    front_velocity: np.ndarray,
-    rear_velocity: np.ndarray,
+    front: FloatArray,
+    rear: FloatArray,
+    front_velocity: FloatArray,
+    rear_velocity: FloatArray,
     water: Water,
-) -> np.ndarray:
+) -> FloatArray:
     """Force (..., 3) N on the kite: lift against gravity, drag along the flow, weight and
     buoyancy (eq. 30, 33). Its carrying nodes share it equally.
 
@@ -75,4 +77,6 @@ def load(
     lift = pressure * 0.5 * kite.lift * np.sin(2 * attack) * dot(flow, flow)
     resistance = pressure * (kite.drag_base + kite.drag_growth * np.sin(attack) ** 2) * speed
     heavy = (kite.mass - density * kite.volume) * water.gravity
-    return resistance[..., None] * flow + (lift - heavy)[..., None] * np.array([0.0, 0.0, 1.0])
+    force: FloatArray = resistance[..., None] * flow
+    force[..., 2] += lift - heavy
+    return force

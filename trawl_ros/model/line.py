@@ -6,9 +6,12 @@ so that a warp may change its length.
 """
 
 from dataclasses import dataclass
+from types import EllipsisType
+from typing import TypeAlias
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar import (
     drag_at,
     load_slopes_at,
@@ -19,6 +22,9 @@ from trawl_ros.model.bar import (
 )
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.water import Water
+
+Chosen: TypeAlias = IntArray | EllipsisType
+"""Numbers of some bars, or all of them: an ellipsis."""
 
 
 @dataclass(frozen=True)
@@ -31,30 +37,30 @@ class BarProperties:
     ``bow`` of `bar.bowed_at` (dimensionless), 0 for bars that stay straight.
     """
 
-    stiffness: np.ndarray
-    damping_time: np.ndarray
-    mass: np.ndarray
-    volume: np.ndarray
-    normal_area: np.ndarray
-    wet_area: np.ndarray
-    normal_drag: np.ndarray
-    friction: np.ndarray
-    added_normal: np.ndarray
-    added_tangential: np.ndarray
-    bow: np.ndarray
+    stiffness: FloatArray
+    damping_time: FloatArray
+    mass: FloatArray
+    volume: FloatArray
+    normal_area: FloatArray
+    wet_area: FloatArray
+    normal_drag: FloatArray
+    friction: FloatArray
+    added_normal: FloatArray
+    added_tangential: FloatArray
+    bow: FloatArray
 
     def __post_init__(self) -> None:
         for name, values in zip(vars(self), alike(*self.columns), strict=True):
             object.__setattr__(self, name, values)
 
     @property
-    def columns(self) -> tuple[np.ndarray, ...]:
+    def columns(self) -> tuple[FloatArray, ...]:
         """All properties in the order above."""
         return tuple(vars(self).values())
 
-    def chosen(self, bars: np.ndarray | slice) -> 'BarProperties':
+    def chosen(self, bars: Chosen) -> 'BarProperties':
         """The properties of some of the bars."""
-        if isinstance(bars, slice) and bars == slice(None):
+        if isinstance(bars, EllipsisType):
             return self
         return BarProperties(*(values[bars] for values in self.columns))
 
@@ -66,15 +72,15 @@ class BarMotion:
     length ``rest`` (n,) and its rate of change ``rest_rate``.
     """
 
-    vector: np.ndarray
-    stretching: np.ndarray
-    velocity: np.ndarray
-    height: np.ndarray
-    rest: np.ndarray
-    rest_rate: np.ndarray
+    vector: FloatArray
+    stretching: FloatArray
+    velocity: FloatArray
+    height: FloatArray
+    rest: FloatArray
+    rest_rate: FloatArray
 
 
-def taut(strain: np.ndarray, bow: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def taut(strain: FloatArray, bow: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
     """`taut_at` for an array of strains."""
     (flat,) = alike(np.ravel(strain))
     value, slope, curve = np.empty_like(flat), np.empty_like(flat), np.empty(flat.shape)
@@ -85,13 +91,13 @@ def taut(strain: np.ndarray, bow: float = 0.0) -> tuple[np.ndarray, np.ndarray, 
 
 @compiled
 def _taut(
-    strain: np.ndarray, bow: float, value: np.ndarray, slope: np.ndarray, curve: np.ndarray
+    strain: FloatArray, bow: float, value: FloatArray, slope: FloatArray, curve: FloatArray
 ) -> None:
     for n in range(len(strain)):
         value[n], slope[n], curve[n] = taut_at(strain[n], bow)
 
 
-def tension(bars: BarProperties, motion: BarMotion) -> tuple[np.ndarray, np.ndarray]:
+def tension(bars: BarProperties, motion: BarMotion) -> tuple[FloatArray, FloatArray]:
     """Tension (n,) in N, positive in pull, and unit vector (n, 3) along the bar (eq. 20, 21).
 
     The damping of eq. 21 acts on the rate of strain, so that paying out does not brake, and
@@ -113,15 +119,15 @@ def tension(bars: BarProperties, motion: BarMotion) -> tuple[np.ndarray, np.ndar
 
 @compiled
 def _tension(
-    stiffness: np.ndarray,
-    damping_time: np.ndarray,
-    bow: np.ndarray,
-    vector: np.ndarray,
-    stretching: np.ndarray,
-    rest: np.ndarray,
-    rest_rate: np.ndarray,
-    force: np.ndarray,
-    along: np.ndarray,
+    stiffness: FloatArray,
+    damping_time: FloatArray,
+    bow: FloatArray,
+    vector: FloatArray,
+    stretching: FloatArray,
+    rest: FloatArray,
+    rest_rate: FloatArray,
+    force: FloatArray,
+    along: FloatArray,
 ) -> None:
     for n in range(len(rest)):
         force[n] = tension_at(
@@ -136,7 +142,7 @@ def _tension(
         )
 
 
-def drag(bars: BarProperties, motion: BarMotion, along: np.ndarray, water: Water) -> np.ndarray:
+def drag(bars: BarProperties, motion: BarMotion, along: FloatArray, water: Water) -> FloatArray:
     """Hydrodynamic force (n, 3) in N on whole bars (eq. 23, 24)."""
     given = alike(
         bars.normal_drag * bars.normal_area,
@@ -153,19 +159,19 @@ def drag(bars: BarProperties, motion: BarMotion, along: np.ndarray, water: Water
 
 @compiled
 def _drag(
-    normal_area: np.ndarray,
-    sliding_area: np.ndarray,
-    rest: np.ndarray,
-    density: np.ndarray,
-    flow: np.ndarray,
-    along: np.ndarray,
-    force: np.ndarray,
+    normal_area: FloatArray,
+    sliding_area: FloatArray,
+    rest: FloatArray,
+    density: FloatArray,
+    flow: FloatArray,
+    along: FloatArray,
+    force: FloatArray,
 ) -> None:
     for n in range(len(rest)):
         drag_at(normal_area[n], sliding_area[n], rest[n], density[n], flow[n], along[n], force[n])
 
 
-def weight(bars: BarProperties, motion: BarMotion, water: Water) -> np.ndarray:
+def weight(bars: BarProperties, motion: BarMotion, water: Water) -> FloatArray:
     """Vertical force of weight and buoyancy (n,) in N, up positive (eq. 28)."""
     net = bars.mass - water.density_at(motion.height) * bars.volume
     return -water.gravity * net * motion.rest
@@ -177,13 +183,13 @@ class BarSlopes:
     weight of the whole bar), each (n, 3, 3), and of the load by height, (n, 3).
     """
 
-    pull: np.ndarray
-    load: np.ndarray
-    pull_by_vector: np.ndarray
-    pull_by_stretching: np.ndarray
-    load_by_vector: np.ndarray
-    load_by_velocity: np.ndarray
-    load_by_height: np.ndarray
+    pull: FloatArray
+    load: FloatArray
+    pull_by_vector: FloatArray
+    pull_by_stretching: FloatArray
+    load_by_vector: FloatArray
+    load_by_velocity: FloatArray
+    load_by_height: FloatArray
 
 
 def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlopes:
@@ -223,17 +229,17 @@ def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlope
 
 @compiled
 def _pull_slopes(
-    stiffness: np.ndarray,
-    damping_time: np.ndarray,
-    bow: np.ndarray,
-    vector: np.ndarray,
-    stretching: np.ndarray,
-    rest: np.ndarray,
-    rest_rate: np.ndarray,
-    force: np.ndarray,
-    along: np.ndarray,
-    by_vector: np.ndarray,
-    by_stretching: np.ndarray,
+    stiffness: FloatArray,
+    damping_time: FloatArray,
+    bow: FloatArray,
+    vector: FloatArray,
+    stretching: FloatArray,
+    rest: FloatArray,
+    rest_rate: FloatArray,
+    force: FloatArray,
+    along: FloatArray,
+    by_vector: FloatArray,
+    by_stretching: FloatArray,
 ) -> None:
     for n in range(len(rest)):
         pull_slopes_at(
@@ -253,15 +259,15 @@ def _pull_slopes(
 
 @compiled
 def _load_slopes(
-    normal_area: np.ndarray,
-    sliding_area: np.ndarray,
-    rest: np.ndarray,
-    density: np.ndarray,
-    flow: np.ndarray,
-    vector: np.ndarray,
-    along: np.ndarray,
-    by_vector: np.ndarray,
-    by_velocity: np.ndarray,
+    normal_area: FloatArray,
+    sliding_area: FloatArray,
+    rest: FloatArray,
+    density: FloatArray,
+    flow: FloatArray,
+    vector: FloatArray,
+    along: FloatArray,
+    by_vector: FloatArray,
+    by_velocity: FloatArray,
 ) -> None:
     for n in range(len(rest)):
         load_slopes_at(
@@ -277,7 +283,7 @@ def _load_slopes(
         )
 
 
-def mass(bars: BarProperties, motion: BarMotion, water: Water) -> np.ndarray:
+def mass(bars: BarProperties, motion: BarMotion, water: Water) -> FloatArray:
     """Mass and added mass of whole bars as matrices (n, 3, 3) in kg (eq. 25, 26)."""
     displaced = water.density_at(motion.height) * bars.volume * motion.rest
     matrices = np.empty((len(displaced), 3, 3))
@@ -295,11 +301,11 @@ def mass(bars: BarProperties, motion: BarMotion, water: Water) -> np.ndarray:
 
 @compiled
 def _mass(
-    own: np.ndarray,
-    normal: np.ndarray,
-    tangential: np.ndarray,
-    vector: np.ndarray,
-    matrices: np.ndarray,
+    own: FloatArray,
+    normal: FloatArray,
+    tangential: FloatArray,
+    vector: FloatArray,
+    matrices: FloatArray,
 ) -> None:
     for n in range(len(own)):
         mass_at(own[n], normal[n], tangential[n], vector[n], matrices[n])

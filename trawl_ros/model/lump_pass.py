@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar import STILL
 from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled
@@ -10,13 +11,13 @@ from trawl_ros.model.current import current_at
 
 @compiled
 def fill_lump_forces(
-    x: np.ndarray,
-    v: np.ndarray,
-    mass: np.ndarray,
-    volume: np.ndarray,
-    drag_area: np.ndarray,
+    x: FloatArray,
+    v: FloatArray,
+    mass: FloatArray,
+    volume: FloatArray,
+    drag_area: FloatArray,
     water: WaterTable,
-    force: np.ndarray,
+    force: FloatArray,
 ) -> None:
     """Fill in drag, weight and buoyancy (n, 3) of the lumps."""
     density, gradient, gravity, knots, cubics = water
@@ -36,13 +37,13 @@ def fill_lump_forces(
 
 @compiled
 def fill_lump_slopes(
-    x: np.ndarray,
-    v: np.ndarray,
-    volume: np.ndarray,
-    drag_area: np.ndarray,
+    x: FloatArray,
+    v: FloatArray,
+    volume: FloatArray,
+    drag_area: FloatArray,
     water: WaterTable,
-    stiffness: np.ndarray,
-    damping: np.ndarray,
+    stiffness: FloatArray,
+    damping: FloatArray,
 ) -> None:
     """Fill in K = -∂F/∂x and C = -∂F/∂v (n, 3, 3) of the lumps."""
     density, gradient, gravity, knots, cubics = water

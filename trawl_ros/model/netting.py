@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import NettingRecord
 from trawl_ros.model.kite import KiteNodes
 from trawl_ros.model.netting_rows import NettingRow, Profile, rows_of
@@ -49,11 +50,11 @@ class NetMesh:
     ``kite`` what carries the kite.
     """
 
-    positions: np.ndarray
+    positions: FloatArray
     bars: list[NetBar]
-    knot_area: np.ndarray
-    knot_volume: np.ndarray
-    line_drag_area: np.ndarray
+    knot_area: FloatArray
+    knot_volume: FloatArray
+    line_drag_area: FloatArray
     headrope: list[int]
     footrope: list[int]
     edge_rest: float
@@ -232,7 +233,7 @@ def _add_codend(
     ring: list[int],
     positions: list[tuple[float, float, float]],
     bars: list[NetBar],
-    line_drag: np.ndarray,
+    line_drag: FloatArray,
 ) -> None:
     """One line behind the last whole row, whose nodes are all tied to its first node."""
     m = net.codend_segments

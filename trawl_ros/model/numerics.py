@@ -8,43 +8,50 @@ from typing import cast
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.compiled import alike, compiled
 
 STEP = 1e-30
 """Size of the imaginary step; no difference is taken, so it may be this small."""
 
 
-def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def stepped(values: FloatArray, direction: FloatArray) -> FloatArray:
+    """Values after an imaginary step, which the physics takes for real ones."""
+    return cast(FloatArray, values + 1j * STEP * direction)
+
+
+def dot(a: FloatArray, b: FloatArray) -> FloatArray:
     """Scalar product along the last axis, without conjugation."""
-    return np.einsum('...i,...i->...', a, b)
+    product: FloatArray = np.einsum('...i,...i->...', a, b)
+    return product
 
 
-def length(a: np.ndarray, floor: float = 0.0) -> np.ndarray:
+def length(a: FloatArray, floor: float = 0.0) -> FloatArray:
     """Euclidean length along the last axis; ``floor`` keeps its derivative finite at zero."""
     return np.sqrt(dot(a, a) + floor * floor)
 
 
-def distance(a: np.ndarray, b: np.ndarray) -> float:
+def distance(a: FloatArray, b: FloatArray) -> float:
     """Distance of two points (3,)."""
     return cast(float, length(a - b))
 
 
-def outer(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def outer(a: FloatArray, b: FloatArray) -> FloatArray:
     """Dyadic product along the last axis, shape (..., 3, 3)."""
     return a[..., :, None] * b[..., None, :]
 
 
-def angle(y: np.ndarray, x: np.ndarray) -> np.ndarray:
+def angle(y: FloatArray, x: FloatArray) -> FloatArray:
     """``arctan2`` that carries an infinitesimal imaginary part along."""
-    real = np.arctan2(np.real(y), np.real(x))
+    real: FloatArray = np.arctan2(np.real(y), np.real(x))
     if not (np.iscomplexobj(y) or np.iscomplexobj(x)):
         return real
     square = np.real(x) ** 2 + np.real(y) ** 2
     slope = (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
-    return real + 1j * slope
+    return cast(FloatArray, real + 1j * slope)
 
 
-def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Vector product along the last axis; five times as fast as numpy's on few vectors."""
     product = np.empty(np.broadcast_shapes(a.shape, b.shape), np.result_type(a, b))
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
@@ -55,7 +62,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return product
 
 
-def skew(a: np.ndarray) -> np.ndarray:
+def skew(a: FloatArray) -> FloatArray:
     """Matrix S(a) with S(a) b = a × b, shape (..., 3, 3)."""
     matrix = np.zeros((*a.shape, 3), a.dtype)
     matrix[..., 2, 1] = a[..., 0]
@@ -64,7 +71,7 @@ def skew(a: np.ndarray) -> np.ndarray:
     return matrix - transpose(matrix)
 
 
-def rotation(vector: np.ndarray) -> np.ndarray:
+def rotation(vector: FloatArray) -> FloatArray:
     """Rotation matrix of a rotation vector (Rodrigues), shape (..., 3) -> (..., 3, 3)."""
     (flat,) = alike(vector.reshape(-1, 3))
     matrices = np.empty((len(flat), 3, 3), flat.dtype)
@@ -73,7 +80,7 @@ def rotation(vector: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def _fill_rotations(vectors: np.ndarray, matrices: np.ndarray) -> None:
+def _fill_rotations(vectors: FloatArray, matrices: FloatArray) -> None:
     for n in range(len(vectors)):
         a, b, c = vectors[n, 0], vectors[n, 1], vectors[n, 2]
         square = a * a + b * b + c * c
@@ -95,13 +102,13 @@ def _fill_rotations(vectors: np.ndarray, matrices: np.ndarray) -> None:
         matrices[n, 0, 1] -= sine * c
 
 
-def about_axis(axis: int, radians: float) -> np.ndarray:
+def about_axis(axis: int, radians: float) -> FloatArray:
     """Rotation matrix about a coordinate axis (0, 1, 2)."""
     vector = np.zeros(3)
     vector[axis] = radians
     return rotation(vector)
 
 
-def transpose(matrix: np.ndarray) -> np.ndarray:
+def transpose(matrix: FloatArray) -> FloatArray:
     """Transpose of the last two axes."""
     return np.swapaxes(matrix, -1, -2)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.board import flow_at, inclination, pitch_and_roll
 from trawl_ros.model.gear_model import OUTWARD, GearModel
@@ -61,9 +62,10 @@ def observe(model: GearModel, state: State, tow: Tow) -> Observables:
     )
 
 
-def outward_normal_lift(state: State) -> np.ndarray:
+def outward_normal_lift(state: State) -> FloatArray:
     """Vertical part (2,) of the boards' outward unit normals; positive points up."""
-    return state.board_rotations[:, 2, 1] * OUTWARD
+    lift: FloatArray = state.board_rotations[:, 2, 1] * OUTWARD
+    return lift
 
 
 def highest_point(model: GearModel, state: State) -> float:

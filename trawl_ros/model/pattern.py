@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.model.compiled import compiled
 
 
@@ -19,37 +20,37 @@ class SparsityPattern:
     """
 
     dof: int
-    plain: np.ndarray
-    hung: np.ndarray
-    rigged: np.ndarray
-    rig_board: np.ndarray
-    rig_point: np.ndarray
-    slot: np.ndarray
-    indices: np.ndarray
-    indptr: np.ndarray
+    plain: IntArray
+    hung: IntArray
+    rigged: IntArray
+    rig_board: IntArray
+    rig_point: IntArray
+    slot: IntArray
+    indices: IntArray
+    indptr: IntArray
 
-    def matrix(self, data: np.ndarray) -> sp.csc_matrix:
+    def matrix(self, data: FloatArray) -> sp.csc_matrix:
         """Sparse matrix of ``data`` on this pattern."""
         return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.dof, self.dof))
 
-    def held(self, data: np.ndarray, free: np.ndarray) -> np.ndarray:
+    def held(self, data: FloatArray, free: BoolArray) -> FloatArray:
         """Data with the rows and columns of all but ``free`` (dof,) made the identity's."""
         columns = np.repeat(np.arange(self.dof), np.diff(self.indptr))
         kept = np.where(free[self.indices] & free[columns], data, 0.0)
         return np.where((self.indices == columns) & ~free[columns], 1.0, kept)
 
     @cached_property
-    def order(self) -> np.ndarray:
+    def order(self) -> IntArray:
         """Numbers of all bars that have a block: the plain ones first, then hung and rigged."""
         return np.concatenate([self.plain, self.hung, self.rigged])
 
-    def times(self, data: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    def times(self, data: FloatArray, vector: FloatArray) -> FloatArray:
         """Product of the matrix of ``data`` with a vector (dof,)."""
         product = np.zeros(self.dof, np.result_type(data, vector))
         _multiply(self.indices.view(np.uint32), self.indptr, data, vector, product)
         return product
 
-    def add(self, blocks: list[np.ndarray], data: np.ndarray) -> None:
+    def add(self, blocks: list[FloatArray], data: FloatArray) -> None:
         """Add the blocks of hung and rigged bars, boards, nodes and kite, in this order, to data
         on the pattern that has those of plain bars.
         """
@@ -62,11 +63,11 @@ class SparsityPattern:
 
 @compiled
 def _multiply(
-    indices: np.ndarray,
-    indptr: np.ndarray,
-    data: np.ndarray,
-    vector: np.ndarray,
-    product: np.ndarray,
+    indices: IntArray,
+    indptr: IntArray,
+    data: FloatArray,
+    vector: FloatArray,
+    product: FloatArray,
 ) -> None:
     for column in range(len(vector)):
         for k in range(indptr[column], indptr[column + 1]):
@@ -74,12 +75,12 @@ def _multiply(
 
 
 @compiled
-def _add(values: np.ndarray, slots: np.ndarray, data: np.ndarray) -> None:
+def _add(values: FloatArray, slots: IntArray, data: FloatArray) -> None:
     for k in range(len(values)):
         data[slots[k]] += values[k]
 
 
-def build_pattern(nodes: int, ends: np.ndarray, kite: np.ndarray) -> SparsityPattern:
+def build_pattern(nodes: int, ends: IntArray, kite: IntArray) -> SparsityPattern:
     """The pattern of a gear with ``nodes`` free nodes bars between the points ``ends``
     and a kite held at the three nodes ``kite``.
     """

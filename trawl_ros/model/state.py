@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.numerics import rotation
 
 
@@ -17,10 +18,10 @@ class Tow:
     ``length_rates`` (2,) their rates (m/s, out positive).
     """
 
-    blocks: np.ndarray
-    block_velocities: np.ndarray
-    lengths: np.ndarray
-    length_rates: np.ndarray
+    blocks: FloatArray
+    block_velocities: FloatArray
+    lengths: FloatArray
+    length_rates: FloatArray
 
 
 @dataclass(frozen=True)
@@ -32,14 +33,14 @@ class State:
     ``node_velocities``, ``board_velocities``, ``board_rates`` (rad/s).
     """
 
-    nodes: np.ndarray
-    board_positions: np.ndarray
-    board_rotations: np.ndarray
-    node_velocities: np.ndarray
-    board_velocities: np.ndarray
-    board_rates: np.ndarray
+    nodes: FloatArray
+    board_positions: FloatArray
+    board_rotations: FloatArray
+    node_velocities: FloatArray
+    board_velocities: FloatArray
+    board_rates: FloatArray
 
-    def moved(self, step: np.ndarray) -> 'State':
+    def moved(self, step: FloatArray) -> 'State':
         """The state displaced by ``step`` (dof,): metres, and rotation vectors for boards."""
         n = len(self.nodes)
         board = step[3 * n :].reshape(2, 6)
@@ -52,7 +53,7 @@ class State:
             board_rates=self.board_rates,
         )
 
-    def with_velocity(self, velocity: np.ndarray) -> 'State':
+    def with_velocity(self, velocity: FloatArray) -> 'State':
         """Copy of the state with generalised velocity ``velocity`` (dof,)."""
         n = len(self.nodes)
         board = velocity[3 * n :].reshape(2, 6)
@@ -66,12 +67,12 @@ class State:
         )
 
     @property
-    def velocity(self) -> np.ndarray:
+    def velocity(self) -> FloatArray:
         """Generalised velocity (dof,)."""
         board = np.concatenate([self.board_velocities, self.board_rates], axis=1)
         return np.concatenate([self.node_velocities.ravel(), board.ravel()])
 
-    def shifted(self, offset: np.ndarray) -> 'State':
+    def shifted(self, offset: FloatArray) -> 'State':
         """The whole gear displaced by ``offset`` (3,), m."""
         return State(
             nodes=self.nodes + offset,
@@ -89,10 +90,10 @@ def halfway(first: State, last: State, h: float) -> State:
     Its error falls with the fourth power of ``h``, faster than the time stepper's own.
     """
 
-    def place(move: np.ndarray, v0: np.ndarray, v1: np.ndarray) -> np.ndarray:
+    def place(move: FloatArray, v0: FloatArray, v1: FloatArray) -> FloatArray:
         return 0.5 * move + h / 8 * (v0 - v1)
 
-    def speed(move: np.ndarray, v0: np.ndarray, v1: np.ndarray) -> np.ndarray:
+    def speed(move: FloatArray, v0: FloatArray, v1: FloatArray) -> FloatArray:
         return 1.5 / h * move - 0.25 * (v0 + v1)
 
     nodes = last.nodes - first.nodes, first.node_velocities, last.node_velocities
@@ -113,7 +114,7 @@ def halfway(first: State, last: State, h: float) -> State:
     )
 
 
-def mirrored(state: State, permutation: np.ndarray) -> State:
+def mirrored(state: State, permutation: IntArray) -> State:
     """The mirror image in the x-z plane; ``permutation`` says which node becomes which."""
     flip = np.array([1.0, -1.0, 1.0])
     swap = [1, 0]

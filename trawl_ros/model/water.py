@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 
 ATMOSPHERE = 101_325.0
@@ -33,11 +34,11 @@ class Water:
     density: float = 1025.0
     density_gradient: float = 0.0
     gravity: float = 9.80665
-    depths: np.ndarray = field(default_factory=lambda: np.empty(0))
-    currents: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    depths: FloatArray = field(default_factory=lambda: np.empty(0))
+    currents: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
     @cached_property
-    def profile(self) -> tuple[np.ndarray, np.ndarray]:
+    def profile(self) -> tuple[FloatArray, FloatArray]:
         """The current for compiled loops: depths (k,) and, from each on down, the cubics
         (k, 2, 4) of both currents in the depth below it, highest power first.
         """
@@ -51,7 +52,7 @@ class Water:
             cubics[:-1] = PchipInterpolator(self.depths, self.currents).c.transpose(1, 2, 0)
         return knots, cubics
 
-    def with_more_current(self, depths: np.ndarray, currents: np.ndarray) -> 'Water':
+    def with_more_current(self, depths: FloatArray, currents: FloatArray) -> 'Water':
         """Return the same sea with another current added to its own.
 
         Parameters
@@ -65,7 +66,7 @@ class Water:
         more = np.column_stack([np.interp(together, depths, column) for column in currents.T])
         return replace(self, depths=together, currents=self.current(-together)[:, :2] + more)
 
-    def density_at(self, z: np.ndarray) -> np.ndarray:
+    def density_at(self, z: FloatArray) -> FloatArray:
         """Density at height ``z`` (m, up, negative below the surface), kg/m³."""
         return self.density - self.density_gradient * z
 
@@ -80,15 +81,15 @@ class Water:
         root = np.sqrt(self.density**2 + 2.0 * self.density_gradient * column)
         return float(2.0 * column / (self.density + root))
 
-    def current(self, z: np.ndarray) -> np.ndarray:
+    def current(self, z: FloatArray) -> FloatArray:
         """Velocity of the water at heights ``z``, shape (..., 3), m/s in ``map``."""
         return self._currents_at(z)[0]
 
-    def current_slope(self, z: np.ndarray) -> np.ndarray:
+    def current_slope(self, z: FloatArray) -> FloatArray:
         """Derivative of the current by height, shape (..., 3), 1/s."""
         return self._currents_at(z)[1]
 
-    def _currents_at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _currents_at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         # As above, for the compiler.
         from trawl_ros.model.compiled import alike
         from trawl_ros.model.current import fill_currents

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
+
 COMPONENTS = 100
 """Sines of an irregular heave. Each carries the same energy at a frequency of its own, so they
 never come round to the same pattern again."""
@@ -24,9 +26,9 @@ class Heave:
     derivative, so that it does not jerk the warps.
     """
 
-    amplitudes: np.ndarray = field(default_factory=lambda: np.empty(0))
-    frequencies: np.ndarray = field(default_factory=lambda: np.empty(0))
-    phases: np.ndarray = field(default_factory=lambda: np.empty(0))
+    amplitudes: FloatArray = field(default_factory=lambda: np.empty(0))
+    frequencies: FloatArray = field(default_factory=lambda: np.empty(0))
+    phases: FloatArray = field(default_factory=lambda: np.empty(0))
     begin: float = 0.0
     growth: float = 30.0
 

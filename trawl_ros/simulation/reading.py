@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.assembly import bar_tensions, points_of
 from trawl_ros.model.board import flow_at, hydrodynamics, mirrored_axes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
@@ -88,7 +89,7 @@ def read_truth(
     )
 
 
-def _means(values: np.ndarray, groups: list[np.ndarray]) -> list[float]:
+def _means(values: FloatArray, groups: list[IntArray]) -> list[float]:
     """Means of ``values`` over index groups, vectorised as there are a thousand of them."""
     sizes = np.array([len(group) for group in groups])
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])

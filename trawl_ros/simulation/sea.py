@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.records.truth import SchoolTruth, SeabedTruth, single
 from trawl_ros.simulation.heave import Heave
 from trawl_ros.simulation.seabed import Seabed
@@ -17,10 +18,10 @@ class School:
     ground (m/s); ``size`` and ``density`` as in `SchoolTruth`.
     """
 
-    position: np.ndarray
-    size: np.ndarray
+    position: FloatArray
+    size: FloatArray
     density: float
-    velocity: np.ndarray
+    velocity: FloatArray
 
     def at(self, time: float) -> SchoolTruth:
         """Truth of the school at a time (s since the start of the trial)."""
@@ -43,7 +44,7 @@ class Sea:
         """All schools at a time (s since the start of the trial)."""
         return tuple(school.at(time) for school in self.schools)
 
-    def seabed_under(self, ship: np.ndarray, headrope: np.ndarray) -> SeabedTruth:
+    def seabed_under(self, ship: FloatArray, headrope: FloatArray) -> SeabedTruth:
         """Depths of the seabed under two positions (3,) in ``map``."""
         under_ship, under_headrope = self.seabed.depth_at(np.stack([ship, headrope]))
         return SeabedTruth(float(under_ship), float(under_headrope))

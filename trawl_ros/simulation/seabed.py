@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import ScenarioError
 from trawl_ros.records.truth import SIDES
 
@@ -27,13 +28,14 @@ class Seabed:
     """
 
     direction: float = 0.0
-    distances: np.ndarray = field(default_factory=lambda: np.zeros(1))
-    depths: np.ndarray = field(default_factory=lambda: np.full(1, math.inf))
+    distances: FloatArray = field(default_factory=lambda: np.zeros(1))
+    depths: FloatArray = field(default_factory=lambda: np.full(1, math.inf))
 
-    def depth_at(self, places: np.ndarray) -> np.ndarray:
+    def depth_at(self, places: FloatArray) -> FloatArray:
         """Depths (...,) at places (..., 3) in ``map``."""
         along = np.array([math.cos(self.direction), math.sin(self.direction)])
-        return np.interp(places[..., :2] @ along, self.distances, self.depths)
+        depths: FloatArray = np.interp(places[..., :2] @ along, self.distances, self.depths)
+        return depths
 
 
 def require_clear(seabed: Seabed, model: 'GearModel', state: 'State') -> None:

@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State
 from trawl_ros.records.truth import single
 
 
-def sonar_axes(model: GearModel, state: State) -> np.ndarray:
+def sonar_axes(model: GearModel, state: State) -> FloatArray:
     """Axes of frame ``sonar`` as columns (3, 3): z forward along the mouth's normal, x down in
     the mouth, y port.
     """
@@ -20,7 +21,7 @@ def sonar_axes(model: GearModel, state: State) -> np.ndarray:
     return np.column_stack([x, y, np.cross(x, y)])
 
 
-def section_of(model: GearModel, state: State, axes: np.ndarray) -> np.ndarray:
+def section_of(model: GearModel, state: State, axes: FloatArray) -> FloatArray:
     """Section: intersections of ropes and twine with the plane z = 0 of frame ``sonar``.
 
     A numerical bar that stands for several real ones passes once, with the diameter of one. The

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import ShipRecord, WinchRecord
 
 
@@ -17,21 +18,22 @@ class Ship:
     water (m/s), rate of turn (rad/s, to port positive), and how fast she heaves (m/s, up).
     """
 
-    position: np.ndarray
+    position: FloatArray
     heading: float
     speed: float
     yaw_rate: float
     heave_rate: float = 0.0
 
     @property
-    def ahead(self) -> np.ndarray:
+    def ahead(self) -> FloatArray:
         """Unit vector (3,) of the heading."""
         return np.array([np.cos(self.heading), np.sin(self.heading), 0.0])
 
     @property
-    def velocity(self) -> np.ndarray:
+    def velocity(self) -> FloatArray:
         """Velocity (3,) through the water in ``map`` axes, m/s."""
-        return self.speed * self.ahead + np.array([0.0, 0.0, self.heave_rate])
+        velocity: FloatArray = self.speed * self.ahead + np.array([0.0, 0.0, self.heave_rate])
+        return velocity
 
     def heaved(self, height: float, rate: float) -> 'Ship':
         """Copy of the ship at a ``height`` (m) above the mean surface, rising at ``rate`` (m/s)."""
@@ -39,7 +41,7 @@ class Ship:
         return replace(self, position=position, heave_rate=rate)
 
     def advanced(
-        self, limits: ShipRecord, speed: float, yaw_rate: float, current: np.ndarray, dt: float
+        self, limits: ShipRecord, speed: float, yaw_rate: float, current: FloatArray, dt: float
     ) -> 'Ship':
         """Ship after ``dt`` seconds of approaching a wanted speed and rate of turn in a current.
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
@@ -82,7 +83,7 @@ def branch(family: Family, value: float, state: State, *, scale: float) -> Itera
             step = min(1.5 * step, LONGEST)
 
 
-def _weights(model: GearModel) -> np.ndarray:
+def _weights(model: GearModel) -> FloatArray:
     """Weights (dof,) of the squares of all parts' changes; they sum up to about one."""
     weights = np.full(model.dof, 1.0 / LIMIT_METRES**2)
     weights[3 * model.nodes :].reshape(2, 6)[:, 3:] = 1.0 / LIMIT_RADIANS**2
@@ -90,7 +91,7 @@ def _weights(model: GearModel) -> np.ndarray:
     return weights
 
 
-def _push(family: Family, value: float, state: State, scale: float) -> np.ndarray:
+def _push(family: Family, value: float, state: State, scale: float) -> FloatArray:
     """Change of the forces (dof,) with the parameter, per scale."""
     sides = []
     for sign in (-1.0, 1.0):
@@ -99,15 +100,15 @@ def _push(family: Family, value: float, state: State, scale: float) -> np.ndarra
     return (sides[1] - sides[0]) / (2 * NUDGE)
 
 
-def _factor(family: Family, value: float, state: State) -> tuple[np.ndarray, Factor]:
+def _factor(family: Family, value: float, state: State) -> tuple[FloatArray, Factor]:
     model, tow = family(value)
     here = linearised(model, at_velocity(state, tow.block_velocities.mean(0)), tow)
     return here.force, factorised(model.pattern, here.stiffness)
 
 
 def _tangent(
-    family: Family, value: float, state: State, scale: float, weights: np.ndarray
-) -> tuple[np.ndarray, float]:
+    family: Family, value: float, state: State, scale: float, weights: FloatArray
+) -> tuple[FloatArray, float]:
     """Unit tangent of the branch: of the shape (dof,), and of the parameter in its scale."""
     _, factor = _factor(family, value, state)
     along = factor.solve(_push(family, value, state, scale))
@@ -119,10 +120,10 @@ def _corrected(
     family: Family,
     value: float,
     state: State,
-    tangent: tuple[np.ndarray, float],
+    tangent: tuple[FloatArray, float],
     step: float,
     scale: float,
-    weights: np.ndarray,
+    weights: FloatArray,
 ) -> tuple[float, State, int] | None:
     """A step along the tangent, and Newton's steps across it back to the branch."""
     along, rate = tangent

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.model.assembly import forces, linearised
@@ -26,7 +27,7 @@ INPUT_STEP = 1e-4
 """And over this much of warp length (m) and speed (m/s)."""
 
 
-def shown_values(acting: EffectSet, values: np.ndarray, at: Situation) -> np.ndarray:
+def shown_values(acting: EffectSet, values: FloatArray, at: Situation) -> FloatArray:
     """Sensor readings (n_observables,) of observables: sensor effects applied."""
     if not acting:
         return values
@@ -37,11 +38,11 @@ def shown_values(acting: EffectSet, values: np.ndarray, at: Situation) -> np.nda
 def chained(
     model: GearModel,
     found: Equilibrium,
-    jacobian: np.ndarray,
+    jacobian: FloatArray,
     acting: EffectSet,
-    inputs: np.ndarray,
+    inputs: FloatArray,
     at: Situation,
-) -> np.ndarray:
+) -> FloatArray:
     """Derivatives of sensor readings by coefficients and indicated inputs.
 
     Parameters
@@ -74,12 +75,12 @@ def chained(
 def by_effects(
     model: GearModel,
     found: Equilibrium,
-    jacobian: np.ndarray,
+    jacobian: FloatArray,
     acting: EffectSet,
     wanted: Sequence[ActiveEffect],
-    inputs: np.ndarray,
+    inputs: FloatArray,
     at: Situation,
-) -> np.ndarray:
+) -> FloatArray:
     """Derivatives of sensor readings by the values of effects.
 
     Parameters
@@ -119,8 +120,8 @@ def _slopes(
     model: GearModel,
     found: Equilibrium,
     size: float,
-    both: Sequence[tuple[EffectSet, np.ndarray, Situation]],
-) -> tuple[np.ndarray, ...]:
+    both: Sequence[tuple[EffectSet, FloatArray, Situation]],
+) -> tuple[FloatArray, ...]:
     """Slopes of forces (dof,), observables, true inputs (3,) and sensor readings, between two
     cases that are ``size`` apart, at a gear that stays where it is.
     """
@@ -141,11 +142,11 @@ def _slopes(
 def _carried(
     model: GearModel,
     found: Equilibrium,
-    jacobian: np.ndarray,
+    jacobian: FloatArray,
     acting: EffectSet,
-    rows: Sequence[tuple[np.ndarray, ...]],
+    rows: Sequence[tuple[FloatArray, ...]],
     at: Situation,
-) -> np.ndarray:
+) -> FloatArray:
     """Change of the readings (n_observables, n) by such slopes, once the gear has come to rest."""
     pushes, direct, towed, shown = (np.column_stack(part) for part in zip(*rows, strict=True))
     gear = acting.gear(model, at)
@@ -160,10 +161,11 @@ def _carried(
             ]
         )
     change = along + direct + jacobian[:, -3:] @ towed
-    return sensor_slopes(acting, found, at)[:, None] * change + shown
+    readings: FloatArray = sensor_slopes(acting, found, at)[:, None] * change + shown
+    return readings
 
 
-def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> np.ndarray:
+def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> FloatArray:
     """Gain (n_observables,) of each sensor: slope of its reading over the observable."""
     values = found.observables.array()
     if not acting:
@@ -173,6 +175,6 @@ def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> np.nd
     return (up - down) / (2.0 * size)
 
 
-def _three(inputs: np.ndarray) -> tuple[float, float, float]:
+def _three(inputs: FloatArray) -> tuple[float, float, float]:
     port, starboard, speed = map(float, inputs)
     return port, starboard, speed

@@ -12,8 +12,10 @@ from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
+from trawl_ros.core.arrays import IntArray
 from trawl_ros.model.pattern import SparsityPattern
 
 WIDTH = 3
@@ -37,12 +39,12 @@ class Elimination:
     parent at most.
     """
 
-    order: np.ndarray
-    fronts: np.ndarray
-    slots: np.ndarray
-    places: np.ndarray
-    border: np.ndarray
-    parents_rows: np.ndarray
+    order: IntArray
+    fronts: IntArray
+    slots: NDArray[np.uint32]
+    places: NDArray[np.uint32]
+    border: NDArray[np.uint32]
+    parents_rows: NDArray[np.uint32]
     fill: int
     largest: int
     waiting: int
@@ -69,7 +71,7 @@ def elimination(pattern: SparsityPattern) -> Elimination:
     return _numbered(pattern, sequence, _postordered(_trees(touched, sequence)))
 
 
-def _minimum_degree(touched: list[np.ndarray]) -> np.ndarray:
+def _minimum_degree(touched: list[IntArray]) -> IntArray:
     """Blocks in an order of minimum degree, which fills in little."""
     count = len(touched)
     indices = np.concatenate(touched)
@@ -78,10 +80,11 @@ def _minimum_degree(touched: list[np.ndarray]) -> np.ndarray:
     # Any values will do that keep the pivots on the diagonal.
     graph = sp.csc_matrix((np.where(diagonal, 1.0, 1e-3 / count), indices, indptr))
     found = splu(graph, permc_spec='MMD_AT_PLUS_A', options={'SymmetricMode': True})
-    return np.argsort(found.perm_c)
+    order: IntArray = np.argsort(found.perm_c)
+    return order
 
 
-def _trees(touched: list[np.ndarray], sequence: np.ndarray) -> list[_Front]:
+def _trees(touched: list[IntArray], sequence: IntArray) -> list[_Front]:
     """Roots of the trees of fronts; each front has joined such children as add few zeros."""
     place = np.argsort(sequence)
     waiting: dict[int, list[_Front]] = {}
@@ -123,7 +126,7 @@ def _postordered(roots: list[_Front]) -> list[_Front]:
     return ordered[::-1]
 
 
-def _numbered(pattern: SparsityPattern, sequence: np.ndarray, fronts: list[_Front]) -> Elimination:
+def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]) -> Elimination:
     pivots = np.array([len(front.pivots) for front in fronts])
     firsts = np.cumsum(pivots) - pivots
     by_sequence = np.concatenate([front.pivots for front in fronts])
@@ -165,11 +168,12 @@ def _numbered(pattern: SparsityPattern, sequence: np.ndarray, fronts: list[_Fron
     )
 
 
-def _unknowns(blocks: np.ndarray) -> np.ndarray:
-    return (WIDTH * blocks[:, None] + np.arange(WIDTH)).ravel()
+def _unknowns(blocks: IntArray) -> IntArray:
+    unknowns: IntArray = (WIDTH * blocks[:, None] + np.arange(WIDTH)).ravel()
+    return unknowns
 
 
-def _rows(blocks: np.ndarray, first: int, pivots: int, border: np.ndarray) -> np.ndarray:
+def _rows(blocks: IntArray, first: int, pivots: int, border: IntArray) -> IntArray:
     """Rows of blocks in a front, in blocks."""
     behind = pivots + np.searchsorted(border, blocks)
     return np.where(blocks < first + pivots, blocks - first, behind)
@@ -177,12 +181,12 @@ def _rows(blocks: np.ndarray, first: int, pivots: int, border: np.ndarray) -> np
 
 def _assembly(
     pattern: SparsityPattern,
-    blocks: np.ndarray,
-    owner: np.ndarray,
-    firsts: np.ndarray,
-    pivots: np.ndarray,
-    borders: list[np.ndarray],
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    blocks: IntArray,
+    owner: IntArray,
+    firsts: IntArray,
+    pivots: IntArray,
+    borders: list[IntArray],
+) -> tuple[IntArray, IntArray, IntArray]:
     """Slots of the matrix, their places in the fronts, and how many there are in each front.
 
     An entry belongs to the front in which the first of its row and column is a pivot.
@@ -202,7 +206,7 @@ def _assembly(
     return slots, places[slots], entries
 
 
-def _most_waiting(table: np.ndarray, edges: np.ndarray) -> int:
+def _most_waiting(table: IntArray, edges: IntArray) -> int:
     stack: list[int] = []
     held = most = 0
     for children, edge in zip(table[:, 2], edges, strict=True):

@@ -5,8 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.sparse.linalg import SuperLU, splu
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.solver.elimination import Elimination, elimination
 from trawl_ros.solver.fronts import factorise, solve
@@ -24,12 +26,12 @@ class Factor:
     """LU factors of a matrix on a gear's pattern."""
 
     pattern: SparsityPattern
-    data: np.ndarray
-    _factors: tuple[np.ndarray, ...]
+    data: FloatArray
+    _factors: tuple[FloatArray | IntArray | NDArray[np.uint32], ...]
     _pivoted: SuperLU | None = None
     _trusted: bool = False
 
-    def solve(self, right: np.ndarray) -> np.ndarray:
+    def solve(self, right: FloatArray) -> FloatArray:
         """Solve for one right-hand side (dof,) or several (dof, k).
 
         Raises
@@ -44,11 +46,13 @@ class Factor:
             solve(columns, *self._factors, solution)
             if self._trusted or self._holds(columns[0], solution[0]):
                 self._trusted = True
-                return solution.T.reshape(right.shape)
+                found: FloatArray = solution.T.reshape(right.shape)
+                return found
             self._pivoted = factorised_part(self.pattern.matrix(self.data))
-        return self._pivoted.solve(right)
+        pivoted: FloatArray = self._pivoted.solve(right)
+        return pivoted
 
-    def _holds(self, right: np.ndarray, solution: np.ndarray) -> bool:
+    def _holds(self, right: FloatArray, solution: FloatArray) -> bool:
         left = np.abs(self.pattern.matrix(self.data) @ solution - right).max()
         scale = np.abs(self.data).max() * np.abs(solution).max() + np.abs(right).max()
         return bool(left <= BACKWARD_ERROR * scale)
@@ -59,7 +63,7 @@ class Factor:
         return elimination(self.pattern).fill
 
 
-def factorised(pattern: SparsityPattern, data: np.ndarray) -> Factor:
+def factorised(pattern: SparsityPattern, data: FloatArray) -> Factor:
     """LU factors of the matrix of ``data`` on a gear's pattern.
 
     Raises
@@ -85,7 +89,7 @@ def factorised(pattern: SparsityPattern, data: np.ndarray) -> Factor:
 
 
 @lru_cache(maxsize=8)
-def _workspace(found: Elimination, kind: np.dtype) -> tuple[np.ndarray, np.ndarray]:
+def _workspace(found: Elimination, kind: np.dtype[np.float64]) -> tuple[FloatArray, FloatArray]:
     """Borders that wait for their parents, and the fronts at work."""
     return np.empty(found.waiting, kind), np.empty((2, found.largest**2), kind)
 
@@ -106,7 +110,7 @@ def factorised_part(matrix: sp.csc_matrix) -> SuperLU:
     )
 
 
-def solve_refined(pattern: SparsityPattern, data: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solve_refined(pattern: SparsityPattern, data: FloatArray, right: FloatArray) -> FloatArray:
     """Solve once, to rounding: one step of refinement makes up for the weaker pivots."""
     factor = factorised(pattern, data)
     solution = factor.solve(right)

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import RBFInterpolator
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import block_forces, forces, linearised
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_model
@@ -108,7 +109,7 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
     )
 
 
-def at_velocity(state: State, velocity: np.ndarray) -> State:
+def at_velocity(state: State, velocity: FloatArray) -> State:
     """The state with every part moving at one velocity (3,)."""
     return replace(
         state,
@@ -141,7 +142,7 @@ def shifted_to(model: GearModel, state: State, old: Tow, new: Tow) -> State:
     return at_velocity(replace(moved, nodes=nodes), new.block_velocities.mean(0))
 
 
-def _tangent(model: GearModel, state: State, tow: Tow, change: np.ndarray) -> np.ndarray:
+def _tangent(model: GearModel, state: State, tow: Tow, change: FloatArray) -> FloatArray:
     """Displacement (dof,) of a steady state, to first order, for a change of both lengths."""
     longer = replace(tow, lengths=tow.lengths + 1j * STEP * change)
     push = forces(model, state, longer).imag / STEP

@@ -7,6 +7,7 @@ All takes real matrices, and complex ones.
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.compiled import compiled, fused
 
 PIVOTS, SIZE, CHILDREN, ENTRIES, BORDER, ROWS, FACTORS = range(7)
@@ -21,15 +22,15 @@ EXCHANGE = 10.0
 
 @compiled
 def factorise(
-    data: np.ndarray,
-    fronts: np.ndarray,
-    slots: np.ndarray,
-    places: np.ndarray,
-    parents_rows: np.ndarray,
-    factors: np.ndarray,
-    exchanged: np.ndarray,
-    waiting: np.ndarray,
-    space: np.ndarray,
+    data: FloatArray,
+    fronts: IntArray,
+    slots: IntArray,
+    places: IntArray,
+    parents_rows: IntArray,
+    factors: FloatArray,
+    exchanged: IntArray,
+    waiting: FloatArray,
+    space: FloatArray,
 ) -> bool:
     """Factorise the matrix of ``data`` into ``factors``; False if a pivot vanished.
 
@@ -80,7 +81,7 @@ def factorise(
 
 
 @compiled
-def _add_rest(rest: np.ndarray, rows: np.ndarray, front: np.ndarray) -> None:
+def _add_rest(rest: FloatArray, rows: IntArray, front: FloatArray) -> None:
     """Add what is left of a child's border into its parent's front, block by block."""
     for i in range(len(rest)):
         source, target = rest[i], front[rows[i // 3] + i % 3]
@@ -92,7 +93,7 @@ def _add_rest(rest: np.ndarray, rows: np.ndarray, front: np.ndarray) -> None:
 
 
 @fused
-def _eliminate(front: np.ndarray, pivots: int, exchanged: np.ndarray) -> bool:
+def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
     """Eliminate the pivots of a front in place: L below its diagonal, U above, 1 / U on it."""
     size = len(front)
     first = 0
@@ -130,7 +131,7 @@ def _eliminate(front: np.ndarray, pivots: int, exchanged: np.ndarray) -> bool:
 
 
 @fused
-def _update_by_six(front: np.ndarray, k: int) -> None:
+def _update_by_six(front: FloatArray, k: int) -> None:
     """Subtract the product of six columns of L and six rows of U from all behind them."""
     size, end = len(front), k + 6
     u0, u1, u2 = front[k, end:], front[k + 1, end:], front[k + 2, end:]
@@ -144,7 +145,7 @@ def _update_by_six(front: np.ndarray, k: int) -> None:
 
 
 @fused
-def _update_by_three(front: np.ndarray, k: int) -> None:
+def _update_by_three(front: FloatArray, k: int) -> None:
     """Subtract the product of three columns of L and three rows of U from all behind them."""
     size, end = len(front), k + 3
     u0, u1, u2 = front[k, end:], front[k + 1, end:], front[k + 2, end:]
@@ -157,13 +158,13 @@ def _update_by_three(front: np.ndarray, k: int) -> None:
 
 @fused
 def solve(
-    rights: np.ndarray,
-    order: np.ndarray,
-    fronts: np.ndarray,
-    border: np.ndarray,
-    factors: np.ndarray,
-    exchanged: np.ndarray,
-    solutions: np.ndarray,
+    rights: FloatArray,
+    order: IntArray,
+    fronts: IntArray,
+    border: IntArray,
+    factors: FloatArray,
+    exchanged: IntArray,
+    solutions: FloatArray,
 ) -> None:
     """Solve for right-hand sides (k, dof) with the factors, of which each part serves for all of
     them while it is at hand.

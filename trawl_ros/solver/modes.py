@@ -1,10 +1,12 @@
 """Modes of the linearised motion M ẍ + C ẋ + K x = 0, by shift and invert."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.pattern import SparsityPattern
@@ -20,13 +22,13 @@ class LinearisedMotion:
     """Linearised motion of a gear: M, C and K as data on its pattern."""
 
     pattern: SparsityPattern
-    mass: np.ndarray
-    damping: np.ndarray
-    stiffness: np.ndarray
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
 
     def nearest(
         self, shift: complex, number: int, *, tolerance: float, restarts: int | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    ) -> tuple[FloatArray, FloatArray]:
         """Find the modes whose eigenvalues lie nearest to a shift.
 
         One factorisation of s² M + s C + K serves, half the size of the first-order form: with
@@ -48,12 +50,13 @@ class LinearisedMotion:
         values, vectors
             Eigenvalues (k,), 1/s, at most ``number``, and shapes (dof, k).
         """
-        s = shift.real if shift.imag == 0.0 else shift
+        # All below takes a complex shift as it takes a real one.
+        s = shift.real if shift.imag == 0.0 else cast(float, shift)
         n, times = self.pattern.dof, self.pattern.times
         data = s**2 * self.mass + s * self.damping + self.stiffness
         solve = factorised(self.pattern, data).solve
 
-        def apply(y: np.ndarray) -> np.ndarray:
+        def apply(y: FloatArray) -> FloatArray:
             x, v = y[:n], y[n:]
             # From ẋ = s x + x₀ and M ẍ + C ẋ + K x = 0 with right-hand side (x, M v).
             new = -solve(times(self.mass, s * x + v) + times(self.damping, x))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import Tow
 
@@ -18,7 +19,7 @@ class OperatingPoint:
     heading: float = 0.0
 
 
-def block_offsets(model: GearModel, heading: float) -> np.ndarray:
+def block_offsets(model: GearModel, heading: float) -> FloatArray:
     """Positions (2, 3) of the towing blocks from midway between them, port first, m."""
     to_port = np.array([-np.sin(heading), np.cos(heading), 0.0])
     half = 0.5 * model.gear.ship.block_spacing_m

@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.model.gear_model import GearModel
@@ -32,9 +33,9 @@ class Prediction:
     next prediction nearby may start from.
     """
 
-    values: np.ndarray
-    jacobian: np.ndarray
-    slow: np.ndarray
+    values: FloatArray
+    jacobian: FloatArray
+    slow: FloatArray
     state: Equilibrium
 
 
@@ -90,7 +91,7 @@ class Predictor:
         default_factory=dict, init=False, repr=False, compare=False
     )
 
-    def acting(self, coefficients: np.ndarray) -> EffectSet:
+    def acting(self, coefficients: FloatArray) -> EffectSet:
         """Effect set with the values behind the coefficients."""
         there = self.fixed.without(self.new) if self.absent else self.fixed
         place = len(COEFFICIENTS)
@@ -110,7 +111,7 @@ class Predictor:
         at = Situation((0.0, 0.0, 0.0), sense=window.sense, hours=window.hours)
         return replace(self, at=at, absent=window.tow in self.without)
 
-    def gear(self, coefficients: np.ndarray, inputs: np.ndarray) -> GearModel:
+    def gear(self, coefficients: FloatArray, inputs: FloatArray) -> GearModel:
         """Gear model with its effects, where counters and log show ``inputs`` (3,)."""
         board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
         return self.acting(coefficients).gear(board, self._situation(inputs))
@@ -120,8 +121,8 @@ class Predictor:
         return replace(self, model=self.model.with_net(drag, weight))
 
     def by_net(
-        self, coefficients: np.ndarray, inputs: np.ndarray, found: Equilibrium
-    ) -> np.ndarray:
+        self, coefficients: FloatArray, inputs: FloatArray, found: Equilibrium
+    ) -> FloatArray:
         """Derivatives (n_observables, 2) by factors on drag and weight in water of the net.
 
         Parameters
@@ -133,13 +134,13 @@ class Predictor:
         by_net = net_sensitivities(self.gear(coefficients, inputs), found)
         return sensor_slopes(acting, found, self._situation(inputs))[:, None] * by_net
 
-    def _situation(self, inputs: np.ndarray) -> Situation:
+    def _situation(self, inputs: FloatArray) -> Situation:
         port, starboard, speed = map(float, inputs)
         return replace(self.at, inputs=(port, starboard, speed))
 
     def predict(
         self,
-        coefficients: np.ndarray,
+        coefficients: FloatArray,
         port_length: float,
         starboard_length: float,
         speed: float,
@@ -191,11 +192,11 @@ class Predictor:
 
     def signatures(
         self,
-        coefficients: np.ndarray,
-        inputs: np.ndarray,
+        coefficients: FloatArray,
+        inputs: FloatArray,
         found: Equilibrium,
         wanted: Sequence[ActiveEffect],
-    ) -> np.ndarray:
+    ) -> FloatArray:
         """Signatures of effects: changes of the readings (n_observables, m) per unit.
 
         Parameters

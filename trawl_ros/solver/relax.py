@@ -7,6 +7,7 @@ a state it would also reach at sea, rather than to any root near the start.
 
 import numpy as np
 
+from trawl_ros.core.arrays import BoolArray
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
@@ -45,7 +46,7 @@ def relax(
     *,
     tolerance: float,
     time_step: float,
-    free: np.ndarray | None = None,
+    free: BoolArray | None = None,
     limit: int = 300,
 ) -> tuple[State, int, float]:
     """Drive the forces to zero.
@@ -106,7 +107,7 @@ def relax(
         state = state.moved(step / max(size, 1.0))
 
 
-def without_attitude(model: GearModel) -> np.ndarray:
+def without_attitude(model: GearModel) -> BoolArray:
     """Mask (dof,) of all degrees of freedom but the boards' attitudes."""
     free = np.ones(model.dof, bool)
     free[3 * model.nodes :].reshape(2, 6)[:, 3:] = False

@@ -9,9 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import board_loads, forces, linearised
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import STEP
+from trawl_ros.model.numerics import STEP, stepped
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -36,19 +37,18 @@ def _perturbed(model: GearModel, found: Equilibrium, index: int) -> tuple[GearMo
         lengths[side] += 1j * STEP
         return model, state, replace(tow, lengths=lengths)
     ahead = np.array([np.cos(found.point.heading), np.sin(found.point.heading), 0.0])
-    extra = 1j * STEP * ahead
     return (
         model,
         replace(
             state,
-            node_velocities=state.node_velocities + extra,
-            board_velocities=state.board_velocities + extra,
+            node_velocities=stepped(state.node_velocities, ahead),
+            board_velocities=stepped(state.board_velocities, ahead),
         ),
-        replace(tow, block_velocities=tow.block_velocities + extra),
+        replace(tow, block_velocities=stepped(tow.block_velocities, ahead)),
     )
 
 
-def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
+def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     """Derivatives of the observables by the parameters.
 
     Returns
@@ -69,12 +69,12 @@ def sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
     shifts = solve_refined(model.pattern, stiffness, pushes)
     result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
     for index, (changed, state, tow) in enumerate(moved):
-        along = state.moved(1j * STEP * shifts[:, index])
+        along = state.moved(stepped(np.zeros(model.dof), shifts[:, index]))
         result[:, index] = observe(changed, along, tow).array().imag / STEP
     return result
 
 
-def net_sensitivities(model: GearModel, found: Equilibrium) -> np.ndarray:
+def net_sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     """Derivatives of the observables by factors on drag and weight in water of the net.
 
     Forces are linear in both, so their derivatives are differences.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
@@ -36,7 +37,7 @@ class SlowMode:
     """
 
     decay_s: float
-    shape: np.ndarray
+    shape: FloatArray
 
 
 def slow_mode(model: GearModel, found: Equilibrium) -> SlowMode:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.modes import linearised_motion
@@ -34,7 +35,7 @@ SLOWEST_SWING = 0.05
 class Stability:
     """The eigenvalues (1/s) nearest to instability; ``growth`` is the largest real part."""
 
-    eigenvalues: np.ndarray
+    eigenvalues: FloatArray
 
     @property
     def growth(self) -> float:

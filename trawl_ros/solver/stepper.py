@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
@@ -42,8 +43,8 @@ class Motion:
     """State with its accelerations (dof,): the true one, and the method's averaged one."""
 
     state: State
-    acceleration: np.ndarray
-    averaged: np.ndarray
+    acceleration: FloatArray
+    averaged: FloatArray
 
 
 def at_rest(state: State) -> Motion:
@@ -131,11 +132,11 @@ class Stepper:
     def _finished(
         self,
         start: State,
-        velocity: np.ndarray,
-        averaged: np.ndarray,
-        carried: np.ndarray,
+        velocity: FloatArray,
+        averaged: FloatArray,
+        carried: FloatArray,
         share: float,
-        new: np.ndarray,
+        new: FloatArray,
         h: float,
     ) -> Motion:
         average = carried + share * new

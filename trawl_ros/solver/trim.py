@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
@@ -38,12 +39,12 @@ class Trim:
     the steady state that the released gear has with them.
     """
 
-    points: np.ndarray
+    points: FloatArray
     model: GearModel
     steady: SteadyState
 
 
-def attitudes(yaw: float, pitch: float, roll: float) -> np.ndarray:
+def attitudes(yaw: float, pitch: float, roll: float) -> FloatArray:
     """Rotations (2, 3, 3) of both boards from angles of the port board, rad: yaw turns the
     leading edge outward, pitch is nose down, roll tips the outward normal up.
     """
@@ -130,7 +131,7 @@ class _Search:
     def __init__(self, model: GearModel, state: State, tow: Tow) -> None:
         self.origin, self.model, self.state, self.tow = model, model, state, tow
 
-    def balance(self, rotations: np.ndarray) -> None:
+    def balance(self, rotations: FloatArray) -> None:
         """Change points and state until all forces and moments vanish at this attitude."""
         model, tow = self.origin, self.tow
         free = without_attitude(model)
@@ -172,7 +173,7 @@ class _Search:
         )
 
 
-def _by_points(model: GearModel, state: State, tow: Tow) -> np.ndarray:
+def _by_points(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Derivatives (dof, 9) of the forces by the coordinates of both boards' fastening points."""
     columns = []
     for index in range(9):

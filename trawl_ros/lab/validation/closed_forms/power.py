@@ -146,7 +146,7 @@ class Ledger:
         place = np.sum(self._place_per_metre(bars.height) * bars.rest)
         place += np.sum(self._place(model.lump_mass, model.lump_volume, lumps))
         place += np.sum(self._place(board.mass, board.volume, state.board_positions[:, 2]))
-        place += self._place(kite.mass, kite.volume, held.shares @ lumps[held.nodes])
+        place += np.sum(self._place(kite.mass, kite.volume, held.shares @ lumps[held.nodes]))
         node_mass = model.lump_mass.copy()
         np.add.at(node_mass, held.nodes, held.shares * kite.mass)
         moving = np.sum(self._motion_per_metre(points) * bars.rest)
