@@ -40,7 +40,7 @@ def test_a_full_disk_behind_the_standard_output(arguments: list[str], tmp_path: 
         'plot nowhere', 'bag export nowhere', 'import-log {log} --mapping door_test_haul_log',
         'validate', 'benchmark', 'study soak', 'study chaos', 'study sonar',
         'study identification', 'study discrepancy', 'study counters --table {table}',
-        'study hostile', 'demo',
+        'study hostile', 'study robustness', 'demo',
     ],
 )  # fmt: skip
 def test_a_folder_that_cannot_be_written_is_told_before_the_work(words, place, tmp_path) -> None:

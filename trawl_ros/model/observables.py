@@ -10,6 +10,11 @@ from trawl_ros.model.numerics import angle, distance, length
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import Observables
 
+COLLAPSED_NORMAL, LYING_NORMAL = -0.35, 0.87
+"""Vertical parts of a board's outward normal: below the first it has fallen on its face, beyond the
+second, at 60°, it lies on its back.
+"""
+
 
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:
     """Compute the observables of a state; complex states give complex values."""
@@ -66,6 +71,15 @@ def outward_normal_lift(state: State) -> FloatArray:
     """Vertical part (2,) of the boards' outward unit normals; positive points up."""
     lift: FloatArray = state.board_rotations[:, 2, 1] * OUTWARD
     return lift
+
+
+def fallen_boards(state: State) -> tuple[bool, bool]:
+    """True for each board, port first, that has fallen on its face or lies on its back."""
+    port, starboard = outward_normal_lift(state)
+    return (
+        not COLLAPSED_NORMAL < port < LYING_NORMAL,
+        not COLLAPSED_NORMAL < starboard < LYING_NORMAL,
+    )
 
 
 def highest_point(model: GearModel, state: State) -> float:

@@ -21,7 +21,13 @@ from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
-from trawl_ros.nodes.towing import DEFAULT_START, CommandedTow, TowSetup, commanded_tow
+from trawl_ros.nodes.towing import (
+    DEFAULT_START,
+    CommandedTow,
+    TowSetup,
+    commanded_tow,
+    fallen_sides,
+)
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -130,6 +136,7 @@ class SimNode(TrawlNode):
             'wanted speed': f'{command.speed:g}',
             'wanted rate of turn': f'{command.turn_rate:g}',
             'waits for': ', '.join(missing),
+            'fallen boards': fallen_sides(self._tow.simulation),
         }
         if self._scenario is not None:
             values['step'] = self._scenario.step_at(self._tow.time_s).name
@@ -147,6 +154,8 @@ class SimNode(TrawlNode):
         if stalled := self._consumers.stalled():
             names = ', '.join(stalled)
             return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'
+        if fallen := fallen_sides(self._tow.simulation):
+            return WARN, f'board fallen: {fallen}; towed on, expected more speed or less warp'
         if self._paused:
             return OK, 'paused'
         if self._pacer.lost_s > 0.0:

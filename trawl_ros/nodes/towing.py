@@ -8,7 +8,8 @@ from trawl_ros.core.errors import NoSteadyState, ScenarioError
 from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet, effects_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.records.truth import Truth
+from trawl_ros.model.observables import fallen_boards
+from trawl_ros.records.truth import SIDES, Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import NANOSECONDS, Simulation
@@ -19,6 +20,12 @@ DEFAULT_START = (500.0, 2.0)
 
 OTHER_STARTS = ((500.0, 2.2), (400.0, 2.3), (300.0, 2.3))
 """Tried in this order where the gear cannot be towed at the default."""
+
+
+def fallen_sides(simulation: Simulation) -> str:
+    """Return the sides whose boards have fallen, in words; '' for none."""
+    fallen = fallen_boards(simulation.now.motion.state)
+    return ' and '.join(side for side, lies in zip(SIDES, fallen, strict=True) if lies)
 
 
 class TowSetup(Protocol):

@@ -23,8 +23,8 @@ PRESSURE = 1000.0
 """Load across a bar per area (Pa) with which a shape is sought: about three times that of the
 water on netting that is towed at 2 m/s at 20° to its bars."""
 
-LIMIT = 300
-"""Iterations after which a rough shape is given up."""
+COARSE_LIMIT, LIMIT = 100, 300
+"""Iterations after which a rough shape is given up, of the coarsest net and of finer ones."""
 
 ROUGH = 1.0
 """Force (N) left at which the load is lowered further."""
@@ -88,7 +88,8 @@ def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int
         if residual > ROUGH:
             return state, spent, residual
         state = carried_over(coarse, state, model)
-    state, more, residual = relax(loose, state, tow, tolerance=ROUGH, time_step=1.0, limit=LIMIT)
+    limit = LIMIT if coarse else COARSE_LIMIT
+    state, more, residual = relax(loose, state, tow, tolerance=ROUGH, time_step=1.0, limit=limit)
     return state, spent + more, residual
 
 

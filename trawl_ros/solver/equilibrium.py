@@ -9,7 +9,12 @@ from trawl_ros.effects.base.effect import Situation, sense
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import highest_point, observe, outward_normal_lift
+from trawl_ros.model.observables import (
+    COLLAPSED_NORMAL,
+    highest_point,
+    observe,
+    outward_normal_lift,
+)
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.cold_start import cold_start
@@ -26,9 +31,6 @@ from trawl_ros.solver.relax import (
     relax,
 )
 from trawl_ros.solver.stability import Stability, stability
-
-COLLAPSED_NORMAL = -0.35
-"""Vertical part of a board's outward normal below which it has fallen on its face."""
 
 FAR = 0.3
 """Part of the warps' length from which a change is drifted through rather than leapt over, which

@@ -9,9 +9,8 @@ from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, with
 from trawl_ros.lab.validation.branches.continuation import SAME, Answer
 from trawl_ros.lab.validation.branches.lattices import Lattice
 from trawl_ros.model.board_law import LAW_RANGE
-from trawl_ros.model.observables import outward_normal_lift
+from trawl_ros.model.observables import COLLAPSED_NORMAL, outward_normal_lift
 from trawl_ros.records.observables import Observables
-from trawl_ros.solver.equilibrium import COLLAPSED_NORMAL
 
 PATIENCE = 10.0
 """Longest CPU time (s) an answer may take."""

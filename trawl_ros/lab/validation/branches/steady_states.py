@@ -24,8 +24,9 @@ from trawl_ros.lab.validation.branches.lattices import (
 from trawl_ros.lab.validation.branches.maps import LOOKS, angle_figure, speed_figure
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import COLLAPSED_NORMAL
 from trawl_ros.report.pictures import Drawing
-from trawl_ros.solver.equilibrium import COLLAPSED_NORMAL, Equilibrium, find_equilibrium
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.relax import relax
 

@@ -1,0 +1,1 @@
+"""Robustness of the model: changed gears, and hours of random commands."""
