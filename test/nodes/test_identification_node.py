@@ -103,7 +103,7 @@ def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_facto
 
 def test_before_any_sample_it_says_what_is_needed(session):
     assert session.before.level == WARN
-    assert 'winch/joint_states (no readings)' in session.before.message
+    assert 'no readings on winch/joint_states, ' in session.before.message
 
 
 def test_a_window_brings_estimate_covariance_status_and_innovation(session):

@@ -290,8 +290,8 @@ def _missing(there: set[str], namespace: str) -> dict[str, tuple[str, ...]]:
 
 def _words(profiles: tuple[Qos, ...]) -> str:
     """Describe the offered QoS, e.g. ``reliable, volatile, last 100``."""
-    said = dict.fromkeys(describe_qos(profile) for profile in profiles)
-    return '; '.join(said)
+    profiles_in_words = dict.fromkeys(describe_qos(profile) for profile in profiles)
+    return '; '.join(profiles_in_words)
 
 
 def describe_qos(profile: Qos) -> str:

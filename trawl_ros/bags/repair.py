@@ -177,13 +177,13 @@ class _Damaged:
         self, file: McapFile, on_progress: OnProgress = ignore
     ) -> Iterator[tuple[Definition, Stored]]:
         """Yield the readable messages of a file, each with the definition of its topic."""
-        said = file.definitions
+        definitions = file.definitions
         stated = self._metadata.offered() if self._metadata else {}
         left_out: Counter[str] = Counter()
         begin: int | None = None
         for stored in file.messages():
             topic, time = stored.topic, stored.message.log_time
-            definition = self._types.setdefault(topic, said[topic])
+            definition = self._types.setdefault(topic, definitions[topic])
             if not stored.type or stored.type != definition.type:
                 left_out[topic] += 1
                 continue

@@ -81,13 +81,13 @@ def info_as_json(bag: Bag, summary: BagSummary) -> str:
         }
         for seen in summary.topics
     ]
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         **asdict(summary),
         'path': str(summary.path),
         'topics': topics,
         'custom_data': bag.custom_data,
     }
-    return json.dumps(told, indent=2)
+    return json.dumps(record, indent=2)
 
 
 def print_check(check: BagCheck, console: Console) -> None:
@@ -115,8 +115,8 @@ def print_check(check: BagCheck, console: Console) -> None:
     console.print(table)
     for group, names in check.missing.items():
         if names:
-            told = 'all' if len(names) == len(GROUPS[group]) else ', '.join(names)
-            console.print(escape(f'Not in it of {group}: {told}'), soft_wrap=True)
+            missing = 'all' if len(names) == len(GROUPS[group]) else ', '.join(names)
+            console.print(escape(f'Not in it of {group}: {missing}'), soft_wrap=True)
     for finding in check.findings:
         where = f'{finding.topic} ' if finding.topic else ''
         console.print(escape(f'Found ({finding.kind}): {where}{finding.text}'), soft_wrap=True)
@@ -126,5 +126,5 @@ def print_check(check: BagCheck, console: Console) -> None:
 
 def check_as_json(check: BagCheck) -> str:
     """Return the check of a bag as JSON; times in ns, sizes in bytes."""
-    told = {'sound': check.sound, **asdict(check), 'path': str(check.path)}
-    return json.dumps(told, indent=2)
+    record = {'sound': check.sound, **asdict(check), 'path': str(check.path)}
+    return json.dumps(record, indent=2)

@@ -158,10 +158,10 @@ def _connected(address: str) -> Client:
         return Client(address, timeout=PATIENCE_S, set_as_default=False)
     except Exception as reason:
         # Errors of Dask here are of many kinds; none of them is this program's fault.
-        said = str(reason).splitlines()[:1] or [type(reason).__name__]
+        first_line = str(reason).splitlines()[:1] or [type(reason).__name__]
         raise TrawlError(
-            f'{address}: no Dask scheduler answers there ({said[0]}), expected an address such as '
-            'tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured with'
+            f'{address}: no Dask scheduler answers there ({first_line[0]}), expected an address '
+            'such as tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured with'
         ) from reason
     finally:
         log.setLevel(before)

@@ -138,10 +138,10 @@ def validated(
     except ValidationError as reason:
         lines = validation_messages(cls, data, reason.errors(include_url=False), prefix)
         more = len(lines) - MAX_COMPLAINTS
-        told = [f'{path}: {line}' for line in lines[:MAX_COMPLAINTS]]
+        messages = [f'{path}: {line}' for line in lines[:MAX_COMPLAINTS]]
         if more > 0:
-            told.append(f'{path}: and {more} more like these')
-        raise error('\n'.join(told)) from reason
+            messages.append(f'{path}: and {more} more like these')
+        raise error('\n'.join(messages)) from reason
 
 
 _SURROGATE = re.compile('[\ud800-\udfff]')

@@ -100,10 +100,10 @@ def validation_messages(
         if kind == 'extra_forbidden' or (kind == 'missing' and key in explained):
             continue
         if kind == 'value_error':
-            said = detail['msg'].removeprefix('Value error, ')
+            message = detail['msg'].removeprefix('Value error, ')
             # A record's own check starts with the key below the record that it is about.
-            own = not key or _OWN_KEY.match(said)
-            lines.append(_join(key, said) if own else f'{key}: {said}')
+            own = not key or _OWN_KEY.match(message)
+            lines.append(_join(key, message) if own else f'{key}: {message}')
         elif not _other_branch(detail, errors):
             found = 'missing' if kind == 'missing' else f'found {shown(detail["input"])}'
             unit = unit_of(next((s for s in reversed(loc) if isinstance(s, str)), ''))

@@ -43,7 +43,7 @@ def changes(seen: ScoreTest) -> tuple[Where, ...]:
     least = float(-ndtri(0.5 * CHANCE / len(jumps)))
     usual = evidence(seen.fit, seen.shapes, np.ones(len(seen.patterns)), weights=seen.weights)
     together = {name: usual.chi2(block) for name, block in blocks_of(seen.patterns, 0).items()}
-    told = []
+    located = []
     for name in channels:
         places = [place for place, jump in enumerate(jumps) if jump[0] == name]
         best = max(places, key=lambda place: abs(z[place]))
@@ -51,8 +51,8 @@ def changes(seen: ScoreTest) -> tuple[Where, ...]:
             tow, hours = jumps[best][2]
             way = 'up' if z[best] > 0.0 else 'down'
             region = f'jumps {way} in tow {tow + 1} after {hours:.1f} h'
-            told.append(Where(name, TIME, region, float(z[best])))
-    return tuple(sorted(told, key=lambda where: -abs(where.z)))
+            located.append(Where(name, TIME, region, float(z[best])))
+    return tuple(sorted(located, key=lambda where: -abs(where.z)))
 
 
 def _time(part: Linearised) -> tuple[int, float]:

@@ -28,9 +28,9 @@ def wrong_unit(
 
 def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, ...]:
     """Sentences on tows whose log gives speed over ground."""
-    judge, told = OverGround(), {}
+    judge, sentences = OverGround(), {}
     for window in sorted(windows, key=lambda one: (one.tow, one.start_ns)):
         found = judge.judge(window.tow, window.track)
         if found is not None:
-            told[window.tow] = f'{tows[window.tow]}: {found}.'
-    return tuple(told.values())
+            sentences[window.tow] = f'{tows[window.tow]}: {found}.'
+    return tuple(sentences.values())

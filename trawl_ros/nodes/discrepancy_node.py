@@ -129,21 +129,23 @@ class DiscrepancyNode(TrawlNode):
         found, trouble = self._outcome.diagnosis, self._outcome.trouble
         if found is None:
             found = unread(self._gear, (), trouble or 'no steady window has been heard')
-        said = f'{found.verdict}: {headline(found)}'
+        sentence = f'{found.verdict}: {headline(found)}'
         if self._folder is not None:
             # Figures bring matplotlib, which the node needs at its end only.
             from trawl_ros.diagnosis.report.writing import write_diagnosis
 
             write_diagnosis(found, (), self._folder)
-            said = f'{self._folder}: {said}'
+            sentence = f'{self._folder}: {sentence}'
         if trouble:
-            said = f'the newest windows could not be diagnosed ({trouble}); before them: {said}'
-        return said, not trouble
+            sentence = (
+                f'the newest windows could not be diagnosed ({trouble}); before them: {sentence}'
+            )
+        return sentence, not trouble
 
     def _tell(self, written: tuple[str, bool]) -> None:
-        said, complete = written
+        sentence, complete = written
         log = self.get_logger()
-        (log.info if complete else log.warning)(said)
+        (log.info if complete else log.warning)(sentence)
 
     async def _finish(self, request: Any, response: Any) -> Any:
         self._take(self._finder.finish())

@@ -106,8 +106,8 @@ class InstrumentNode(TrawlNode, ABC):
             'incomplete instants': str(lost),
         }
         faults = self._panel.active()
-        said = f'{len(faults)} places have faults' if faults else 'no fault is on'
-        there = Status('faults', WARN if faults else OK, said, faults)
+        sentence = f'{len(faults)} places have faults' if faults else 'no fault is on'
+        there = Status('faults', WARN if faults else OK, sentence, faults)
         if lost:
             message = f'{lost} instants of truth were incomplete and gave no samples'
             return [Status('instruments', WARN, message, values), there]

@@ -109,8 +109,8 @@ def _below_keel(sentence: Any, mapping: NmeaMapping) -> float:
     if sentence.msgID == 'DPT':
         # Below zero, the offset is how far the keel is below the transducer; above, the waterline.
         offset = getattr(sentence, 'offset', '')
-        said = -offset if isinstance(offset, float) and offset < 0 else keel
-        return _number(sentence.depth) - said
+        depth_of_keel = -offset if isinstance(offset, float) and offset < 0 else keel
+        return _number(sentence.depth) - depth_of_keel
     for value, unit in (
         (sentence.depthm, 1.0),
         (sentence.depthf, FOOT),

@@ -34,11 +34,11 @@ class SentenceTimes:
 
     def hear(self, sentence: Any) -> int | None:
         """Update by a sentence; return its own stamp (ns), None if it has none."""
-        said = self._said(sentence)
-        if said is None:
+        stated = self._said(sentence)
+        if stated is None:
             return None
-        self._now = said
-        stamp = (said - _EPOCH) // timedelta(microseconds=1) * 1000
+        self._now = stated
+        stamp = (stated - _EPOCH) // timedelta(microseconds=1) * 1000
         if not self.moments or self.moments[-1] != stamp:
             self.moments.append(stamp)
         return stamp

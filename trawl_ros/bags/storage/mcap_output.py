@@ -93,13 +93,13 @@ class McapOutput:
             self._schemas[key] = number
             name, encoding, text = key
             self._descriptions.append(Schema(number, text, encoding, name))
-        said = {
+        described = {
             'offered_qos_profiles': definition.qos,
             'topic_type_hash': definition.type_hash,
         }
         schema, encoding = self._schemas[key], definition.message_encoding
-        number = self._mcap.register_channel(topic, encoding, schema, said)
-        self._descriptions.append(Channel(number, topic, encoding, said, schema))
+        number = self._mcap.register_channel(topic, encoding, schema, described)
+        self._descriptions.append(Channel(number, topic, encoding, described, schema))
         return number
 
     def _repeat_descriptions(self) -> None:

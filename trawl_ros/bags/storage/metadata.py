@@ -84,7 +84,7 @@ class BagMetadata(_Lenient):
     def stated(self) -> StatedTopics:
         """Give what is said of each topic, for files in which it was lost."""
         offered = self.offered()
-        said = [entry.topic_metadata for entry in self.topics_with_message_count]
+        entries = [entry.topic_metadata for entry in self.topics_with_message_count]
         topics = tuple(
             (
                 topic.name,
@@ -97,7 +97,7 @@ class BagMetadata(_Lenient):
                     type_hash=topic.type_description_hash,
                 ),
             )
-            for topic in said
+            for topic in entries
         )
         return StatedTopics(topics, len(self.relative_file_paths))
 

@@ -145,8 +145,8 @@ class Estimator:
             step = self._step(self.options.relinearise)
             if step.obstacle or step.needless:
                 break
-        said = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
-        return self._publish(innovation, False, step.obstacle or said)
+        reason = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
+        return self._publish(innovation, False, step.obstacle or reason)
 
     def finish(self) -> Estimate | None:
         """Iterate over all windows to convergence; None when no window can be used."""

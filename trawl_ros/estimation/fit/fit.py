@@ -230,7 +230,7 @@ class Fit:
         limit = huber / np.sqrt(np.maximum(shares, 1e-12))
         expected = shares * clipped_variance(limit)
         numbers = np.array([shares[:, group == GROUP_OF].sum() for group in range(len(GROUPS))])
-        told = np.array(
+        known = np.array(
             [
                 self.scales[group] ** 2 * clipped[:, columns].sum() / expected[:, columns].sum()
                 if numbers[group] > 0.0
@@ -239,7 +239,7 @@ class Fit:
                 for columns in [group == GROUP_OF]
             ]
         )
-        common = (stated + numbers @ told) / (stated + numbers.sum())
+        common = (stated + numbers @ known) / (stated + numbers.sum())
         alike = self.options.alike_readings
-        pooled = (alike * common + numbers * told) / (alike + numbers)
+        pooled = (alike * common + numbers * known) / (alike + numbers)
         return replace(self, scales=tuple(np.maximum(np.sqrt(pooled), LEAST_SCALE).tolist()))

@@ -129,11 +129,11 @@ class FullChain(TrawlNode):
         """Print how many messages were published, by full topic name, and what was not in time."""
         names = {absolute(topic.name, self.get_namespace()) for topic in TOPICS}
         counts = self.traffic.counts('published')
-        told = {
+        result = {
             'published': {name: counts[name] for name in sorted(names)},
             'behind_s': self._pacer.lost_s,
         }
-        print(json.dumps(told), flush=True)  # noqa: T201
+        print(json.dumps(result), flush=True)  # noqa: T201
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -89,9 +89,9 @@ def record(folder: Path, rate: float, seconds: float) -> Recorded:
             raise NodeFailed(f'full_chain: ended with code {done.returncode}: {done.stderr}')
         cpu_s = _cpu_s(processes.pids()[RECORDER])
         processes.stop(RECORDER)
-    told = json.loads(done.stdout)
+    result = json.loads(done.stdout)
     recorded = Counter(message.topic for message in Bag(bag).as_stored())
-    return Recorded(told['published'], recorded, told['behind_s'], cpu_s)
+    return Recorded(result['published'], recorded, result['behind_s'], cpu_s)
 
 
 def measure(small: bool) -> Findings:

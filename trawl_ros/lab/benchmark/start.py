@@ -151,9 +151,9 @@ def _start_s(processes: Processes, start: Start) -> float:
 def import_s(module: str) -> dict[str, float]:
     """Wall-clock time (s) that the import of a module takes in a new process, by package."""
     command = [sys.executable, '-X', 'importtime', '-c', f'import {module}']
-    said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    report = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     found: defaultdict[str, float] = defaultdict(float)
-    for line in said.splitlines():
+    for line in report.splitlines():
         own, _, rest = line.removeprefix('import time:').partition('|')
         if own.strip().isdigit():
             package = rest.partition('|')[2].strip().partition('.')[0]

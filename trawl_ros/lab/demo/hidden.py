@@ -58,11 +58,11 @@ class Commands:
             text=True,
         )
         self._running.append(process)
-        out, said = process.communicate()
+        out, errors = process.communicate()
         if process.returncode != expected:
             raise TrawlError(
                 f'{self._folder}: trawl {" ".join(words)} ended with {process.returncode}, '
-                f'expected {expected}: {(said or out).strip()}'
+                f'expected {expected}: {(errors or out).strip()}'
             )
         return out
 

@@ -119,9 +119,10 @@ def _refusals() -> Iterator[None]:
         # Its classes have no base in common; what the project's own code raises is a mistake there.
         if not frame.f_globals['__name__'].startswith('rclpy'):
             raise
-        said = SOURCE_PLACES.sub('', short(reason, REFUSAL_WIDTH))
+        refusal = SOURCE_PLACES.sub('', short(reason, REFUSAL_WIDTH))
         raise TrawlError(
-            f'ROS 2 refuses to start: {said}; expected arguments and environment as it takes them'
+            f'ROS 2 refuses to start: {refusal}; expected arguments and environment as it '
+            'takes them'
         ) from reason
 
 

@@ -153,8 +153,8 @@ class Attack:
 
     def _spin(self, timeout_s: float = 0.0) -> None:
         self._guard(lambda: self._executor.spin_once(timeout_sec=timeout_s))
-        said = max(len(status.message) for status in self._node.all_statuses())
-        self.tally.longest_report = max(self.tally.longest_report, said)
+        longest = max(len(status.message) for status in self._node.all_statuses())
+        self.tally.longest_report = max(self.tally.longest_report, longest)
 
     def _guard(self, act: Callable[[], Any]) -> None:
         try:

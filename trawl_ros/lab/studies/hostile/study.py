@@ -182,8 +182,8 @@ def _moved(context: Context, gear: str, stream: Stream, seed: int) -> Moved:
             attack.feed_mixed(share)
             node.finish_work()
             outcome = node._worker.outcome
-            told = node.traffic.total('refused') + sum(outcome.rejected.values())
-            found.append((outcome.estimate, told, sum(attack.tally.sent.values())))
+            refusals = node.traffic.total('refused') + sum(outcome.rejected.values())
+            found.append((outcome.estimate, refusals, sum(attack.tally.sent.values())))
     (calm, before, _), (stormy, after, sent) = found
     windows = (calm.windows if calm else 0, stormy.windows if stormy else 0)
     shift = float('nan')

@@ -200,8 +200,8 @@ class SonarStudy:
         parameters = self._parameters
         if case.told_sound_speed:
             depth = self._at_rest(case).net.headrope_depth
-            told = {'assumed_sound_speed_m_s': self._surroundings.sound_speed(depth)}
-            sweep = parameters.sweep.model_copy(update=told)
+            corrections = {'assumed_sound_speed_m_s': self._surroundings.sound_speed(depth)}
+            sweep = parameters.sweep.model_copy(update=corrections)
             parameters = parameters.model_copy(update={'sweep': sweep})
         return SonarInstruments(parameters, SeedPlan(seed), surroundings=self._surroundings)
 

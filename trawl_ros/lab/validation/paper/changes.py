@@ -70,14 +70,14 @@ class Changes:
     def against(self, agree: Callable[[str, float], bool], *quantities: str) -> tuple[float, str]:
         """Number of the six turns that agree, and the others with their changes."""
         odd = [turn for turn in self.turned if not agree(*turn)]
-        told = '; '.join(
+        sentence = '; '.join(
             f'{label(*turn)}: '
             + ', '.join(
                 f'{q.replace("_", " ")} {self.percent(q, *turn):+.2f} %' for q in quantities
             )
             for turn in odd
         )
-        return float(len(self.turned) - len(odd)), told
+        return float(len(self.turned) - len(odd)), sentence
 
 
 def label(name: str, turn: float) -> str:

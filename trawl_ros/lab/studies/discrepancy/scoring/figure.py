@@ -49,10 +49,10 @@ BARS = (
 
 def kind_of(trial: Scored, classes: Classes) -> str:
     """One of `KINDS`."""
-    said = verdict(trial)
-    if said in ('UNKNOWN', 'NOT_TESTABLE'):
-        return said
-    if said == 'NAMED':
+    answer = verdict(trial)
+    if answer in ('UNKNOWN', 'NOT_TESTABLE'):
+        return answer
+    if answer == 'NAMED':
         if both_named(trial, classes) or (effects_of(trial) and named_right(trial, classes)):
             return 'right name'
         if one_named(trial, classes):
@@ -61,7 +61,7 @@ def kind_of(trial: Scored, classes: Classes) -> str:
             return 'right name and another beside it'
         among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
         return 'several names, the right one among them' if among else 'wrong name'
-    if said == 'AMBIGUOUS':
+    if answer == 'AMBIGUOUS':
         among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
         return 'several names, ' + ('the right one among them' if among else 'all wrong')
     return 'no discrepancy seen'
@@ -107,18 +107,18 @@ def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
     if not hidden:
         axes.set_axis_off()
         return
-    said = [*hidden, 'several names', 'UNKNOWN', 'nothing seen']
-    counts = np.zeros((len(hidden), len(said)))
+    answers = [*hidden, 'several names', 'UNKNOWN', 'nothing seen']
+    counts = np.zeros((len(hidden), len(answers)))
     for trial in own:
         row = hidden.index(effects_of(trial)[0])
         found = verdict(trial)
         if found == 'NAMED':
             first = said_of(trial)['effects'][0]['name']
             name = hidden[row] if right(trial, names_of(trial), classes) else first
-            column = said.index(name) if name in said else said.index('several names')
+            column = answers.index(name) if name in answers else answers.index('several names')
         else:
             words = {'AMBIGUOUS': 'several names', 'UNKNOWN': 'UNKNOWN'}
-            column = said.index(words.get(found, 'nothing seen'))
+            column = answers.index(words.get(found, 'nothing seen'))
         counts[row, column] += 1.0
     totals = np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
     axes.imshow(100.0 * counts / totals, cmap='Greens', vmin=0.0, vmax=100.0, aspect='auto')
@@ -127,7 +127,7 @@ def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
             dark = count > 0.6 * totals[row, 0]
             axes.text(column, row, f'{count:.0f}', ha='center', va='center',
                       color='white' if dark else 'black', fontsize=9)  # fmt: skip
-    axes.set_xticks(range(len(said)), [name.replace('_', ' ') for name in said], rotation=60,
+    axes.set_xticks(range(len(answers)), [name.replace('_', ' ') for name in answers], rotation=60,
                     ha='right')  # fmt: skip
     axes.set_yticks(range(len(hidden)), [name.replace('_', ' ') for name in hidden])
     axes.set_xlabel('what was said (trials at 3 and 6 times)')

@@ -25,9 +25,11 @@ def rate(
         return MeasuredValue(what, np.nan, '%', between(least, most), 'no trials')
     count, number = sum(outcomes), len(outcomes)
     ends = binomtest(count, number).proportion_ci(method='exact')
-    said = f'{count} of {number}; {note or EXACT}'
+    counted = f'{count} of {number}; {note or EXACT}'
     low, high = 100.0 * ends.low, 100.0 * ends.high
-    return MeasuredValue(what, 100.0 * count / number, '%', between(least, most), said, low, high)
+    return MeasuredValue(
+        what, 100.0 * count / number, '%', between(least, most), counted, low, high
+    )
 
 
 def median(

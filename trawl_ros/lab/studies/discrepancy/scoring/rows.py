@@ -57,7 +57,7 @@ def clean_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
 def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Detection and naming of effects in the catalogue."""
     inside = chosen(trials, 'inside')
-    said = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
+    decided = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
     third = chosen(trials, 'inside', 3.0)
     sizes = [
         1
@@ -88,7 +88,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         ),
         rate(
             'truth within the set that is reported',
-            [right(t, reported(t), classes) for t in said],
+            [right(t, reported(t), classes) for t in decided],
             least=98.0,
             note='of trials NAMED or AMBIGUOUS',
         ),
@@ -167,12 +167,12 @@ def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]
     """Tows so much alike that effects are too, and the proposed next tow."""
     poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
     alone = [trial for trial in poor if verdict(trial) == 'NAMED' and len(reported(trial)) == 1]
-    said = [trial for trial in poor if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
+    decided = [trial for trial in poor if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
     return [
         rate('too poor a trial: a single name, and a wrong one',
              [trial in alone and not right(trial, names_of(trial), classes) for trial in poor]),
         rate('too poor a trial: truth within the set that is reported',
-             [right(trial, reported(trial), classes) for trial in said]),
+             [right(trial, reported(trial), classes) for trial in decided]),
         rate('the proposed tow parts what could not be told apart', [parted(t) for t in followed],
              least=80.0, note='of poor trials with several names, or a class, and a proposal'),
     ]  # fmt: skip
