@@ -96,7 +96,9 @@ def _dimensions(axes: Axes, height: float, width: float) -> list[Artist]:
     return drawn
 
 
-def seen(image: SonarImageSample, scan: SonarScanSample, pixels: int) -> np.ma.MaskedArray:
+def seen(
+    image: SonarImageSample, scan: SonarScanSample, pixels: int
+) -> np.ma.MaskedArray[tuple[int, ...], np.dtype[np.uint8]]:
     """Lay a sweep out in its plane.
 
     Parameters

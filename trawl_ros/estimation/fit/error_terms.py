@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector, nuisance
@@ -161,8 +161,8 @@ class TowErrors:
         Change by one std of each of `Scheme.model_errors`.
     """
 
-    rows: FloatArray
-    present: FloatArray
+    rows: IntArray
+    present: BoolArray
     noise: FloatArray
     numbers: FloatArray
     inputs: FloatArray

@@ -149,7 +149,7 @@ def _solved(
     for tow, weight in zip(tows, weights, strict=True):
         std = np.where(tow.present, tow.noise * scales, 1.0)
         roots = _roots(tow, std, weight)
-        rows = np.concatenate(
+        columns = np.concatenate(
             (
                 tow.calibration,
                 tow.model,
@@ -158,7 +158,8 @@ def _solved(
             ),
             axis=2,
         )
-        rows = np.linalg.solve(roots, rows).reshape(-1, rows.shape[2])
+        solved = np.asarray(np.linalg.solve(roots, columns), np.float64)
+        rows = solved.reshape(-1, columns.shape[2])
         p = tow.calibration.shape[2]
         triangle = _eliminated(rows, p)
         whitened.append((std, roots, triangle[:p]))

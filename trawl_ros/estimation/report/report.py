@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -127,7 +127,7 @@ class Report:
         return np.array([[window.means[name] for name in INPUTS] for window in self.windows])
 
     @property
-    def tow_of(self) -> FloatArray:
+    def tow_of(self) -> IntArray:
         """Number of the tow (n,) of each window."""
         return np.array([window.tow for window in self.windows])
 

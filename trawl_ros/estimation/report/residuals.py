@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
@@ -32,8 +32,8 @@ class ChannelResiduals:
 
     channel: str
     unit: str
-    windows: FloatArray
-    tows: FloatArray
+    windows: IntArray
+    tows: IntArray
     values: FloatArray
     stds: FloatArray
 

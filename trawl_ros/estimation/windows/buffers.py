@@ -5,7 +5,7 @@ from bisect import bisect_left
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, StampArray
 from trawl_ros.estimation.windows.records import Rejections
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import NANO
@@ -94,7 +94,7 @@ class ChannelBuffer:
             self._drop_before(self._stamps[CAPACITY // 10])
         return True
 
-    def window(self, start_ns: int, end_ns: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def window(self, start_ns: int, end_ns: int) -> tuple[StampArray, FloatArray, FloatArray]:
         """Stamps (n,) in ns, values (n,) and stated std (n,) for a window's start and end (ns)."""
         first = bisect_left(self._stamps, start_ns - self.delay)
         last = bisect_left(self._stamps, end_ns - self.delay)

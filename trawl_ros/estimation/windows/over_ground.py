@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, StampArray
 from trawl_ros.estimation.windows.statistics import circular_median
 
-Series = tuple[FloatArray, FloatArray]
+Series = tuple[StampArray, FloatArray]
 """Stamps (n,) in ns and values (n,)."""
 
 PAIRED_NS = 600_000_000

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import ByteArray, FloatArray
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 
 
@@ -36,7 +36,7 @@ class Receiver:
         """Apparent cross-section (m²) of sound of a level (dB re 1 µPa) at ranges (m)."""
         return power(level - self.source_level + self.gain(ranges))
 
-    def brightness(self, strength: FloatArray, gain: float) -> FloatArray:
+    def brightness(self, strength: FloatArray, gain: float) -> ByteArray:
         """Image (uint8) of cross-sections (m²), with an excess ``gain`` (dB)."""
         level = 10 * np.log10(np.maximum(strength, np.finfo(float).tiny)) + gain
         share = (level - self.black) / (self.white - self.black)

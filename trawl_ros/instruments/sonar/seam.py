@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 
 REACH = 14
 """A line goes on at most so many cells nearer or further in the next beam."""
@@ -14,7 +14,7 @@ ENOUGH = 25.0
 """An echo counts no more for being brighter than this, dB: a fish outshines no row of ropes."""
 
 
-def follow(level: FloatArray) -> FloatArray:
+def follow(level: FloatArray) -> IntArray:
     """Find the line along which the sum of levels is largest.
 
     By dynamic programming, row by row; a line may pass through rows without an echo.
