@@ -37,4 +37,6 @@ def fused(function: Callable[Given, Result]) -> Compiled[Result]:
 def alike(*arrays: FloatArray) -> list[FloatArray]:
     """Arrays of one kind, all real or all complex, as compiled loops take them."""
     kind = complex if 'c' in [array.dtype.kind for array in arrays] else float
-    return [np.ascontiguousarray(array, kind) for array in arrays]
+    rows = [np.ascontiguousarray(array, kind) for array in arrays]
+    # A loop would be compiled once more for an array that cannot be written to.
+    return [row if row.flags.writeable else row.copy() for row in rows]
