@@ -45,6 +45,7 @@ help:
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
 	@echo 'make lint       style, types and layers only'
+	@echo 'make coverage   the tests of make test, and how much of the package they run'
 	@echo 'make docs       build the site of guides and reference: $(SITE)/'
 	@echo 'make promises   run every command of the documents and write docs/promises.md'
 	@echo 'make lock       choose the newest allowed versions anew and write requirements.lock'
@@ -71,6 +72,9 @@ promises: $(VENV)/ready
 
 fuzz: $(VENV)/ready
 	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json
+
+coverage: $(VENV)/ready
+	@$(PYTEST) -m 'not slow' --cov --cov-report=term:skip-covered
 
 docs: $(VENV)/ready
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir $(SITE)
