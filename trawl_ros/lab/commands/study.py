@@ -1,5 +1,7 @@
 """``trawl study``: what takes long to find out, measured and reported."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
@@ -70,18 +72,12 @@ def soak(out: Path, force: bool, hours: float, gear: str, real_time_s: float, co
     is missed is part of the report. Ctrl-C ends the tow early, and the report says so.
     """
     load_gear(gear)
+    plan = SoakPlan(hours, gear, real_time_s, coarse=coarse)
     empty_folder(out, force=force)
-    with Interruption() as interruption, ProgressDisplay(error_console()) as display:
-        seen = run_soak(
-            SoakPlan(hours, gear, real_time_s, coarse=coarse),
-            out,
-            display,
-            lambda: interruption.requested,
-        )
-        rows = write_soak(out, seen)
-    print_outcome(rows, out / REPORT)
-    if interruption.requested:
-        raise SystemExit(INTERRUPTED)
+    with _until_stopped() as stopped:
+        with ProgressDisplay(error_console()) as display:
+            rows = write_soak(out, run_soak(plan, out, display, stopped))
+        print_outcome(rows, out / REPORT)
 
 
 @command.command('chaos')
@@ -101,18 +97,12 @@ def chaos(out: Path, force: bool, hours: float, kills: int, seed: int, gear: str
     missed is part of the report. Ctrl-C ends it early, and the report says so.
     """
     load_gear(gear)
+    plan = ChaosPlan(hours, kills, seed, gear)
     empty_folder(out, force=force)
-    with Interruption() as interruption, ProgressDisplay(error_console()) as display:
-        seen = run_chaos(
-            ChaosPlan(hours, kills, seed, gear),
-            out,
-            display,
-            lambda: interruption.requested,
-        )
-        rows = write_chaos(out, seen)
-    print_outcome(rows, out / CHAOS_REPORT)
-    if interruption.requested:
-        raise SystemExit(INTERRUPTED)
+    with _until_stopped() as stopped:
+        with ProgressDisplay(error_console()) as display:
+            rows = write_chaos(out, run_chaos(plan, out, display, stopped))
+        print_outcome(rows, out / CHAOS_REPORT)
 
 
 @command.command('sonar')
@@ -288,7 +278,7 @@ def discrepancy(
 
 @command.command('robustness')
 @click.option('--out', required=True, type=FOLDER, help='Folder of the report and of the trials.')
-@click.option('--gear', default='kaifuha', show_default=True, help='Gear file or name.')
+@GEAR_OPTION
 @click.option('--around', default=RobustnessPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the net.')  # fmt: skip
 @click.option('--hours', default=RobustnessPlan.hours, show_default=True,
@@ -321,3 +311,12 @@ def robustness(
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         trials = run_robustness(plan, out, display)
     print_outcome(write_robustness(out, trials), out / ROBUSTNESS_REPORT)
+
+
+@contextmanager
+def _until_stopped() -> Iterator[Callable[[], bool]]:
+    """Let Ctrl-C end a tow early, and the command once its report is written."""
+    with Interruption() as interruption:
+        yield lambda: interruption.requested
+    if interruption.requested:
+        raise SystemExit(INTERRUPTED)
