@@ -101,12 +101,7 @@ def _eta(changes: Changes) -> list[Claim]:
             'IV.C, Fig. 12',
             'the lower α reduces C_x^M, which weakens the change of δ',
             MeasuredValue(
-                'change of C_x^M, η +5°',
-                rolling,
-                '%',
-                at_most(0.0),
-                weak,
-                key='eta_rolling',
+                'change of C_x^M, η +5°', rolling, '%', at_most(0.0), weak, key='eta_rolling'
             ),
         ),
     ]
