@@ -91,10 +91,10 @@ def trim(
     >>> import trawl_ros
     >>> found = trawl_ros.trim(
     ...     trawl_ros.build_model(trawl_ros.load_gear('kaifuha')),
-    ...     attack=math.radians(20.0), inclination=math.radians(10.0), warp_length=500.0, speed=2.1,
+    ...     attack=math.radians(22.0), inclination=math.radians(15.0), warp_length=500.0, speed=2.1,
     ... )
     >>> round(math.degrees(found.steady.observables.port_attack), 3)
-    20.0
+    22.0
     """
     point = OperatingPoint(warp_length, warp_length, speed)
     tow = steady_tow(model, point)
