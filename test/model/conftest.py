@@ -8,7 +8,7 @@ import pytest
 
 from trawl_ros.model.assembly import points_of
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import rotation
+from trawl_ros.model.rotations import rotation
 from trawl_ros.model.state import State, Tow
 from trawl_ros.model.water import Water
 from trawl_ros.solver.first_guess import first_guess

@@ -17,7 +17,8 @@ from trawl_ros.model.board import (
 )
 from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_board
-from trawl_ros.model.numerics import STEP, about_axis, rotation
+from trawl_ros.model.numerics import STEP
+from trawl_ros.model.rotations import about_axis, rotation
 from trawl_ros.model.water import Water
 
 DENSITY = 1025.0

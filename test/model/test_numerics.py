@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from trawl_ros.model.numerics import STEP, angle, distance, length, rotation, skew
+from trawl_ros.model.numerics import STEP, angle, distance, length, skew
+from trawl_ros.model.rotations import rotation
 
 
 @pytest.mark.parametrize('size', [0.0, 1e-9, 1e-4, 1.1e-4, 0.3, 3.1, 10.0])

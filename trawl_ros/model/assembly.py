@@ -20,7 +20,8 @@ from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarMotion, Chosen
 from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
-from trawl_ros.model.numerics import STEP, cross, outer, rotation, skew
+from trawl_ros.model.numerics import STEP, cross, outer, skew
+from trawl_ros.model.rotations import rotation
 from trawl_ros.model.state import State, Tow
 
 

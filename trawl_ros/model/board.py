@@ -21,7 +21,8 @@ from trawl_ros.model.board_law import (
 )
 from trawl_ros.model.compiled import alike
 from trawl_ros.model.hooks import CoefficientModifier
-from trawl_ros.model.numerics import about_axis, angle, transpose
+from trawl_ros.model.numerics import angle, transpose
+from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.water import Water
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.numerics import rotation
+from trawl_ros.model.rotations import rotation
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import block_forces, forces, linearised
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_model
-from trawl_ros.model.numerics import STEP, about_axis
+from trawl_ros.model.numerics import STEP
+from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.factor import factorised
 

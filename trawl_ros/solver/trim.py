@@ -14,8 +14,9 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import STEP, about_axis
+from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
+from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.factor import factorised_part

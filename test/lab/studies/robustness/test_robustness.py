@@ -14,8 +14,8 @@ from trawl_ros.lab.studies.robustness.random_commands import commanded_hour
 from trawl_ros.lab.studies.robustness.report import write_robustness
 from trawl_ros.lab.studies.robustness.study import RobustnessPlan, kept, run_robustness
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import about_axis
 from trawl_ros.model.observables import fallen_boards
+from trawl_ros.model.rotations import about_axis
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 
 

@@ -10,7 +10,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.lab.validation.branches.continuation import SAME, distance
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import about_axis
+from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint

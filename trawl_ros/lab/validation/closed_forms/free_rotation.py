@@ -13,7 +13,7 @@ from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import order
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import rotation
+from trawl_ros.model.rotations import rotation
 from trawl_ros.model.state import State, Tow
 from trawl_ros.model.water import Water
 from trawl_ros.report.pictures import Drawing

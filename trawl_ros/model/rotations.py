@@ -1,0 +1,44 @@
+"""Rotation matrices of rotation vectors, compiled."""
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.model.compiled import alike, compiled
+
+
+def rotation(vector: FloatArray) -> FloatArray:
+    """Rotation matrix of a rotation vector (Rodrigues), shape (..., 3) -> (..., 3, 3)."""
+    (flat,) = alike(vector.reshape(-1, 3))
+    matrices = np.empty((len(flat), 3, 3), flat.dtype)
+    _fill_rotations(flat, matrices)
+    return matrices.reshape(*vector.shape, 3)
+
+
+@compiled
+def _fill_rotations(vectors: FloatArray, matrices: FloatArray) -> None:
+    for n in range(len(vectors)):
+        a, b, c = vectors[n, 0], vectors[n, 1], vectors[n, 2]
+        square = a * a + b * b + c * c
+        if square.real < 1e-8:
+            sine = 1 - square / 6 + square**2 / 120
+            versine = 0.5 - square / 24
+        else:
+            size = np.sqrt(square)
+            sine, versine = np.sin(size) / size, (1 - np.cos(size)) / square
+        for i in range(3):
+            for j in range(3):
+                matrices[n, i, j] = versine * vectors[n, i] * vectors[n, j]
+            matrices[n, i, i] += 1 - versine * square
+        matrices[n, 2, 1] += sine * a
+        matrices[n, 1, 2] -= sine * a
+        matrices[n, 0, 2] += sine * b
+        matrices[n, 2, 0] -= sine * b
+        matrices[n, 1, 0] += sine * c
+        matrices[n, 0, 1] -= sine * c
+
+
+def about_axis(axis: int, radians: float) -> FloatArray:
+    """Rotation matrix about a coordinate axis (0, 1, 2)."""
+    vector = np.zeros(3)
+    vector[axis] = radians
+    return rotation(vector)
