@@ -89,3 +89,13 @@ def test_boards_that_lie_over_are_told_with_their_last_state(default_model: Gear
 def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearModel) -> None:
     with pytest.raises(NoSteadyState, match='heave of one board against the other grows'):
         steady_state(default_model, 300.0, 1.7)
+
+
+def test_boards_that_do_not_stay_upright_are_told_with_the_moments_on_them(
+    model: GearModel,
+) -> None:
+    # The warp pulls behind the centre of pressure, which turns the leading edge outward.
+    behind = model.with_board(points=model.board.points - [[0.5, 0.0, 0.0], [0.0] * 3, [0.0] * 3])
+    with pytest.raises(NoSteadyState, match=r'turned by .* and \d+\.\d kN m outward') as lost:
+        steady_state(behind, 500.0, 2.1)
+    assert lost.value.reason == 'no balance'

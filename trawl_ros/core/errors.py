@@ -7,7 +7,14 @@ from traceback import format_exception
 from typing import Literal
 
 Refusal = Literal[
-    'none found', 'fold', 'lift lost', 'collapsed', 'surfaced', 'outside law', 'unstable'
+    'none found',
+    'no balance',
+    'fold',
+    'lift lost',
+    'collapsed',
+    'surfaced',
+    'outside law',
+    'unstable',
 ]
 """Reasons why there is no usable steady state."""
 

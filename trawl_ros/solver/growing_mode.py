@@ -38,7 +38,7 @@ def growing_mode(model: GearModel, state: State, tow: Tow, eigenvalue: complex) 
     boards = shape[3 * count :].reshape(2, 2, 3) @ turn.T
     boards = (boards * [[1.0], [METRES_PER_RADIAN]]).reshape(2, 6)
     if np.abs(boards).max() < nodes[model.layout.net].max():
-        name = 'the netting'
+        name = 'a motion of the netting'
     else:
         kind = int(np.argmax(np.abs(boards).max(axis=0)))
         even = np.abs(boards[0] + MIRROR * boards[1]).max()

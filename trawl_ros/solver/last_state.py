@@ -10,16 +10,23 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.model.assembly import board_loads
+from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.observables import outward_normal_lift
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.cold_start import cold_start
+from trawl_ros.solver.cold_start import COARSE_LIMIT, PRESSURE, bowed, cold_start
 from trawl_ros.solver.continuation import BranchPoint, branch
+from trawl_ros.solver.first_guess import ATTACK, LEAN, first_guess
 from trawl_ros.solver.growing_mode import growing_mode
 from trawl_ros.solver.modes import linearised_motion
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
-from trawl_ros.solver.relax import TOLERANCE, WARM_LIMIT, WARM_TIME_STEP, relax
+from trawl_ros.solver.relax import (
+    TOLERANCE,
+    WARM_LIMIT,
+    WARM_TIME_STEP,
+    relax,
+    without_attitude,
+)
 from trawl_ros.solver.stability import stability
 
 USUAL = 2.1
@@ -36,6 +43,9 @@ MOST = 60
 
 LYING = np.sin(np.radians(50.0))
 """Vertical part of a board's outward normal from which it lies over."""
+
+HELD_TOLERANCE = 1000.0
+"""Force (N) left at which the shape of a gear with held boards is good enough."""
 
 AT_REST = 1e-3
 """Point (1/s) around which the eigenvalue that vanishes in a fold is sought."""
@@ -61,8 +71,36 @@ def followed(model: GearModel, point: OperatingPoint, where: str) -> State:
         if residual <= TOLERANCE and np.abs(outward_normal_lift(state)).max() < LYING:
             return _followed(model, point, where, speed, state)
         tried.append(f'{speed:.2g}')
+    if unbalanced := _imbalance(model, point):
+        speeds = ' or '.join(tried)
+        raise NoSteadyState(
+            f'{where}: boards do not stay upright, nor at {speeds} m/s: {unbalanced}', 'no balance'
+        )
     raise NoSteadyState(
         f'{where}: no steady state found, nor one with upright boards at {" or ".join(tried)} m/s'
+    )
+
+
+def _imbalance(model: GearModel, point: OperatingPoint) -> str:
+    """Moments that turn boards which are held upright, in words; '' where no shape is found."""
+    tow = steady_tow(model, point)
+    loose = bowed(model, PRESSURE)
+    state, _, residual = relax(
+        loose,
+        first_guess(model, tow, point.heading),
+        tow,
+        tolerance=HELD_TOLERANCE,
+        time_step=2.0,
+        free=without_attitude(model),
+        limit=COARSE_LIMIT,
+    )
+    if residual > HELD_TOLERANCE:
+        return ''
+    port = forces(loose, state, tow)[3 * model.nodes :].reshape(2, 6)[0]
+    roll, pitch, yaw = state.board_rotations[0].T @ port[3:] / 1000.0
+    return (
+        f'held at {np.degrees(ATTACK):.0f}° of attack and {np.degrees(LEAN):.0f}° of lean each is '
+        f'turned by {roll:.1f} kN m upward, {pitch:.1f} kN m nose down and {yaw:.1f} kN m outward'
     )
 
 

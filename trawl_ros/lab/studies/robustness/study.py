@@ -72,6 +72,9 @@ def run_robustness(
     done = {trial.name for trial in kept(folder) if trial.around == plan.around}
     names = [name for k, name in enumerate(_names(plan, gear)) if k % plan.shards == plan.shard - 1]
     began = time.monotonic()
+    if set(names) - done:
+        # What is compiled at first use is no time of a trial.
+        verdict(gear, next(numbers(gear)), 1.0, LENGTHS[0])
     file = folder / f'trials_{plan.shard}_of_{plan.shards}.jsonl'
     for number, name in enumerate(names):
         if time.monotonic() - began > plan.seconds:

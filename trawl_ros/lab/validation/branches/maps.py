@@ -19,6 +19,7 @@ LOOKS: dict[Verdict, tuple[str, str]] = {
     'collapsed': ('#8c6d5a', 'refused: collapsed'),
     'fold': ('#fb8072', 'refused: beyond a fold'),
     'lift lost': ('#bebada', 'refused: boards lie over'),
+    'no balance': ('#bdbdbd', 'refused: boards do not stay upright'),
     'none found': ('#d9d9d9', 'refused: none found'),
 }
 """Colour and name of each verdict."""
