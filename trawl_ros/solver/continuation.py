@@ -63,9 +63,8 @@ def branch(family: Family, value: float, state: State, *, scale: float) -> Itera
     model, tow = family(value)
     weights = _weights(model)
     state = at_velocity(state, tow.block_velocities.mean(0))
-    along, rate = _tangent(family, value, state, scale, weights)
-    if rate < 0.0:
-        along, rate = -along, -rate
+    _, factor = _factor(family, value, state)
+    along, rate = _tangent(factor, family, value, state, scale, weights)
     step = 0.25 * LONGEST
     yield BranchPoint(value, model, tow, state, rate)
     while step >= SHORTEST:
@@ -73,9 +72,9 @@ def branch(family: Family, value: float, state: State, *, scale: float) -> Itera
         if found is None:
             step *= 0.5
             continue
-        value, state, spent = found
+        value, state, factor, spent = found
         model, tow = family(value)
-        ahead, turning = _tangent(family, value, state, scale, weights)
+        ahead, turning = _tangent(factor, family, value, state, scale, weights)
         sign = np.sign(weights @ (ahead * along) + turning * rate)
         along, rate = sign * ahead, float(sign * turning)
         yield BranchPoint(value, model, tow, state, rate)
@@ -107,10 +106,9 @@ def _factor(family: Family, value: float, state: State) -> tuple[FloatArray, Fac
 
 
 def _tangent(
-    family: Family, value: float, state: State, scale: float, weights: FloatArray
+    factor: Factor, family: Family, value: float, state: State, scale: float, weights: FloatArray
 ) -> tuple[FloatArray, float]:
     """Unit tangent of the branch: of the shape (dof,), and of the parameter in its scale."""
-    _, factor = _factor(family, value, state)
     along = factor.solve(_push(family, value, state, scale))
     size = float(np.sqrt(weights @ along**2 + 1.0))
     return along / size, 1.0 / size
@@ -124,8 +122,10 @@ def _corrected(
     step: float,
     scale: float,
     weights: FloatArray,
-) -> tuple[float, State, int] | None:
-    """A step along the tangent, and Newton's steps across it back to the branch."""
+) -> tuple[float, State, Factor, int] | None:
+    """A step along the tangent, and Newton's steps across it back to the branch: the point there,
+    with the factors of K and the number of Newton's steps; None where they do not come to rest.
+    """
     along, rate = tangent
     state, value = state.moved(step * along), value + step * rate * scale
     for spent in range(ITERATIONS + 1):
@@ -135,7 +135,7 @@ def _corrected(
             return None
         if np.abs(force).max() < TOLERANCE:
             _, tow = family(value)
-            return value, at_velocity(state, tow.block_velocities.mean(0)), spent
+            return value, at_velocity(state, tow.block_velocities.mean(0)), factor, spent
         both = factor.solve(np.column_stack([force, _push(family, value, state, scale)]))
         across, with_value = weights * along @ both
         change = -across / (with_value + rate)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.robustness.changed_values import changed, numbers, verdict
 from trawl_ros.lab.studies.robustness.random_commands import commanded_hour
@@ -57,16 +58,26 @@ def test_a_board_on_its_face_or_back_has_fallen(
 
 
 def test_it_resumes_with_what_is_not_kept_yet(tmp_path: Path) -> None:
-    plan = RobustnessPlan(around=12, hours=0, lengths=(500.0,), shards=40)
-    first = run_robustness(replace(plan, seconds=0.5), tmp_path, lambda progress: None)
-    assert first
+    plan = RobustnessPlan(around=12, hours=0, lengths=(500.0,), shards=60)
+
+    def stopping(progress: WorkProgress) -> None:
+        if progress.done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_robustness(plan, tmp_path, stopping)
+    first = kept(tmp_path)
+    assert len(first) == 2
     # A line that a killed study left without its end is not counted.
     (path,) = tmp_path.glob('trials_*.jsonl')
     path.write_text(path.read_text() + '{"part": ')
     assert kept(tmp_path) == first
-    write_robustness(tmp_path, first)
+    whole = run_robustness(plan, tmp_path, lambda progress: None)
+    assert whole[:2] == first
+    assert len({trial.name for trial in whole}) == len(whole) > 2
+    write_robustness(tmp_path, whole)
     counted = json.loads((tmp_path / 'robustness.json').read_text())['trials']
-    assert len(counted) == len(first)
+    assert len(counted) == len(whole)
     path.write_text('[]\n')
     with pytest.raises(TrawlError, match='line 1 is not a trial'):
         kept(tmp_path)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import appending, made_folder
+from trawl_ros.core.files import appending, made_folder, write_text
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -71,11 +71,14 @@ def run_robustness(
     gear = gear.model_copy(update={'netting': netting})
     done = {trial.name for trial in kept(folder) if trial.around == plan.around}
     names = [name for k, name in enumerate(_names(plan, gear)) if k % plan.shards == plan.shard - 1]
-    began = time.monotonic()
     if set(names) - done:
         # What is compiled at first use is no time of a trial.
         verdict(gear, next(numbers(gear)), 1.0, LENGTHS[0])
+    began = time.monotonic()
     file = folder / f'trials_{plan.shard}_of_{plan.shards}.jsonl'
+    if file.is_file() and not (text := file.read_text(encoding='utf-8')).endswith('\n'):
+        # A study that was killed may leave a line without its end.
+        write_text(file, text[: text.rfind('\n') + 1])
     for number, name in enumerate(names):
         if time.monotonic() - began > plan.seconds:
             break
@@ -92,7 +95,7 @@ def kept(folder: Path) -> list[RobustnessTrial]:
     """Return the trials kept in a folder, of all shards."""
     trials = []
     for path in sorted(folder.glob('trials_*.jsonl')):
-        # A study that was killed may leave a line without its end.
+        # What follows the last end of a line is a trial cut short.
         for number, line in enumerate(path.read_text(encoding='utf-8').split('\n')[:-1], 1):
             try:
                 trials.append(RobustnessTrial(**json.loads(line)))
