@@ -16,6 +16,9 @@ MOTIONS = 'surge', 'sway', 'heave', 'roll', 'pitch', 'yaw'
 METRES_PER_RADIAN = 10.0
 """Move of a board or node that counts as much as a turn of a board by one radian."""
 
+TOGETHER = 0.3
+"""Share of its largest motion from which half of the net's nodes move as one."""
+
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 """Signs of a board's move and turn in its mirror image."""
 
@@ -37,8 +40,10 @@ def growing_mode(model: GearModel, state: State, tow: Tow, eigenvalue: complex) 
     nodes = np.abs(shape[: 3 * count].reshape(count, 3)).max(axis=1)
     boards = shape[3 * count :].reshape(2, 2, 3) @ turn.T
     boards = (boards * [[1.0], [METRES_PER_RADIAN]]).reshape(2, 6)
-    if np.abs(boards).max() < nodes[model.layout.net].max():
-        name = 'a motion of the netting'
+    net = nodes[model.layout.net]
+    if np.abs(boards).max() < net.max():
+        together = np.median(net) > TOGETHER * net.max()
+        name = 'a motion of the whole net' if together else 'a flutter of netting'
     else:
         kind = int(np.argmax(np.abs(boards).max(axis=0)))
         even = np.abs(boards[0] + MIRROR * boards[1]).max()
