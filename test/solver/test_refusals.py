@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.model.gear_model import GearModel
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stability import stability
@@ -99,3 +100,13 @@ def test_boards_that_do_not_stay_upright_are_told_with_the_moments_on_them(
     with pytest.raises(NoSteadyState, match=r'turned by .* and \d+\.\d kN m outward') as lost:
         steady_state(behind, 500.0, 2.1)
     assert lost.value.reason == 'no balance'
+
+
+def test_a_gear_whose_boards_lie_on_their_backs_is_refused_though_it_is_stable(
+    gear: GearRecord,
+) -> None:
+    coarse = gear.netting.model_copy(update={'around': 12})
+    fallen = build_model(gear.model_copy(update={'netting': coarse}))
+    with pytest.raises(NoSteadyState) as refusal:
+        steady_state(fallen, 500.0, 1.6)
+    assert refusal.value.reason in {'collapsed', 'lift lost'}

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.model.gear_model import GearModel
+from trawl_ros.gear.records import EffectRecord, GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import steady_state
 from trawl_ros.solver.trim import trim
 
@@ -36,3 +37,12 @@ def test_impossible_angles_are_refused(model: GearModel) -> None:
             warp_length=500.0,
             speed=2.1,
         )
+
+
+def test_effects_of_the_gear_file_act_while_points_are_sought(gear: GearRecord) -> None:
+    drag = EffectRecord(name='net_drag', values={'factor': 1.2})
+    model = build_model(gear.model_copy(update={'effects': (drag,)}))
+    wanted = {'attack': np.radians(20.0), 'inclination': np.radians(14.0)}
+    seen = trim(model, **wanted, warp_length=500.0, speed=2.1).steady.observables
+    assert seen.port_attack == pytest.approx(wanted['attack'], abs=1e-4)
+    assert seen.port_inclination == pytest.approx(wanted['inclination'], abs=1e-4)

@@ -150,6 +150,8 @@ def _kite_nodes(
 def _bar(
     a: int, b: int, rest: float, sums: dict[str, float], pressure: float, group: str
 ) -> NetBar:
+    # Netting of hardly any circumference has no twine.
+    sag = pressure * sums['width'] * rest / sums['stiffness'] if sums['stiffness'] else 0.0
     return NetBar(
         a,
         b,
@@ -158,7 +160,7 @@ def _bar(
         sums['area'] / rest,
         sums['volume'] / rest,
         sums['mass'] / rest,
-        (pressure * sums['width'] / (sums['stiffness'] / rest)) ** 2 / 24.0,
+        sag**2 / 24.0,
         group,
     )
 

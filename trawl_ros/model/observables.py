@@ -10,9 +10,9 @@ from trawl_ros.model.numerics import angle, distance, length
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import Observables
 
-COLLAPSED_NORMAL, LYING_NORMAL = -0.35, 0.87
-"""Vertical parts of a board's outward normal: below the first it has fallen on its face, beyond the
-second, at 60°, it lies on its back.
+COLLAPSED_NORMAL, LYING_SPAN = -0.35, 0.5
+"""Vertical parts of a board's outward normal, below which it has fallen on its face, and of its
+span, below which, inclined by 60°, it lies on its back or hangs upside down.
 """
 
 
@@ -74,12 +74,10 @@ def outward_normal_lift(state: State) -> FloatArray:
 
 
 def fallen_boards(state: State) -> tuple[bool, bool]:
-    """True for each board, port first, that has fallen on its face or lies on its back."""
-    port, starboard = outward_normal_lift(state)
-    return (
-        not COLLAPSED_NORMAL < port < LYING_NORMAL,
-        not COLLAPSED_NORMAL < starboard < LYING_NORMAL,
-    )
+    """True for each board, port first, that lies on its face or back or hangs upside down."""
+    up = np.real(state.board_rotations[:, 2, 2])
+    port, starboard = (outward_normal_lift(state) < COLLAPSED_NORMAL) | (up < LYING_SPAN)
+    return bool(port), bool(starboard)
 
 
 def highest_point(model: GearModel, state: State) -> float:

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import BoolArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.first_guess import (
@@ -93,8 +94,22 @@ def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int
     return state, spent + more, residual
 
 
-def straightened(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
-    """Take the load of `bowed` away from a shape found with it."""
+def held_shape(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
+    """Find the shape of a gear whose boards keep the attitude that they have, as `relax` has it."""
+    free = without_attitude(model)
+    state, spent, residual = relax(
+        bowed(model, PRESSURE), state, tow, tolerance=ROUGH, time_step=2.0, free=free
+    )
+    if residual > ROUGH:
+        return state, spent, residual
+    state, more, residual = straightened(model, state, tow, free)
+    return state, spent + more, residual
+
+
+def straightened(
+    model: GearModel, state: State, tow: Tow, free: BoolArray | None = None
+) -> tuple[State, int, float]:
+    """Take the load of `bowed` away from a shape found with it; ``free`` as for `relax`."""
     pressure, fall, least, spent = PRESSURE, FALL, LEAST, 0
     while True:
         lower = pressure / fall
@@ -106,6 +121,7 @@ def straightened(model: GearModel, state: State, tow: Tow) -> tuple[State, int, 
             tow,
             tolerance=wanted,
             time_step=WARM_TIME_STEP,
+            free=free,
             limit=WARM_LIMIT,
         )
         spent += more

@@ -10,7 +10,7 @@ from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import (
-    COLLAPSED_NORMAL,
+    fallen_boards,
     highest_point,
     observe,
     outward_normal_lift,
@@ -107,7 +107,7 @@ def find_equilibrium(
     seen = observe(model, state, tow)
     attack = np.array([seen.port_attack, seen.starboard_attack])
     lift = outward_normal_lift(state)
-    if lift.min() < COLLAPSED_NORMAL or attack.min() < 0.0:
+    if any(fallen_boards(state)) or attack.min() < 0.0:
         angles = ', '.join(f'{np.degrees(a):.1f}' for a in attack)
         lean = ', '.join(f'{np.degrees(np.arcsin(up)):.1f}' for up in lift)
         raise NoSteadyState(
@@ -207,13 +207,21 @@ def steady_state(
     144 m apart, 102 m deep
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
+    model, point = with_effects(model, (port, starboard), speed, heading)
+    return require_usable(model, find_equilibrium(model, point, start, near=near))
+
+
+def with_effects(
+    model: GearModel, lengths: tuple[float, float], speed: float, heading: float = 0.0
+) -> tuple[GearModel, OperatingPoint]:
+    """Give gear and operating point with the effects of the gear's file, from what is shown."""
+    port, starboard = lengths
     effects = effects_of(model.gear)
     if effects:
         at = Situation((port, starboard, float(speed)), heading, sense(heading))
         port, starboard, speed = effects.apply_to_inputs(np.array(at.inputs), at)
         model = effects.gear(model, at)
-    point = OperatingPoint(float(port), float(starboard), float(speed), float(heading))
-    return require_usable(model, find_equilibrium(model, point, start, near=near))
+    return model, OperatingPoint(float(port), float(starboard), float(speed), float(heading))
 
 
 def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:

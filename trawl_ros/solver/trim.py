@@ -18,15 +18,20 @@ from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.equilibrium import SteadyState, steady_state
+from trawl_ros.solver.cold_start import held_shape
+from trawl_ros.solver.equilibrium import SteadyState, steady_state, with_effects
 from trawl_ros.solver.factor import factorised_part
 from trawl_ros.solver.first_guess import first_guess
-from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.relax import relax, without_attitude
 
 ITERATIONS = 30
 LIMIT = 0.3
 """Largest change of a coordinate in one iteration, m."""
+
+SHAPED, SHAPED_LIMIT = 50.0, 120
+"""Force left (N) at which a shape is near enough, and iterations in which it is found where no bars
+flip between slack and taut."""
 
 SETTLED = 1e-7
 """Change of a coordinate at which the points are found, m."""
@@ -69,6 +74,7 @@ def trim(
     ----------
     model
         The gear; its points are where the search starts, its installation angles are kept.
+        Effects of its gear file act.
     attack, inclination
         Wanted α and δ, rad; the outward normal leans up.
     pitch
@@ -97,9 +103,9 @@ def trim(
     >>> round(math.degrees(found.steady.observables.port_attack), 3)
     22.0
     """
-    point = OperatingPoint(warp_length, warp_length, speed)
-    tow = steady_tow(model, point)
-    state = first_guess(model, tow, point.heading)
+    acting, point = with_effects(model, (warp_length, warp_length), speed)
+    tow = steady_tow(acting, point)
+    state = first_guess(acting, tow, point.heading)
     # δ is the tilt of R_y(pitch) R_x(roll): cos δ = cos pitch cos roll.
     tilt = np.cos(inclination) / np.cos(pitch)
     if not -1.0 <= tilt <= 1.0:
@@ -108,7 +114,7 @@ def trim(
             f'pitch of {np.degrees(pitch):.1f}°, expected a smaller pitch'
         )
     roll = float(np.arccos(tilt))
-    found = _Search(model, state, tow)
+    found = _Search(acting, state, tow)
 
     def excess(yaw: float) -> float:
         found.balance(attitudes(yaw, pitch, roll))
@@ -118,7 +124,7 @@ def trim(
     yaw = brentq(excess, attack - 0.15, attack + 0.15, xtol=1e-6)
     found.balance(attitudes(yaw, pitch, roll))
     # The trimmed shape is the start: released, the boards stay where they were held.
-    trimmed = found.model
+    trimmed = model.with_board(points=found.model.board.points)
     return Trim(
         trimmed.board.points, trimmed, steady_state(trimmed, warp_length, speed, near=found.state)
     )
@@ -136,15 +142,13 @@ class _Search:
         """Change points and state until all forces and moments vanish at this attitude."""
         model, tow = self.origin, self.tow
         free = without_attitude(model)
+        held = replace(self.state, board_rotations=rotations)
         state, _, left = relax(
-            model,
-            replace(self.state, board_rotations=rotations),
-            tow,
-            tolerance=50.0,
-            time_step=2.0,
-            free=free,
+            model, held, tow, tolerance=SHAPED, time_step=2.0, free=free, limit=SHAPED_LIMIT
         )
-        if left > 50.0:
+        if left > SHAPED:
+            state, _, left = held_shape(model, held, tow)
+        if left > SHAPED:
             raise NoSteadyState(
                 'with the boards held at the wanted angles the gear finds no '
                 f'shape, {left:.3g} N left'

@@ -306,6 +306,7 @@ def robustness(
     Writes robustness.json, .md and .html. Trials that are in the folder already are not made
     again; shards may run side by side into one folder.
     """
+    empty_folder(out, force=True)
     lengths = lengths if values else ()
     plan = RobustnessPlan(gear, around, hours, lengths, *shard, 60.0 * minutes)
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
