@@ -168,8 +168,10 @@ def add_bar_blocks(
                     damping_data[slots[at]] += c[i, j]
                     at += 1
         else:
-            k_others[number - plain] = k
-            c_others[number - plain] = c
+            for i in range(6):
+                for j in range(6):
+                    k_others[number - plain, i, j] = k[i, j]
+                    c_others[number - plain, i, j] = c[i, j]
             for i in range(3):
                 start_force[number - plain, i] = force * along[i] + 0.5 * load[i]
 
@@ -207,4 +209,6 @@ def add_bar_masses(
                     data[slots[36 * number + 6 * i + j]] += matrix[i, j]
                     data[slots[36 * number + 6 * (3 + i) + 3 + j]] += matrix[i, j]
         else:
-            others[number - plain] = matrix
+            for i in range(3):
+                for j in range(3):
+                    others[number - plain, i, j] = matrix[i, j]

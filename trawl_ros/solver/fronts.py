@@ -64,16 +64,18 @@ def factorise(
         if not _eliminate(front, pivots, exchanged[first : first + pivots]):
             return False
         at = fronts[number, FACTORS]
-        factors[at : at + pivots * size] = flat[: pivots * size]
+        for k in range(pivots * size):
+            factors[at + k] = flat[k]
         at += pivots * size
-        lower = factors[at : at + pivots * edge].reshape(pivots, edge)
         for i in range(edge):
             for k in range(pivots):
-                lower[k, i] = front[pivots + i, k]
+                factors[at + k * edge + i] = front[pivots + i, k]
         last = front[pivots:, pivots:]
         if number + 1 < len(fronts) and fronts[number + 1, CHILDREN] == 0:
-            waiting[end : end + edge * edge].reshape(edge, edge)[:] = last
-            end += edge * edge
+            for i in range(edge):
+                for k in range(edge):
+                    waiting[end] = last[i, k]
+                    end += 1
             stack[held] = number
             held += 1
         first += pivots
@@ -96,8 +98,7 @@ def _add_rest(rest: FloatArray, rows: IntArray, front: FloatArray) -> None:
 def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
     """Eliminate the pivots of a front in place: L below its diagonal, U above, 1 / U on it."""
     size = len(front)
-    first = 0
-    while first < pivots:
+    for first in range(0, pivots, PANEL):
         last = min(first + PANEL, pivots)
         for k in range(first, last):
             best, chosen = EXCHANGE * abs(front[k, k]), k
@@ -126,7 +127,6 @@ def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
             _update_by_six(front, first)
         else:
             _update_by_three(front, first)
-        first = last
     return True
 
 
@@ -169,7 +169,7 @@ def solve(
     """Solve for right-hand sides (k, dof) with the factors, of which each part serves for all of
     them while it is at hand.
     """
-    inner, beyond = np.empty_like(rights), np.empty(fronts[:, SIZE].max(), rights.dtype)
+    inner, beyond = np.empty_like(rights), np.empty(len(order), rights.dtype)
     for right in range(len(rights)):
         for k in range(len(order)):
             inner[right, k] = rights[right, order[k]]
