@@ -169,7 +169,10 @@ def solve(
     """Solve for right-hand sides (k, dof) with the factors, of which each part serves for all of
     them while it is at hand.
     """
-    inner, beyond = np.empty_like(rights), np.empty(len(order), rights.dtype)
+    largest = 0
+    for number in range(len(fronts)):
+        largest = max(largest, fronts[number, SIZE])
+    inner, beyond = np.empty_like(rights), np.empty(largest, rights.dtype)
     for right in range(len(rights)):
         for k in range(len(order)):
             inner[right, k] = rights[right, order[k]]
