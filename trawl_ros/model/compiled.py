@@ -12,6 +12,9 @@ Given = ParamSpec('Given')
 Result = TypeVar('Result')
 Returned = TypeVar('Returned', covariant=True)
 
+# Calls from C, which nobody makes, would take a wrapper more; numba's types lack that option.
+OPTIONS = {'cache': True, 'error_model': 'numpy', 'no_cfunc_wrapper': True}
+
 
 class Compiled(Protocol[Returned]):
     """Compiled function: it takes arrays by their place, real or complex, of which its
@@ -25,13 +28,13 @@ class Compiled(Protocol[Returned]):
 
 def compiled(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile a function."""
-    return cast(Compiled[Result], njit(cache=True, error_model='numpy')(function))
+    return cast(Compiled[Result], njit(**OPTIONS)(function))  # type: ignore[call-overload]
 
 
 def fused(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile sums of products, which may be fused and taken in any order."""
-    options = {'contract', 'reassoc', 'nsz'}
-    return cast(Compiled[Result], njit(cache=True, error_model='numpy', fastmath=options)(function))
+    fastmath = {'contract', 'reassoc', 'nsz'}
+    return cast(Compiled[Result], njit(**OPTIONS, fastmath=fastmath)(function))  # type: ignore[call-overload]
 
 
 def alike(*arrays: FloatArray) -> list[FloatArray]:
