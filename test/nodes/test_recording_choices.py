@@ -4,6 +4,7 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+import numpy as np  # noqa: E402
 import yaml  # noqa: E402
 from mcap.reader import make_reader  # noqa: E402
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
@@ -16,9 +17,10 @@ from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
+from trawl_ros.nodes.runtime.credit import IDLE_S  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM  # noqa: E402
-from trawl_ros.records.samples import HeadingSample  # noqa: E402
+from trawl_ros.records.samples import HeadingSample, WinchSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -211,3 +213,21 @@ def test_diagnostics_by_another_clock_than_the_tow_do_not_tear_the_bag_apart(gra
         )
     recorder.finish_work()
     assert len(recorder._bag.files) == 1
+
+
+@pytest.mark.parametrize('truth', [False, True])
+def test_a_recorder_that_has_heard_readings_alone_is_not_waited_for(graph, tmp_path, truth):
+    recorder = graph.add(BagRecorder, output=str(tmp_path / 'bag'))
+    node = source(graph, {'vessel/heading': STREAM})
+    node.advertise('truth/winch')
+    graph.until(node.heard)
+    if truth:
+        winch = WinchSample(7 * SECOND, np.zeros(2), np.zeros(2), np.zeros(2))
+        node.send('truth/winch', sample_message(winch)[1])
+    node.tell('vessel/heading', 7 * SECOND)
+    graph.until(lambda: recorder._progress.stamp == 7 * SECOND)
+    graph.rest(1.5 * IDLE_S)
+    # Otherwise a simulation that has gone on meanwhile would wait for what never comes.
+    assert (recorder._progress.stamp > 7 * SECOND) is not truth
+    graph.remove(recorder)
+    graph.remove(node)

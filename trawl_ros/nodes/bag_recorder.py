@@ -89,7 +89,9 @@ class BagRecorder(TrawlNode):
             max_file_bytes=self.parameters['max_bag_size'],
             max_file_ns=round(self.parameters['max_bag_duration'] * SECOND),
         )
-        self._progress = ConsumerProgress(self)
+        # Started anew it may hear readings before truth, of which the rest went by meanwhile: the
+        # simulation would wait for it, and it for more truth.
+        self._progress = ConsumerProgress(self, idle=lambda: not self._hears_truth())
         # Topics that pace the progress: truth comes at every instant, markers now and then.
         self._pacing = {
             absolute(topic.name, namespace): topic.name for topic in TRUTH if topic.rate != 1.0
@@ -180,9 +182,12 @@ class BagRecorder(TrawlNode):
         if topic in self._pacing:
             heard = self._latest
             self._progress.done(min(heard[name] for name in self._pacing if name in heard))
-        elif not any(name in self._latest for name in self._pacing):
+        elif not self._hears_truth():
             # A reading may be older than one that came before it.
             self._progress.done(max(self._latest.values()))
+
+    def _hears_truth(self) -> bool:
+        return any(name in self._latest for name in self._pacing)
 
     def _look_after(self) -> None:
         if self._dirty:
