@@ -1,6 +1,7 @@
 """Compilation of loops, cached beside the module so that only the first start pays for it."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import ParamSpec, Protocol, TypeVar, cast
 
 import numpy as np
@@ -16,10 +17,19 @@ Returned = TypeVar('Returned', covariant=True)
 OPTIONS = {'cache': True, 'error_model': 'numpy', 'no_cfunc_wrapper': True}
 
 
+class CompileStats(Protocol):
+    """Statistics of numba: the folder of a function's cache."""
+
+    cache_path: str
+
+
 class Compiled(Protocol[Returned]):
     """Compiled function: it takes arrays by their place, real or complex, of which its
     annotations name the real ones.
     """
+
+    __name__: str
+    stats: CompileStats
 
     def __call__(self, *given: object) -> Returned:
         """Call it."""
@@ -35,6 +45,12 @@ def fused(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile sums of products, which may be fused and taken in any order."""
     fastmath = {'contract', 'reassoc', 'nsz'}
     return cast(Compiled[Result], njit(**OPTIONS, fastmath=fastmath)(function))  # type: ignore[call-overload]
+
+
+def is_cached(function: Compiled[object]) -> bool:
+    """True if a function was compiled on this machine before, as a rule by the first start."""
+    folder = Path(function.stats.cache_path)
+    return any(folder.glob(f'*.{function.__name__}-*.nbi'))
 
 
 def alike(*arrays: FloatArray) -> list[FloatArray]:
