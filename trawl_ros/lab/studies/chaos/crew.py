@@ -14,12 +14,14 @@ from trawl_ros.core.errors import BagError
 from trawl_ros.lab.running.chain import INSTRUMENTS, chain_parameters
 from trawl_ros.lab.running.processes import Processes
 from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION, RECORDER, SIMULATION
+from trawl_ros.records.topics import INSTRUMENTS as INSTRUMENT_TOPICS
 from trawl_ros.records.topics import absolute
 
 if TYPE_CHECKING:
     from trawl_ros.lab.running.journal_monitor import JournalMonitor
 
 TRUTH, IMAGE = absolute('truth/winch'), absolute('sonar/image')
+READINGS = {absolute(topic.name) for topic in INSTRUMENT_TOPICS}
 
 
 @dataclass(frozen=True)
@@ -117,14 +119,17 @@ def looked_into(recording: Recording, monitor: 'JournalMonitor') -> Recording:
     """Read a bag, repaired where that is needed, and compare its end with the received truth."""
     try:
         repaired = repair_bag(recording.path).out or recording.path
-        latest, messages, images = 0, 0, 0
+        latest, read, messages, images = 0, 0, 0, 0
         for message in Bag(repaired).as_stored():
             messages += 1
             images += message.topic == IMAGE
             if message.topic == TRUTH:
                 latest = max(latest, message.log_time)
+            elif message.topic in READINGS:
+                read = max(read, message.log_time)
     except BagError as reason:
         return replace(recording, problem=str(reason))
-    missed = monitor.first_after(latest)
+    # Killed soon after its start, a recorder may know those who read truth, and not yet truth.
+    missed = monitor.first_after(latest or read)
     lost_s = 0.0 if missed is None or not recording.ended else max(0.0, recording.ended - missed)
     return replace(recording, lost_s=lost_s, messages=messages, images=images)
