@@ -72,7 +72,7 @@ def run_robustness(
     done = {trial.name for trial in kept(folder) if trial.around == plan.around}
     names = [name for k, name in enumerate(_names(plan, gear)) if k % plan.shards == plan.shard - 1]
     if set(names) - done:
-        # What is compiled at first use is no time of a trial.
+        # Compiling at first use is no time of a trial.
         verdict(gear, next(numbers(gear)), 1.0, LENGTHS[0])
     began = time.monotonic()
     file = folder / f'trials_{plan.shard}_of_{plan.shards}.jsonl'
@@ -95,7 +95,7 @@ def kept(folder: Path) -> list[RobustnessTrial]:
     """Return the trials kept in a folder, of all shards."""
     trials = []
     for path in sorted(folder.glob('trials_*.jsonl')):
-        # What follows the last end of a line is a trial cut short.
+        # Text behind the last end of a line is a trial cut short.
         for number, line in enumerate(path.read_text(encoding='utf-8').split('\n')[:-1], 1):
             try:
                 trials.append(RobustnessTrial(**json.loads(line)))
