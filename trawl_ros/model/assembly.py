@@ -3,7 +3,8 @@
 `forces` is the whole right-hand side of eq. 15, 25 and 29 as a function of state, towing
 boundary and parameters; it accepts complex arguments. `linearised` gives the same
 forces with K = -∂F/∂q and C = -∂F/∂v on the model's sparsity pattern: bars analytically
-(`line.linearised`), boards and kite by the complex step, which is exact to rounding.
+(`bar.pull_slopes_at`, `bar.load_slopes_at`), boards and kite by the complex step, which is exact
+to rounding.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from trawl_ros.model.bar import between
 from trawl_ros.model.bar_pass import add_bar_blocks, add_bar_forces, add_bar_masses, water_of
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.line import BarMotion, Chosen
+from trawl_ros.model.line import BarMotion
 from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
 from trawl_ros.model.numerics import STEP, cross, outer, skew
 from trawl_ros.model.rotations import rotation
@@ -64,15 +65,14 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     )
 
 
-def motion_of(model: GearModel, points: Points, tow: Tow, chosen: Chosen = ...) -> BarMotion:
-    """Motion of all bars, or of the ``chosen`` ones."""
-    rest, rate = rest_lengths(model, tow)
-    ends = model.ends[chosen]
+def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
+    """Motion of all bars."""
+    ends = model.ends
     x, v = alike(points.positions, points.velocities)
     vector, stretching, velocity = np.empty((3, len(ends), 3), x.dtype)
     height = np.empty(len(ends), x.dtype)
     _motion(ends, x, v, vector, stretching, velocity, height)
-    return BarMotion(vector, stretching, velocity, height, rest[chosen], rate[chosen])
+    return BarMotion(vector, stretching, velocity, height, *rest_lengths(model, tow))
 
 
 @compiled
@@ -124,19 +124,6 @@ def kite_load(model: GearModel, state: State) -> FloatArray:
     return kite_physics.load(model.kite, front, rear, front_velocity, rear_velocity, model.water)
 
 
-def bar_end_forces(
-    model: GearModel, points: Points, tow: Tow, chosen: Chosen = ...
-) -> tuple[FloatArray, FloatArray]:
-    """Forces (m, 3) that bars put on the points at their two ends: pull and half the load."""
-    motion = motion_of(model, points, tow, chosen)
-    bars = model.bars.chosen(chosen)
-    force, along = line.tension(bars, motion)
-    load = line.drag(bars, motion, along, model.water)
-    load = load + line.weight(bars, motion, model.water)[:, None] * np.array([0, 0, 1.0])
-    pull = force[:, None] * along
-    return pull + 0.5 * load, -pull + 0.5 * load
-
-
 def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
     points = points_of(model, state, tow)
@@ -158,8 +145,18 @@ def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     With the half segment of load that a lumped line hangs on its fixed end, so that the
     tension at the block does not depend on how finely the warp is cut.
     """
-    top = model.layout.top_warp_bars
-    return bar_end_forces(model, points_of(model, state, tow), tow, top)[0]
+    top, points = model.layout.top_warp_bars, points_of(model, state, tow)
+    ends = model.ends[top].ravel()
+    x, v, rest, rate = alike(
+        points.positions[ends],
+        points.velocities[ends],
+        *(values[top] for values in rest_lengths(model, tow)),
+    )
+    bars, total = model.bars.chosen(top).columns, np.zeros_like(x)
+    add_bar_forces(
+        np.arange(len(ends)).reshape(-1, 2), x, v, rest, rate, bars, water_of(model.water), total
+    )
+    return total[0::2]
 
 
 def bar_tensions(model: GearModel, state: State, tow: Tow) -> FloatArray:

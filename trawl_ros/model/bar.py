@@ -1,8 +1,8 @@
 """One straight bar: pull, drag, added mass and their slopes (eq. 20-24, 26), compiled.
 
-`trawl_ros.model.line` has the same for arrays of bars, `trawl_ros.model.bar_pass` sums it up over a
-gear. Vectors are arrays (3,), some of them to be filled in; numbers are real, or complex for a
-complex step where no slopes are asked for.
+`trawl_ros.model.line` has tension and drag for arrays of bars, `trawl_ros.model.bar_pass` sums all
+of it up over a gear. Vectors are arrays (3,), some of them to be filled in; numbers are real, or
+complex for a complex step where no slopes are asked for.
 """
 
 import numpy as np
@@ -116,6 +116,12 @@ def drag_at(
     for i in range(3):
         normal = flow[i] - tangential * along[i]
         force[i] = across * normal + lengthwise * along[i]
+
+
+@compiled
+def weight_at(mass: float, volume: float, rest: float, density: float, gravity: float) -> float:
+    """Weight and buoyancy of a bar (eq. 28), up positive."""
+    return -gravity * (mass - density * volume) * rest
 
 
 @compiled

@@ -3,6 +3,9 @@
 Ends of bars are numbered as in `trawl_ros.model.gear_model`; properties of bars are
 `BarProperties.columns`, those of the water `water_of`. Slots are those of the pattern, 36 for each
 plain bar; the 6 × 6 blocks of the other bars are left to be turned and placed by the caller.
+
+Both loops over forces begin alike: a function for that beginning, which would be handed all these
+arrays, made `forces` take 1.8 times as long.
 """
 
 from typing import TypeAlias
@@ -17,6 +20,7 @@ from trawl_ros.model.bar import (
     mass_at,
     pull_slopes_at,
     tension_at,
+    weight_at,
 )
 from trawl_ros.model.compiled import compiled
 from trawl_ros.model.current import current_at
@@ -65,7 +69,7 @@ def add_bar_forces(
             flow[i] -= velocity[i]
         areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
         drag_at(areas[0], areas[1], rest[n], here, flow, along, load)
-        load[2] -= gravity * (mass[n] - here * volume[n]) * rest[n]
+        load[2] += weight_at(mass[n], volume[n], rest[n], here, gravity)
         for i in range(3):
             total[start, i] += force * along[i] + 0.5 * load[i]
             total[end, i] += 0.5 * load[i] - force * along[i]
@@ -145,7 +149,7 @@ def add_bar_blocks(
             for j in range(3):
                 by_height[i] -= load_by_velocity[i, j] * shear[j]
         by_height[2] -= gravity * gradient * volume[n] * rest[n]
-        load[2] -= gravity * (mass[n] - here * volume[n]) * rest[n]
+        load[2] += weight_at(mass[n], volume[n], rest[n], here, gravity)
         for i in range(3):
             total[start, i] += force * along[i] + 0.5 * load[i]
             total[end, i] += 0.5 * load[i] - force * along[i]

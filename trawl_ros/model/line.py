@@ -1,4 +1,4 @@
-"""Forces on straight bars of rope, warp or netting (eq. 20-24, 26, 28), and their slopes.
+"""Straight bars of rope, warp or netting: properties, motion, tension and drag (eq. 20-24).
 
 A numerical bar may stand for many real ones side by side; its stiffness, projected and
 wetted area and volume are their sums. All properties are per metre of unstretched length,
@@ -6,25 +6,13 @@ so that a warp may change its length.
 """
 
 from dataclasses import dataclass
-from types import EllipsisType
-from typing import TypeAlias
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.bar import (
-    drag_at,
-    load_slopes_at,
-    mass_at,
-    pull_slopes_at,
-    taut_at,
-    tension_at,
-)
+from trawl_ros.model.bar import drag_at, taut_at, tension_at
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.water import Water
-
-Chosen: TypeAlias = IntArray | EllipsisType
-"""Numbers of some bars, or all of them: an ellipsis."""
 
 
 @dataclass(frozen=True)
@@ -58,10 +46,8 @@ class BarProperties:
         """All properties in the order above."""
         return tuple(vars(self).values())
 
-    def chosen(self, bars: Chosen) -> 'BarProperties':
+    def chosen(self, bars: IntArray) -> 'BarProperties':
         """The properties of some of the bars."""
-        if isinstance(bars, EllipsisType):
-            return self
         return BarProperties(*(values[bars] for values in self.columns))
 
 
@@ -169,143 +155,3 @@ def _drag(
 ) -> None:
     for n in range(len(rest)):
         drag_at(normal_area[n], sliding_area[n], rest[n], density[n], flow[n], along[n], force[n])
-
-
-def weight(bars: BarProperties, motion: BarMotion, water: Water) -> FloatArray:
-    """Vertical force of weight and buoyancy (n,) in N, up positive (eq. 28)."""
-    net = bars.mass - water.density_at(motion.height) * bars.volume
-    return -water.gravity * net * motion.rest
-
-
-@dataclass(frozen=True)
-class BarSlopes:
-    """Derivatives of a bar's pull (tension times unit vector) and of its load (drag and
-    weight of the whole bar), each (n, 3, 3), and of the load by height, (n, 3).
-    """
-
-    pull: FloatArray
-    load: FloatArray
-    pull_by_vector: FloatArray
-    pull_by_stretching: FloatArray
-    load_by_vector: FloatArray
-    load_by_velocity: FloatArray
-    load_by_height: FloatArray
-
-
-def linearised(bars: BarProperties, motion: BarMotion, water: Water) -> BarSlopes:
-    """Pull, load and their exact derivatives."""
-    force, along = tension(bars, motion)
-    hydro = drag(bars, motion, along, water)
-    count = len(force)
-    by_vector, by_stretching, load_by_vector, load_by_velocity = np.empty((4, count, 3, 3))
-    _pull_slopes(
-        *alike(bars.stiffness, bars.damping_time, bars.bow, motion.vector, motion.stretching),
-        *alike(motion.rest, motion.rest_rate, force, along),
-        by_vector,
-        by_stretching,
-    )
-    density = water.density_at(motion.height)
-    _load_slopes(
-        *alike(bars.normal_drag * bars.normal_area, bars.friction * bars.wet_area, motion.rest),
-        *alike(density, water.current(motion.height) - motion.velocity, motion.vector, along),
-        load_by_vector,
-        load_by_velocity,
-    )
-    by_height = -np.einsum('nij,nj->ni', load_by_velocity, water.current_slope(motion.height))
-    by_height -= (water.density_gradient / density)[:, None] * hydro
-    by_height[:, 2] -= water.gravity * water.density_gradient * bars.volume * motion.rest
-    load = hydro
-    load[:, 2] += weight(bars, motion, water)
-    return BarSlopes(
-        pull=force[:, None] * along,
-        load=load,
-        pull_by_vector=by_vector,
-        pull_by_stretching=by_stretching,
-        load_by_vector=load_by_vector,
-        load_by_velocity=load_by_velocity,
-        load_by_height=by_height,
-    )
-
-
-@compiled
-def _pull_slopes(
-    stiffness: FloatArray,
-    damping_time: FloatArray,
-    bow: FloatArray,
-    vector: FloatArray,
-    stretching: FloatArray,
-    rest: FloatArray,
-    rest_rate: FloatArray,
-    force: FloatArray,
-    along: FloatArray,
-    by_vector: FloatArray,
-    by_stretching: FloatArray,
-) -> None:
-    for n in range(len(rest)):
-        pull_slopes_at(
-            stiffness[n],
-            damping_time[n],
-            bow[n],
-            vector[n],
-            stretching[n],
-            rest[n],
-            rest_rate[n],
-            force[n],
-            along[n],
-            by_vector[n],
-            by_stretching[n],
-        )
-
-
-@compiled
-def _load_slopes(
-    normal_area: FloatArray,
-    sliding_area: FloatArray,
-    rest: FloatArray,
-    density: FloatArray,
-    flow: FloatArray,
-    vector: FloatArray,
-    along: FloatArray,
-    by_vector: FloatArray,
-    by_velocity: FloatArray,
-) -> None:
-    for n in range(len(rest)):
-        load_slopes_at(
-            normal_area[n],
-            sliding_area[n],
-            rest[n],
-            density[n],
-            flow[n],
-            vector[n],
-            along[n],
-            by_vector[n],
-            by_velocity[n],
-        )
-
-
-def mass(bars: BarProperties, motion: BarMotion, water: Water) -> FloatArray:
-    """Mass and added mass of whole bars as matrices (n, 3, 3) in kg (eq. 25, 26)."""
-    displaced = water.density_at(motion.height) * bars.volume * motion.rest
-    matrices = np.empty((len(displaced), 3, 3))
-    _mass(
-        *alike(
-            bars.mass * motion.rest,
-            displaced * bars.added_normal,
-            displaced * bars.added_tangential,
-            motion.vector,
-        ),
-        matrices,
-    )
-    return matrices
-
-
-@compiled
-def _mass(
-    own: FloatArray,
-    normal: FloatArray,
-    tangential: FloatArray,
-    vector: FloatArray,
-    matrices: FloatArray,
-) -> None:
-    for n in range(len(own)):
-        mass_at(own[n], normal[n], tangential[n], vector[n], matrices[n])
