@@ -91,7 +91,7 @@ def test_examples_hold(name, folder, monkeypatch):
 
 def test_what_runs_on_a_ship_imports_no_lab():
     code = (
-        'import sys, trawl_ros.api, trawl_ros.cli.tow; '
+        'import sys, trawl_ros.api.tows, trawl_ros.api.trials, trawl_ros.cli.tow; '
         'print([name for name in sys.modules if name.startswith("trawl_ros.lab")])'
     )
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)

@@ -15,7 +15,8 @@ from trawl_ros.core.version import __version__ as __version__
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 if TYPE_CHECKING:
-    from trawl_ros.api import TowedBag, diagnose, identify, plan_trial, read_bag, simulate, tow
+    from trawl_ros.api.tows import TowedBag, read_bag, simulate, tow
+    from trawl_ros.api.trials import diagnose, identify, plan_trial
     from trawl_ros.bags.check import check_bag
     from trawl_ros.bags.export import export_bag
     from trawl_ros.bags.logs.import_log import import_log
@@ -44,9 +45,8 @@ if TYPE_CHECKING:
     from trawl_ros.solver.trim import trim
 
 _MODULES = {
-    'trawl_ros.api': (
-        'TowedBag', 'diagnose', 'identify', 'plan_trial', 'read_bag', 'simulate', 'tow',
-    ),
+    'trawl_ros.api.tows': ('TowedBag', 'read_bag', 'simulate', 'tow'),
+    'trawl_ros.api.trials': ('diagnose', 'identify', 'plan_trial'),
     'trawl_ros.bags.check': ('check_bag',),
     'trawl_ros.bags.export': ('export_bag',),
     'trawl_ros.bags.logs.import_log': ('import_log',),

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from trawl_ros import api
+from trawl_ros.api import trials
 from trawl_ros.cli.options import (
     BAG,
     FOLDER,
@@ -54,7 +54,7 @@ def command(
     """
     console = error_console()
     with ProgressDisplay(console) as display:
-        found = api.diagnose(
+        found = trials.diagnose(
             bags,
             baseline=baseline,
             gear=gear,

@@ -85,7 +85,7 @@ def command(
     after it and what will not, beside the paper's sweep of warp lengths at one speed. With --out
     it writes the plan, a scenario that ``trawl tow`` can run, and a picture.
     """
-    from trawl_ros import api
+    from trawl_ros.api import trials
     from trawl_ros.estimation.planning.states import Limits
 
     limits = Limits(
@@ -95,7 +95,7 @@ def command(
         seabed=seabed_m,
     )
     with ProgressDisplay(error_console()) as display:
-        plan = api.plan_trial(
+        plan = trials.plan_trial(
             gear, hours=hours, limits=limits, out=out, force=force, on_progress=display
         )
     print_plan(plan)

@@ -7,7 +7,7 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from trawl_ros import api
+from trawl_ros.api import tows
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.options import BAG, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
@@ -21,7 +21,7 @@ def command(scenario: Path, out: Path) -> None:
     console = error_console()
     began = time.monotonic()
     with ProgressDisplay(console) as display, Interruption() as interruption:
-        bag = api.tow(scenario, out, stopped=lambda: interruption.requested, on_progress=display)
+        bag = tows.tow(scenario, out, stopped=lambda: interruption.requested, on_progress=display)
     _summarise(bag, time.monotonic() - began)
     if not bag.complete:
         console.print(
@@ -31,7 +31,7 @@ def command(scenario: Path, out: Path) -> None:
         raise SystemExit(INTERRUPTED)
 
 
-def _summarise(bag: api.TowedBag, elapsed_s: float) -> None:
+def _summarise(bag: tows.TowedBag, elapsed_s: float) -> None:
     table = Table(box=None, pad_edge=False)
     table.add_column('messages', justify='right')
     table.add_column('topic')

@@ -1,18 +1,11 @@
-"""The use cases of the package as functions: tow, simulate, identify, diagnose, plan, draw.
+"""Sea trials: identification and diagnosis from their bags, and the plan of a next one."""
 
-Commands and nodes are thin around them. Files are named as a user names them: a path, or the bare
-name of what comes with the package.
-"""
-
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from trawl_ros.bags.samples import SampleStream
-from trawl_ros.bags.writer import BagWriter
-from trawl_ros.core.errors import BagError, TrawlError
-from trawl_ros.core.files import empty_folder, new_folder
-from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import empty_folder
+from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.diagnosis import diagnosis
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.repair import source
@@ -28,13 +21,8 @@ from trawl_ros.estimation.report.report import Report, report
 from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.messages.cdr import serialize
-from trawl_ros.records.samples import Sample
-from trawl_ros.records.topics import NAMESPACE, absolute
-from trawl_ros.records.truth import Truth
-from trawl_ros.scenario.recording import recorded
-from trawl_ros.scenario.run import Trial
-from trawl_ros.scenario.scenario import load_scenario, true_coefficients
+from trawl_ros.records.topics import NAMESPACE
+from trawl_ros.scenario.scenario import true_coefficients
 
 DEFAULT_GEAR = 'kaifuha'
 
@@ -44,157 +32,6 @@ OnNote = Callable[[str], None]
 
 def _silent(sentence: str) -> None:
     """Take no notice of a sentence."""
-
-
-@dataclass(frozen=True)
-class TowedBag:
-    """A bag that `tow` wrote.
-
-    Attributes
-    ----------
-    path
-        Of the bag.
-    messages
-        Full topic name → number of messages.
-    duration_s, planned_s
-        Length of the tow, and of the scenario, s.
-    complete
-        True if the scenario was towed to its end.
-
-    Examples
-    --------
-    >>> import trawl_ros
-    >>> bag = trawl_ros.tow('tow.yaml', 'towed')
-    >>> bag.duration_s, bag.planned_s, bag.complete
-    (6.0, 6.0, True)
-    """
-
-    path: Path
-    messages: Mapping[str, int]
-    duration_s: float
-    planned_s: float
-    complete: bool
-
-
-def simulate(scenario: str | Path) -> Iterator[Truth]:
-    """Tow a scenario, without instruments and without a bag.
-
-    Parameters
-    ----------
-    scenario
-        A file, or the name of one that comes with the package.
-
-    Yields
-    ------
-    Truth
-        Doors, net, winches and ship at the scenario's ``truth_rate_hz``, SI units, ``map`` axes.
-
-    Raises
-    ------
-    ScenarioError
-        If the file is not in order, or the gear cannot be towed that way.
-    NoSteadyState
-        If the start is no usable steady state.
-
-    Examples
-    --------
-    >>> from itertools import islice
-    >>> import trawl_ros
-    >>> [round(truth.winches[0].length) for truth in islice(trawl_ros.simulate('tow.yaml'), 2)]
-    [300, 300]
-    """
-    trial = Trial(load_scenario(scenario))
-    while (truth := trial.step()) is not None:
-        yield truth
-
-
-def tow(
-    scenario: str | Path,
-    out: str | Path,
-    *,
-    stopped: Callable[[], bool] = lambda: False,
-    on_progress: OnProgress = ignore,
-) -> TowedBag:
-    """Tow a scenario and record what its instruments report: same seed, same bytes.
-
-    Parameters
-    ----------
-    scenario
-        A file, or the name of one that comes with the package.
-    out
-        Folder of the bag; must not exist yet.
-    stopped
-        Asked between two moments; where it says yes the bag ends there, whole.
-    on_progress
-        Called as the tow goes on.
-
-    Returns
-    -------
-    TowedBag
-        Its path, counts by topic, and how long was towed.
-
-    Raises
-    ------
-    BagError
-        If ``out`` exists, or cannot be written to.
-    ScenarioError, NoSteadyState
-        As in `simulate`.
-
-    Examples
-    --------
-    Six seconds on the coarse gear:
-
-    >>> import trawl_ros
-    >>> bag = trawl_ros.tow('tow.yaml', 'my_tow')
-    >>> bag.messages['/trawl/winch/joint_states']
-    13
-    """
-    out = new_folder(Path(out), BagError)
-    loaded = load_scenario(scenario)
-    on_progress(WorkProgress('looking for the steady states'))
-    trial = Trial(loaded)
-    interrupted = False
-    with BagWriter(out) as bag:
-        for stamp, messages in recorded(trial):
-            for topic, message in messages:
-                bag.write(absolute(topic), message.__msgtype__, serialize(message), stamp)
-            step = loaded.step_at(trial.time_s).name
-            on_progress(WorkProgress('towing', trial.time_s, trial.duration_s, 's', step))
-            if interrupted := stopped():
-                break
-    return TowedBag(out, dict(bag.counts), trial.time_s, trial.duration_s, not interrupted)
-
-
-def read_bag(bag: str | Path, *, namespace: str = NAMESPACE) -> Iterator[Sample]:
-    """Give the readings of a bag's instruments in the order of their log times.
-
-    Parameters
-    ----------
-    bag
-        Folder or file, MCAP or SQLite, of any ROS 2 distribution; it may be damaged.
-    namespace
-        Of the topics.
-
-    Yields
-    ------
-    Sample
-        A `WinchSample`, `PressureSample`, `RangeSample`, …, each with its ``stamp`` in ns, SI
-        units and radians.
-
-    Raises
-    ------
-    BagError
-        If the bag cannot be read, or a topic has two sources.
-
-    Examples
-    --------
-    >>> import trawl_ros
-    >>> samples = trawl_ros.read_bag('bags/sea_trial')
-    >>> type(next(samples)).__name__.endswith('Sample')
-    True
-    """
-    for _, sample in SampleStream([Path(bag)], namespace):
-        yield sample
 
 
 def identify(
