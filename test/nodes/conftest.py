@@ -146,8 +146,12 @@ def estimate_listener():
     """Give the class of a node that looks at what the identification says."""
     from trawl_ros.messages.diagnostics import read_statuses
     from trawl_ros.messages.estimates import read_covariance, read_estimate, read_innovations
+    from trawl_ros.nodes.playback.recorded_qos import matching
     from trawl_ros.nodes.runtime.node import TrawlNode
-    from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED
+    from trawl_ros.nodes.runtime.qos import CONSUMER
+
+    # Latched, and all that comes: two windows may be dealt with before it is its turn.
+    latched = matching((), CONSUMER)
 
     class EstimateListener(TrawlNode):
         def __init__(self, name='listener', **kwargs):
@@ -158,9 +162,9 @@ def estimate_listener():
             self.innovations = []
             self.reports = {}
             for topic, read, found, profile in (
-                ('estimate', read_estimate, self.estimates, LATCHED),
-                ('covariance', read_covariance, self.covariances, LATCHED),
-                ('status', read_statuses, self.summaries, LATCHED),
+                ('estimate', read_estimate, self.estimates, latched),
+                ('covariance', read_covariance, self.covariances, latched),
+                ('status', read_statuses, self.summaries, latched),
                 ('innovation', read_innovations, self.innovations, CONSUMER),
             ):
                 self.listen(f'identification/{topic}', self._keeper(read, found), profile)
