@@ -1,10 +1,11 @@
 """Records of a channel's errors in a file: one per unit, every key with its unit."""
 
 import math
-from typing import Annotated, ClassVar
+from collections.abc import Callable
+from typing import Annotated, ClassVar, TypeVar
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from trawl_ros.core.schema import Record
 from trawl_ros.instruments.errors.bursts import BurstModel
@@ -86,124 +87,73 @@ class ChannelErrors(Record):
         return self._given(kind) * self.si
 
 
+ErrorsT = TypeVar('ErrorsT', bound=ChannelErrors)
+
+
+def in_unit(unit: str, si: float = 1.0) -> Callable[[type[ErrorsT]], type[ErrorsT]]:
+    """Add the keys that end in a unit to a record of a channel's errors.
+
+    Parameters
+    ----------
+    unit
+        Last words of the keys.
+    si
+        The unit in that of the SI.
+    """
+    keys = {
+        f'noise_{unit}': (NotNegative, 0.0),
+        f'correlated_{unit}': (NotNegative, 0.0),
+        f'bias_per_state_{unit}': (NotNegative, 0.0),
+        f'resolution_{unit}': (NotNegative, 0.0),
+        f'offset_{unit}': (float, 0.0),
+        f'drift_{unit}_per_hour': (float, 0.0),
+        f'outlier_{unit}': (NotNegative, 0.0),
+        f'lowest_{unit}': (float, -math.inf),
+        f'highest_{unit}': (float, math.inf),
+        f'stated_std_{unit}': (NotNegative | None, None),
+    }
+
+    def with_keys(cls: type[ErrorsT]) -> type[ErrorsT]:
+        cls.unit, cls.si = unit, si
+        # Pydantic's options are keywords beside those of the fields, which mypy cannot tell apart.
+        model: type[ErrorsT] = create_model(  # type: ignore[call-overload]  # as said above
+            cls.__name__, __base__=cls, __doc__=cls.__doc__, __module__=cls.__module__, **keys
+        )
+        return model
+
+    return with_keys
+
+
+@in_unit('m')
 class LengthErrors(ChannelErrors):
     """Errors in metres."""
 
-    unit: ClassVar[str] = 'm'
 
-    noise_m: NotNegative = 0.0
-    correlated_m: NotNegative = 0.0
-    bias_per_state_m: NotNegative = 0.0
-    resolution_m: NotNegative = 0.0
-    offset_m: float = 0.0
-    drift_m_per_hour: float = 0.0
-    outlier_m: NotNegative = 0.0
-    lowest_m: float = -math.inf
-    highest_m: float = math.inf
-    stated_std_m: NotNegative | None = None
-
-
+@in_unit('m_s')
 class SpeedErrors(ChannelErrors):
     """Errors in metres per second."""
 
-    unit: ClassVar[str] = 'm_s'
 
-    noise_m_s: NotNegative = 0.0
-    correlated_m_s: NotNegative = 0.0
-    bias_per_state_m_s: NotNegative = 0.0
-    resolution_m_s: NotNegative = 0.0
-    offset_m_s: float = 0.0
-    drift_m_s_per_hour: float = 0.0
-    outlier_m_s: NotNegative = 0.0
-    lowest_m_s: float = -math.inf
-    highest_m_s: float = math.inf
-    stated_std_m_s: NotNegative | None = None
-
-
+@in_unit('kn', 1e3)
 class ForceErrors(ChannelErrors):
     """Errors in kilonewtons."""
 
-    unit: ClassVar[str] = 'kn'
-    si: ClassVar[float] = 1e3
 
-    noise_kn: NotNegative = 0.0
-    correlated_kn: NotNegative = 0.0
-    bias_per_state_kn: NotNegative = 0.0
-    resolution_kn: NotNegative = 0.0
-    offset_kn: float = 0.0
-    drift_kn_per_hour: float = 0.0
-    outlier_kn: NotNegative = 0.0
-    lowest_kn: float = -math.inf
-    highest_kn: float = math.inf
-    stated_std_kn: NotNegative | None = None
-
-
+@in_unit('kpa', 1e3)
 class PressureErrors(ChannelErrors):
     """Errors in kilopascals; 10 kPa is about a metre of water."""
 
-    unit: ClassVar[str] = 'kpa'
-    si: ClassVar[float] = 1e3
 
-    noise_kpa: NotNegative = 0.0
-    correlated_kpa: NotNegative = 0.0
-    bias_per_state_kpa: NotNegative = 0.0
-    resolution_kpa: NotNegative = 0.0
-    offset_kpa: float = 0.0
-    drift_kpa_per_hour: float = 0.0
-    outlier_kpa: NotNegative = 0.0
-    lowest_kpa: float = -math.inf
-    highest_kpa: float = math.inf
-    stated_std_kpa: NotNegative | None = None
-
-
+@in_unit('deg', np.pi / 180)
 class AngleErrors(ChannelErrors):
     """Errors in degrees."""
 
-    unit: ClassVar[str] = 'deg'
-    si: ClassVar[float] = np.pi / 180
 
-    noise_deg: NotNegative = 0.0
-    correlated_deg: NotNegative = 0.0
-    bias_per_state_deg: NotNegative = 0.0
-    resolution_deg: NotNegative = 0.0
-    offset_deg: float = 0.0
-    drift_deg_per_hour: float = 0.0
-    outlier_deg: NotNegative = 0.0
-    lowest_deg: float = -math.inf
-    highest_deg: float = math.inf
-    stated_std_deg: NotNegative | None = None
-
-
+@in_unit('deg_s', np.pi / 180)
 class TurnErrors(ChannelErrors):
     """Errors in degrees per second."""
 
-    unit: ClassVar[str] = 'deg_s'
-    si: ClassVar[float] = np.pi / 180
 
-    noise_deg_s: NotNegative = 0.0
-    correlated_deg_s: NotNegative = 0.0
-    bias_per_state_deg_s: NotNegative = 0.0
-    resolution_deg_s: NotNegative = 0.0
-    offset_deg_s: float = 0.0
-    drift_deg_s_per_hour: float = 0.0
-    outlier_deg_s: NotNegative = 0.0
-    lowest_deg_s: float = -math.inf
-    highest_deg_s: float = math.inf
-    stated_std_deg_s: NotNegative | None = None
-
-
+@in_unit('db')
 class LevelErrors(ChannelErrors):
     """Errors in decibels."""
-
-    unit: ClassVar[str] = 'db'
-
-    noise_db: NotNegative = 0.0
-    correlated_db: NotNegative = 0.0
-    bias_per_state_db: NotNegative = 0.0
-    resolution_db: NotNegative = 0.0
-    offset_db: float = 0.0
-    drift_db_per_hour: float = 0.0
-    outlier_db: NotNegative = 0.0
-    lowest_db: float = -math.inf
-    highest_db: float = math.inf
-    stated_std_db: NotNegative | None = None
