@@ -21,7 +21,7 @@ from trawl_ros.solver.stepper import StepFailed
 
 STEPS_S = (0.1, 0.2, 0.25, 0.4, 0.5, 1.0, 2.0)
 LIMIT = 0.01
-REAL_TIME, OVER_MOORDYN = 100.0, 5.0
+REAL_TIME, OVER_MOORDYN = 300.0, 5.0
 
 
 @dataclass(frozen=True)

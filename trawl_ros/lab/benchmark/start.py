@@ -1,4 +1,4 @@
-"""Start-up time of the nodes to their first message, and its share by imports."""
+"""Start-up time of the nodes to their first message, its share by imports, and their memory."""
 
 import math
 import os
@@ -7,11 +7,13 @@ import sys
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
+
+import psutil
 
 from trawl_ros.core.resources import share_path
 from trawl_ros.lab.benchmark.gears import default_gear
@@ -19,11 +21,12 @@ from trawl_ros.lab.benchmark.modules import without_ros
 from trawl_ros.lab.benchmark.timing import median_s
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.running.chain import MEGABYTE
 from trawl_ros.lab.running.processes import Processes, Value
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
 
-LIMIT_S = 3.0
+LIMIT_S, LIMIT_MB = 2.0, 120.0
 DOMAIN = 95
 PATIENCE_S = 15.0
 LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
@@ -44,6 +47,16 @@ class Start:
     needs_truth: bool = False
 
 
+@dataclass(frozen=True)
+class Begun:
+    """Wall-clock time (s) to the first message of a node, and its resident memory (MB) then; the
+    time is infinite, the memory NaN, where no message came.
+    """
+
+    seconds: float
+    memory_mb: float
+
+
 TOW = Start('sim_node', 'truth/winch')
 
 
@@ -52,6 +65,7 @@ def starts(folder: Path) -> tuple[Start, ...]:
     return (
         Start('bag_recorder', '/diagnostics', {'output': str(folder / 'bag')}),
         Start('identification_node', '/diagnostics'),
+        Start('discrepancy_node', '/diagnostics'),
         Start('bag_player', 'winch/joint_states', {'bag': str(share_path('bags', 'sea_trial'))}),
         TOW,
         Start('winch_node', 'winch/joint_states', needs_truth=True),
@@ -70,7 +84,8 @@ def measure(small: bool) -> Findings:
     with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST):
         folder = Path(name)
         chosen = starts(folder)[:1] if small else starts(folder)
-        times = {start.node: _times(start, folder, 1 if small else REPEATS) for start in chosen}
+        begun = {start.node: _begun(start, folder, 1 if small else REPEATS) for start in chosen}
+    times = {node: [one.seconds for one in starts] for node, starts in begun.items()}
     slowest = max(times, key=lambda node: median(times[node]))
     imports = import_s('trawl_ros.nodes.bag_recorder' if small else 'trawl_ros.nodes.sim_node')
     total = sum(imports.values())
@@ -86,6 +101,7 @@ def measure(small: bool) -> Findings:
     for node, found in times.items():
         note = f'{min(found):.2f} to {max(found):.2f} s in {len(found)} starts'
         rows.append(MeasuredValue(f'{node}, wall', median(found), 's', note=note))
+    rows += _memory_rows(begun, {start.node for start in chosen if start.needs_truth})
     rows.append(MeasuredValue('of it, imports, wall', total, 's', note=heaviest))
     if not small:
         model = build_model(default_gear(small=False))
@@ -105,7 +121,31 @@ def measure(small: bool) -> Findings:
     )
 
 
-def _times(start: Start, folder: Path, repeats: int) -> list[float]:
+def _memory_rows(
+    begun: Mapping[str, Sequence[Begun]], instruments: Set[str]
+) -> list[MeasuredValue]:
+    """Rows on the memory of each node; the instruments' largest has the target."""
+    memory = {node: median(one.memory_mb for one in starts) for node, starts in begun.items()}
+    rows = []
+    if instruments:
+        worst = max(instruments, key=memory.__getitem__)
+        rows.append(
+            MeasuredValue(
+                'memory of an instrument node, the largest',
+                memory[worst],
+                'MB',
+                at_most(LIMIT_MB),
+                f'{worst}; resident, shared libraries included, at its first message',
+            )
+        )
+    return rows + [
+        MeasuredValue(f'{node}, memory', value, 'MB')
+        for node, value in memory.items()
+        if node not in instruments
+    ]
+
+
+def _begun(start: Start, folder: Path, repeats: int) -> list[Begun]:
     environment = {
         'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(folder / 'log'), **LOCALHOST,
     }  # fmt: skip
@@ -113,8 +153,8 @@ def _times(start: Start, folder: Path, repeats: int) -> list[float]:
     for _ in range(repeats):
         with Processes(folder / 'output', environment) as processes:
             if start.needs_truth:
-                _start_s(processes, TOW)
-            found.append(_start_s(processes, start))
+                _first(processes, TOW)
+            found.append(_first(processes, start))
         _forget(folder)
     return found
 
@@ -126,9 +166,8 @@ def _forget(folder: Path) -> None:
         bag.rename(folder / f'bag_{time.monotonic_ns()}')
 
 
-def _start_s(processes: Processes, start: Start) -> float:
-    """Wall-clock time (s) from the start of the process to the first message; infinite when it
-    does not come in `PATIENCE_S`.
+def _first(processes: Processes, start: Start) -> Begun:
+    """Start a node and wait for its first message, at most `PATIENCE_S`.
 
     Raises
     ------
@@ -144,8 +183,9 @@ def _start_s(processes: Processes, start: Start) -> float:
         while (at := first.spin(0.01)) is None:
             processes.check()
             if time.perf_counter() - began > PATIENCE_S:
-                return math.inf
-        return at - began
+                return Begun(math.inf, math.nan)
+        memory = psutil.Process(processes.pids()[start.node]).memory_info().rss
+        return Begun(at - began, memory / MEGABYTE)
 
 
 def import_s(module: str) -> dict[str, float]:
