@@ -11,13 +11,8 @@ from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.weighing import Weighed
-from trawl_ros.gear.records import (
-    CoefficientsRecord,
-    EffectRecord,
-    GearRecord,
-    ProvenanceRecord,
-    SourceRecord,
-)
+from trawl_ros.gear.boards import CoefficientsRecord
+from trawl_ros.gear.records import EffectRecord, GearRecord, ProvenanceRecord, SourceRecord
 
 RECORDINGS = ('.mcap', '.db3', '.csv')
 PIECE = 1 << 20

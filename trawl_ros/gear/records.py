@@ -1,19 +1,13 @@
 """Records of the gear file: every key carries its unit, every value is checked on load."""
 
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
-from trawl_ros.records.coefficients import COEFFICIENTS
-
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
-Degrees = Annotated[float, Field(ge=-60, le=60)]
-Vector = tuple[float, float, float]
+from trawl_ros.gear.boards import CORRECTIONS, BoardRecord, StartRecord
+from trawl_ros.gear.numbers import Degrees, NotNegative, Positive
 
 
 class CurrentAt(Record):
@@ -100,95 +94,6 @@ class FrameRopeRecord(RopeRecord):
     """Headrope or footrope, from wing tip to wing tip."""
 
     length_m: Positive
-
-
-class StartRecord(Record):
-    """Prior of the coefficients: start values, spread and bounds in the order of eq. 36."""
-
-    start: tuple[Annotated[float, Field(ge=-10, le=10)], ...]
-    std: tuple[Positive, ...]
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-
-    @model_validator(mode='after')
-    def _twelve(self) -> 'StartRecord':
-        for name in ('start', 'std', 'low', 'high'):
-            if len(getattr(self, name)) != 12:
-                raise ValueError(f'{name}: needs 12 numbers, found {len(getattr(self, name))}')
-        for i, (low, start, high) in enumerate(zip(self.low, self.start, self.high, strict=True)):
-            if not low < high or not low <= start <= high:
-                raise ValueError(
-                    f'number {i + 1}: needs low <= start <= high and low < high, '
-                    f'found {low}, {start}, {high}'
-                )
-        return self
-
-
-class CoefficientsRecord(Record):
-    """The twelve coefficients of eq. 14, in the order of eq. 36; angles in radians."""
-
-    a1: float
-    c1: float
-    a2: float
-    c2: float
-    b3: float
-    c3: float
-    a4: float
-    c4: float
-    b5: float
-    c5: float
-    a6: float
-    c6: float
-
-    def array(self) -> NDArray[np.float64]:
-        """Values (12,), in the order of `COEFFICIENTS`."""
-        return np.array([getattr(self, name) for name in COEFFICIENTS])
-
-
-class InertiaRecord(Record):
-    """Moments and products of inertia about the board's axes (Table 1)."""
-
-    xx_kg_m2: Positive
-    yy_kg_m2: Positive
-    zz_kg_m2: Positive
-    xy_kg_m2: float
-    xz_kg_m2: float
-    yz_kg_m2: float
-
-
-class FasteningRecord(Record):
-    """Fastening points in the outward board frame, origin in the centre of gravity."""
-
-    warp_m: Vector
-    upper_bridle_m: Vector
-    lower_bridle_m: Vector
-
-
-class InstallationRecord(Record):
-    """Installation angles: turns of the board about its z, y, x axes against its rigging."""
-
-    epsilon_deg: Degrees = 0.0
-    zeta_deg: Degrees = 0.0
-    eta_deg: Degrees = 0.0
-
-
-class BoardRecord(Record):
-    """An otter board; both sides are the same board, mirrored."""
-
-    mass_kg: Positive
-    volume_m3: Positive
-    inertia: InertiaRecord
-    area_m2: Positive
-    span_m: Positive
-    chord_m: Positive
-    coefficients: CoefficientsRecord
-    force_axes: Literal['flow', 'board']
-    moment_signs: tuple[Literal[-1, 1], Literal[-1, 1], Literal[-1, 1]]
-    slip_sign: Literal[-1, 1]
-    rotary_slope: NotNegative
-    fastening: FasteningRecord
-    installation: InstallationRecord = InstallationRecord()
-    added_mass_kg: tuple[NotNegative, NotNegative, NotNegative]
 
 
 class SectionRecord(Record):
@@ -333,6 +238,15 @@ class GearRecord(Record):
     floats: FloatRecord
     identification: StartRecord
     effects: Annotated[tuple[EffectRecord, ...], Field(max_length=20)] = ()
+
+    @model_validator(mode='before')
+    @classmethod
+    def _corrections(cls, data: object) -> object:
+        if isinstance(data, dict) and 'identification' not in data:
+            board = data.get('board')
+            if isinstance(board, dict) and board.get('law') is not None:
+                return {**data, 'identification': CORRECTIONS}
+        return data
 
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False

@@ -13,12 +13,14 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import water_of
 from trawl_ros.model.board_law import (
+    LAW_RANGE,
     fill_coefficients,
     fill_flow,
     fill_loads,
     fill_own_loads,
     fill_total,
 )
+from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.compiled import alike
 from trawl_ros.model.hooks import CoefficientModifier
 from trawl_ros.model.numerics import angle, transpose
@@ -56,7 +58,9 @@ class Board:
     added_mass : (3,) array
         Added mass along the board's axes, kg; zero as in eq. 15, or by the gear file.
     bend : Bend or None
-        Modifier of the coefficients of eq. 14; None leaves them as they are.
+        Modifier of the coefficients of the law; None leaves them as they are.
+    law : TableLaw or None
+        Law in place of eq. 14, whose coefficients are then corrections to it; None is eq. 14.
     """
 
     mass: float
@@ -73,6 +77,12 @@ class Board:
     rotary_slope: float
     added_mass: FloatArray
     bend: CoefficientModifier | None = None
+    law: TableLaw | None = None
+
+    @property
+    def law_range(self) -> tuple[float, float]:
+        """Least and greatest angle of attack (rad) for which the law holds as it stands."""
+        return LAW_RANGE if self.law is None else self.law.range
 
     @cached_property
     def fastening_points(self) -> FloatArray:
@@ -181,7 +191,8 @@ def hydrodynamics(
     board: Board, values: FloatArray, flow: BoardFlow
 ) -> tuple[FloatArray, FloatArray]:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
-    coefficients = coefficients_at(values, flow.attack, board.slip_sign * flow.slip)
+    law = coefficients_at if board.law is None else board.law
+    coefficients = law(values, flow.attack, board.slip_sign * flow.slip)
     if board.bend is not None:
         coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
     density, along, c = alike(
@@ -229,7 +240,7 @@ def own_load(
     )
     total = np.empty((len(given[2]), 6), given[0].dtype)
     turning = board.inertia, board.rotary_slope * board.rotary_areas
-    if board.bend is None:
+    if board.bend is None and board.law is None:
         fill_own_loads(
             board.flow_axes,
             board.slip_sign,

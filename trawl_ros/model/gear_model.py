@@ -11,8 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.gear.polars import polar_of
 from trawl_ros.gear.records import BridleRecord, FrameRopeRecord, GearRecord, RopeRecord
 from trawl_ros.model.board import Board
+from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import Kite, KiteNodes
 from trawl_ros.model.line import BarProperties
@@ -201,6 +203,7 @@ def _rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:
 def build_board(gear: GearRecord) -> Board:
     """The board of a gear file."""
     record = gear.board
+    polar = polar_of(record)
     i = record.inertia
     inertia = np.array(
         [
@@ -230,6 +233,7 @@ def build_board(gear: GearRecord) -> Board:
         rotary_slope=record.rotary_slope,
         flow_axes=record.force_axes == 'flow',
         added_mass=np.array(record.added_mass_kg),
+        law=None if polar is None else TableLaw(polar, record.moment_signs),
     )
 
 

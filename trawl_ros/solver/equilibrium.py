@@ -7,7 +7,6 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.effects.base.effect import Situation, sense
 from trawl_ros.effects.effect_set import effects_of
-from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import (
     fallen_boards,
@@ -115,6 +114,7 @@ def find_equilibrium(
             f'{lean}° up',
             'collapsed',
         )
+    low, high = model.board.law_range
     return Equilibrium(
         point=point,
         tow=tow,
@@ -122,7 +122,7 @@ def find_equilibrium(
         observables=seen,
         iterations=iterations,
         residual=residual,
-        outside_law=bool(attack.max() > LAW_RANGE[1]),
+        outside_law=bool(attack.max() > high or attack.min() < low),
         highest=highest_point(model, state),
     )
 
@@ -232,10 +232,13 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
             f'{where}: the gear breaks the surface by {found.highest:.1f} m', 'surfaced'
         )
     if found.outside_law:
-        attack = np.degrees(max(found.observables.port_attack, found.observables.starboard_attack))
+        seen, limits = found.observables, model.board.law_range
+        both, middle = (seen.port_attack, seen.starboard_attack), float(np.mean(limits))
+        attack = max(both, key=lambda angle: abs(angle - middle))
+        limit = min(limits, key=lambda edge: abs(edge - attack))
         raise NoSteadyState(
-            f'{where}: a board works at {attack:.1f}° of attack, outside the '
-            f'range of its law ({np.degrees(LAW_RANGE[1]):.0f}°)',
+            f'{where}: a board works at {np.degrees(attack):.1f}° of attack, outside the '
+            f'range of its law ({np.degrees(limit):.0f}°)',
             'outside law',
         )
     motion = stability(model, found.state, found.tow)

@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.gear.boards import BoardRecord
 from trawl_ros.gear.load import load_gear
-from trawl_ros.gear.records import BoardRecord, GearRecord
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase

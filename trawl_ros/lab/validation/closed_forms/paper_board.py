@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.gear.records import BoardRecord
+from trawl_ros.gear.boards import BoardRecord
 
 INNER, OUTER = radians(-40.0), radians(90.0)
 """Attack angles at which lift and moments are gone."""
