@@ -191,7 +191,7 @@ def test_the_stated_noise_may_differ_from_the_true_one() -> None:
         math.sqrt(9.0 + 0.12)
     )
     model = ForceErrors(noise_kn=2.0, stated_std_kn=1.0).model()
-    assert (model.white_std, model.stated_std) == (2000.0, 1000.0)
+    assert (model.white.std, model.stated_std) == (2000.0, 1000.0)
 
 
 def test_units_of_the_file_become_si() -> None:
@@ -209,7 +209,7 @@ def test_units_of_the_file_become_si() -> None:
     )
     pi = math.pi
     found = errors.model()
-    assert (found.white_std, found.correlated_std) == pytest.approx((pi, pi / 2))
+    assert (found.white.std, found.correlated_std) == pytest.approx((pi, pi / 2))
     assert (found.correlation_time, found.bias_std) == pytest.approx((7.0, pi / 10))
     assert (found.resolution, found.stated_std) == pytest.approx((pi / 100, pi / 5))
     assert (found.offset, found.drift) == pytest.approx((-pi / 2, pi / 180))

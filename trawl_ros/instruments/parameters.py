@@ -1,5 +1,6 @@
 """Parameters of the instruments as a file has them, checked on load."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -8,12 +9,15 @@ from pydantic import Field, model_validator
 from trawl_ros.core.errors import InstrumentError, TrawlError
 from trawl_ros.core.resources import packaged, share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
+from trawl_ros.instruments.errors.channel import ErrorModel
+from trawl_ros.instruments.errors.false_echoes import FalseEchoModel
 from trawl_ros.instruments.errors.records import (
     AngleErrors,
     ForceErrors,
     LengthErrors,
     NotNegative,
     PressureErrors,
+    Share,
     SoundSpeed,
     SpeedErrors,
     TurnErrors,
@@ -66,7 +70,42 @@ class LimitedLength(LengthErrors):
 
 
 class RangeParameters(LimitedLength, Timed):
-    """Range sensor."""
+    """Acoustic range sensor.
+
+    A share ``reflection_share`` of its readings are of echoes that came a longer way, by
+    ``reflection_m`` in the mean, ``reflection_run`` of them in a row; a share
+    ``ambiguity_share`` is taken for ``ambiguity_m`` more than it is, for it is heard in the
+    next period of the ranging, ``ambiguity_run`` of them in a row.
+    """
+
+    reflection_share: Share = 0.0
+    reflection_m: NotNegative = 0.0
+    reflection_run: Annotated[float, Field(ge=1)] = 1.0
+    ambiguity_share: Share = 0.0
+    ambiguity_m: NotNegative = 0.0
+    ambiguity_run: Annotated[float, Field(ge=1)] = 1.0
+
+    @model_validator(mode='after')
+    def _false_echoes_have_a_size(self) -> 'RangeParameters':
+        for kind in ('reflection', 'ambiguity'):
+            share, metres = getattr(self, f'{kind}_share'), getattr(self, f'{kind}_m')
+            if (share > 0) != (metres > 0):
+                raise ValueError(
+                    f'{kind}_share: found {share:g} with {kind}_m {metres:g}, expected both or '
+                    'neither'
+                )
+        return self
+
+    def model(self) -> ErrorModel:
+        """Return the error model in SI units."""
+        reflected = FalseEchoModel(
+            self.reflection_share, self.reflection_m, ambiguous=False, run=self.reflection_run
+        )
+        ambiguous = FalseEchoModel(
+            self.ambiguity_share, self.ambiguity_m, ambiguous=True, run=self.ambiguity_run
+        )
+        echoes = tuple(model for model in (reflected, ambiguous) if model.share > 0)
+        return replace(super().model(), false_echoes=echoes)
 
 
 class VelocityParameters(Timed):

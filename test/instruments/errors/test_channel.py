@@ -7,6 +7,7 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
+from trawl_ros.instruments.errors.noise import NoiseModel
 
 N = 20_000
 
@@ -21,7 +22,7 @@ def test_without_errors_the_truth_is_reported() -> None:
 
 
 def test_white_noise_is_normal_unbiased_and_without_memory() -> None:
-    noise = readings(ErrorModel(white_std=2.0)) - 100.0
+    noise = readings(ErrorModel(white=NoiseModel(2.0))) - 100.0
     assert noise.mean() == pytest.approx(0.0, abs=4 * 2.0 / math.sqrt(N))
     assert noise.std() == pytest.approx(2.0, rel=4 / math.sqrt(2 * N))
     assert np.mean(np.abs(noise) < 2.0) == pytest.approx(0.6827, abs=0.015)
@@ -76,23 +77,25 @@ def test_readings_are_multiples_of_the_resolution_nearest_to_the_truth() -> None
 
 
 def test_the_same_seed_gives_the_same_readings_and_another_seed_others() -> None:
-    errors = ErrorModel(white_std=1.0, correlated_std=1.0, correlation_time=5.0, bias_std=1.0)
+    errors = ErrorModel(
+        white=NoiseModel(1.0), correlated_std=1.0, correlation_time=5.0, bias_std=1.0
+    )
     assert np.array_equal(readings(errors, n=50), readings(errors, n=50))
     assert not np.any(readings(errors, n=50) == readings(errors, n=50, seed=6))
 
 
 def test_channels_of_one_seed_are_independent() -> None:
-    errors = ErrorModel(white_std=1.0)
+    errors = ErrorModel(white=NoiseModel(1.0))
     pair = readings(errors, name='door/port/pressure'), readings(errors, name='door/spread')
     assert abs(np.corrcoef(pair)[0, 1]) < 4 / math.sqrt(N)
 
 
 def test_one_kind_of_error_leaves_the_draws_of_the_others_alone() -> None:
-    white = readings(ErrorModel(white_std=1.0), n=50)
-    both = ErrorModel(white_std=1.0, bias_std=0.5)
+    white = readings(ErrorModel(white=NoiseModel(1.0)), n=50)
+    both = ErrorModel(white=NoiseModel(1.0), bias_std=0.5)
     assert np.ptp(readings(both, n=50) - white) < 1e-12
 
 
 def test_an_unknown_truth_stays_unknown() -> None:
-    channel = ErrorChannel('a', ErrorModel(white_std=1.0, resolution=0.1), 0)
+    channel = ErrorChannel('a', ErrorModel(white=NoiseModel(1.0), resolution=0.1), 0)
     assert math.isnan(channel.measure(math.nan, 0))

@@ -8,6 +8,7 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.bursts import BurstModel
 from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
+from trawl_ros.instruments.errors.noise import NoiseModel
 
 HOUR = 3600
 
@@ -67,13 +68,13 @@ def test_after_a_spell_the_channel_reads_the_present_again() -> None:
 @pytest.mark.parametrize(
     'other',
     [
-        ErrorModel(white_std=1.0, outlier_share=0.5, outlier_std=3.0),
-        ErrorModel(white_std=1.0, scale=0.1, offset=3.0, drift=2.0),
+        ErrorModel(white=NoiseModel(1.0), outlier_share=0.5, outlier_std=3.0),
+        ErrorModel(white=NoiseModel(1.0), scale=0.1, offset=3.0, drift=2.0),
     ],
 )
 def test_another_kind_of_error_leaves_the_noise_alone(other: ErrorModel) -> None:
     truth = np.full(200, 10.0)
-    plain = readings(ErrorModel(white_std=1.0), truth)
+    plain = readings(ErrorModel(white=NoiseModel(1.0)), truth)
     found = readings(other, truth)
     rest = found - plain - (readings(ErrorModel(scale=other.scale, offset=other.offset,
                                                 drift=other.drift), truth) - truth)  # fmt: skip

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.bursts import BurstModel
+from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
 from trawl_ros.instruments.errors.channel import ErrorModel
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
+from trawl_ros.instruments.errors.noise import NoiseModel
 from trawl_ros.instruments.errors.timing import Timing
 from trawl_ros.records.samples import HeadingSample
 
@@ -73,12 +74,35 @@ def test_dropouts_come_in_bursts_as_often_and_as_long_as_stated() -> None:
     assert bursts.mean() == pytest.approx(15.0, rel=0.08)
 
 
+def test_samples_are_missed_one_by_one_at_the_share_stated() -> None:
+    found = heard(Compass(Timing(rate=1.0, missed=0.3)), 4000.0, step=1.0)
+    gaps = np.diff([taken for taken, _ in found])
+    assert len(found) / 4001 == pytest.approx(0.7, abs=0.02)
+    # Without memory: after one that is missed the next is missed as often.
+    assert np.mean(gaps == 1.0) == pytest.approx(0.7, abs=0.02)
+    assert np.mean(gaps == 2.0) == pytest.approx(0.21, abs=0.02)
+
+
+def test_bursts_of_log_normal_length_keep_the_mean_and_have_a_longer_tail() -> None:
+    lengths = []
+    for log_std in (0.0, 1.5):
+        bursts = Bursts(BurstModel(60.0, 20.0, log_std), np.random.default_rng(5))
+        on = np.array([bursts.on(k * SECOND // 2) for k in range(2_000_000)])
+        edges = np.flatnonzero(np.diff(on.astype(int)))
+        lengths.append(np.diff(edges)[::2] / 2 if not on[0] else np.diff(edges)[1::2] / 2)
+    plain, wide = lengths
+    assert plain.mean() == pytest.approx(20.0, rel=0.06)
+    assert wide.mean() == pytest.approx(20.0, rel=0.12)
+    assert np.mean(wide > 120.0) > 3 * np.mean(plain > 120.0)
+    assert np.median(wide) == pytest.approx(20.0 * np.exp(-0.5 * 1.5**2), rel=0.15)
+
+
 def test_what_cannot_be_measured_gives_no_sample() -> None:
     assert Compass(Timing(rate=1.0)).observe(float('nan'), 0) == []
 
 
 def test_a_backward_jump_forgets_what_was_under_way() -> None:
-    compass = Compass(Timing(rate=1.0, latency=5.0, jitter=0.2), ErrorModel(white_std=1.0))
+    compass = Compass(Timing(rate=1.0, latency=5.0, jitter=0.2), ErrorModel(white=NoiseModel(1.0)))
     first = [repr(s) for k in range(200) for s in compass.observe(1.0, k * SECOND // 10)]
     again = [repr(s) for k in range(200) for s in compass.observe(1.0, k * SECOND // 10)]
     assert first == again

@@ -1,6 +1,7 @@
 """Measurement channel: one quantity with its errors.
 
-    reading = quantised(limited((1 + scale) truth + offset + drift + bias + noise [+ outlier]))
+    reading = quantised(limited((1 + scale) truth + offset + drift + bias + noise
+                                [+ outlier] [+ longer way of a false echo]))
 
 and while the sensor hangs, the reading before. Each kind of error of each channel draws from a
 generator of its own, which follows from the seed and the channel's name. So neither another
@@ -14,7 +15,9 @@ import numpy as np
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.bursts import HOUR, NO_BURSTS, BurstModel, Bursts
+from trawl_ros.instruments.errors.false_echoes import FalseEchoes, FalseEchoModel
 from trawl_ros.instruments.errors.faults import Fault
+from trawl_ros.instruments.errors.noise import NO_NOISE, Noise, NoiseModel
 from trawl_ros.instruments.errors.random_streams import generator
 
 FAR_OFF = 1.0
@@ -25,7 +28,7 @@ FAR_OFF = 1.0
 class ErrorModel:
     """Error model of a channel, in the channel's unit.
 
-    ``white_std`` is drawn per sample. ``correlated_std`` is that of a first-order process
+    ``white`` is drawn per sample. ``correlated_std`` is that of a first-order process
     with ``correlation_time`` (s). ``bias_std`` is that of a constant drawn anew for each
     state of the tow. Readings are multiples of ``resolution`` (0: not quantised).
     ``stated_std`` is what the sensor's maker says of its noise.
@@ -33,10 +36,10 @@ class ErrorModel:
     ``scale`` is the part by which readings are too large, ``offset`` is added to them, and
     ``drift`` per hour since the first reading. A share ``outlier_share`` of them is off by a
     normal error of ``outlier_std`` more. None is below ``lowest`` or above ``highest``. In
-    spells of ``freezes`` the reading stays what it was.
+    spells of ``freezes`` the reading stays what it was. ``false_echoes`` come a longer way.
     """
 
-    white_std: float = 0.0
+    white: NoiseModel = NO_NOISE
     correlated_std: float = 0.0
     correlation_time: float = 0.0
     bias_std: float = 0.0
@@ -50,6 +53,7 @@ class ErrorModel:
     lowest: float = -math.inf
     highest: float = math.inf
     freezes: BurstModel = NO_BURSTS
+    false_echoes: tuple[FalseEchoModel, ...] = ()
 
 
 class ErrorChannel:
@@ -99,10 +103,14 @@ class ErrorChannel:
 
     def restart(self) -> None:
         """Reset all but the faults: the same readings follow as from a new channel."""
-        self._white = self._generator('white')
+        self._white = Noise(self.errors.white, self._generator('white'))
         self._driving = self._generator('correlated')
         self._wild = self._generator('outliers')
         self._faulty = self._generator('fault')
+        self._false_echoes = [
+            FalseEchoes(model, self._generator('false echoes', number))
+            for number, model in enumerate(self.errors.false_echoes)
+        ]
         self._freezes = Bursts(self.errors.freezes, self._generator('freezes'))
         self._correlated: tuple[int, float] | None = None
         self._bias: tuple[int, float] | None = None
@@ -126,7 +134,8 @@ class ErrorChannel:
         # All is drawn whether it shows or not: a fault changes no reading after its end.
         reading = value * (1.0 + errors.scale) + errors.offset + self._drift_at(stamp)
         reading += self._bias_of(state) + self._correlated_at(stamp)
-        reading += errors.white_std * self._white.standard_normal() + self._outlier()
+        reading += self._white.draw(value) + self._outlier()
+        reading += sum(echoes.draw() for echoes in self._false_echoes)
         reading = self._with_faults(reading, stamp)
         reading = min(max(reading, errors.lowest), errors.highest)
         if errors.resolution > 0 and math.isfinite(reading):

@@ -109,15 +109,17 @@ class SamplingClock:
 
     def sends(self, stamp: int) -> bool:
         """True if a sample taken at a stamp (ns) is sent."""
-        # Both are asked, so that each has its own time.
+        # All are asked, so that each has its own time.
         dropped, faulty = self._dropouts.on(stamp), self._faulty.on(stamp)
-        return not (dropped or faulty or 'silent' in self._faults)
+        missed = self._timing.missed > 0.0 and self._missed.random() < self._timing.missed
+        return not (dropped or faulty or missed or 'silent' in self._faults)
 
     def _drawn_shift(self) -> float:
         return float(self._jitter.standard_normal())
 
     def _restart(self) -> None:
         self._jitter = generator(self._seed, f'{self._name}/jitter')
+        self._missed = generator(self._seed, f'{self._name}/missed')
         self._shift = self._drawn_shift()
         dropouts = generator(self._seed, f'{self._name}/dropouts')
         self._dropouts = Bursts(self._timing.dropouts, dropouts)

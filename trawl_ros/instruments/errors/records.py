@@ -10,6 +10,7 @@ from pydantic import Field, create_model, model_validator
 from trawl_ros.core.schema import Record
 from trawl_ros.instruments.errors.bursts import BurstModel
 from trawl_ros.instruments.errors.channel import ErrorModel
+from trawl_ros.instruments.errors.noise import NoiseModel
 
 NotNegative = Annotated[float, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
@@ -27,7 +28,9 @@ class ChannelErrors(Record):
     and ``drift_m_per_hour`` from the first reading on. Readings are multiples of
     ``resolution_m``, none below ``lowest_m`` or above ``highest_m``. The sensor hangs
     ``freezes_per_hour`` times, for ``freeze_s`` in the mean. ``stated_std_m`` is what the maker
-    states; if that is left out, noise and rounding together are stated.
+    states; if that is left out, noise and rounding together are stated. Noise grows by the part
+    ``noise_of_reading`` of the quantity, and is Student's t with ``noise_tail_dof`` degrees of
+    freedom, of the same standard deviation, where that is given.
     """
 
     unit: ClassVar[str]
@@ -36,6 +39,8 @@ class ChannelErrors(Record):
     correlation_time_s: Seconds = 0.0
     scale_error: Annotated[float, Field(gt=-1, le=10)] = 0.0
     outlier_share: Share = 0.0
+    noise_of_reading: Share = 0.0
+    noise_tail_dof: Annotated[float, Field(gt=2)] = math.inf
     freezes_per_hour: NotNegative = 0.0
     freeze_s: Seconds = 0.0
 
@@ -64,7 +69,7 @@ class ChannelErrors(Record):
         # Rounding to multiples of r adds r²/12 of variance.
         rounded = float(np.hypot(white, resolution / np.sqrt(12)))
         return ErrorModel(
-            white_std=white,
+            white=NoiseModel(white, self.noise_of_reading, self.noise_tail_dof),
             correlated_std=self._si('correlated'),
             correlation_time=self.correlation_time_s,
             bias_std=self._si('bias_per_state'),

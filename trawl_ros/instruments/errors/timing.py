@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
 from trawl_ros.instruments.errors.bursts import NO_BURSTS, BurstModel
-from trawl_ros.instruments.errors.records import NotNegative, Seconds
+from trawl_ros.instruments.errors.records import NotNegative, Seconds, Share
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,8 @@ class Timing:
 
     ``rate`` in samples per second; ``jitter`` is the standard deviation with which samples are
     off the beat, ``latency`` the time from sampling to sending, ``start_up`` the time after
-    switching on in which nothing is sampled; ``dropouts`` are spells in which nothing is sent.
+    switching on in which nothing is sampled; ``dropouts`` are spells in which nothing is sent,
+    and of the other samples the share ``missed`` is lost one by one.
     """
 
     rate: float
@@ -24,6 +25,7 @@ class Timing:
     latency: float = 0.0
     start_up: float = 0.0
     dropouts: BurstModel = NO_BURSTS
+    missed: float = 0.0
 
 
 MOST_OFTEN = 100.0
@@ -35,12 +37,16 @@ Rate = Annotated[float, Field(gt=0, le=MOST_OFTEN)]
 class Sent(Record):
     """Timing of sending.
 
-    It takes ``latency_s``, and fails ``dropouts_per_hour`` times, for ``dropout_s`` in the mean.
+    It takes ``latency_s``, and fails ``dropouts_per_hour`` times, for ``dropout_s`` in the mean;
+    these lengths are exponentially distributed, or log-normal with ``dropout_log_std``. A share
+    ``missed_share`` of the samples is lost besides, one by one.
     """
 
     latency_s: Seconds = 0.0
     dropouts_per_hour: NotNegative = 0.0
     dropout_s: Seconds = 0.0
+    dropout_log_std: Annotated[float, Field(ge=0, le=3)] = 0.0
+    missed_share: Share = 0.0
 
     @model_validator(mode='after')
     def _dropouts_have_a_length(self) -> 'Sent':
@@ -53,10 +59,12 @@ class Sent(Record):
 
     def timing(self) -> Timing:
         """Return the timing of an instrument that samples whenever truth comes."""
-        return Timing(MOST_OFTEN, latency=self.latency_s, dropouts=self._bursts())
+        return Timing(
+            MOST_OFTEN, latency=self.latency_s, dropouts=self._bursts(), missed=self.missed_share
+        )
 
     def _bursts(self) -> BurstModel:
-        return BurstModel(self.dropouts_per_hour, self.dropout_s)
+        return BurstModel(self.dropouts_per_hour, self.dropout_s, self.dropout_log_std)
 
 
 class Timed(Sent):
@@ -72,4 +80,11 @@ class Timed(Sent):
 
     def timing(self) -> Timing:
         """Return the timing of the instrument."""
-        return Timing(self.rate_hz, self.jitter_s, self.latency_s, self.start_up_s, self._bursts())
+        return Timing(
+            self.rate_hz,
+            self.jitter_s,
+            self.latency_s,
+            self.start_up_s,
+            self._bursts(),
+            self.missed_share,
+        )
