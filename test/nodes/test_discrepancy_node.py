@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
@@ -11,6 +12,7 @@ from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.diagnostics import OK, WARN, read_statuses  # noqa: E402
+from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.discrepancy_node import FINDINGS, FINISH, DiscrepancyNode  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
@@ -90,3 +92,21 @@ def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
     written = json.loads((tmp_path / 'report' / 'diagnosis.json').read_text())
     assert written['verdict'] == verdict.values['verdict']
     assert (tmp_path / 'report' / 'report.html').exists()
+
+
+def test_two_sources_that_one_publisher_passes_on_are_told_and_not_used(open_graph, coarse_gear):
+    topic, lengths = 'winch/joint_states', (500.0, 500.0)
+    told = [
+        WinchSample(SECOND + round(time * SECOND), lengths, (0.0, 0.0), (factor * 3e4, 3e4))
+        for rate, factor in ((10, 1.0), (3, 1.15))
+        for time in (number / rate for number in range(8 * rate))
+    ]
+    with open_graph(DOMAIN) as graph:
+        node = graph.add(DiscrepancyNode, gear=str(coarse_gear))
+        source = graph.add(partial(TrawlNode, 'source'))
+        source.advertise(topic)
+        graph.until(lambda: source.subscribers()[topic][0])
+        for sample in sorted(told, key=lambda sample: sample.stamp):
+            source.send(*sample_message(sample))
+        graph.until(lambda: 'has two sources' in node.all_statuses()[0].message)
+        assert node._finder.arrived['port_tension'] < len(told) / 2

@@ -147,6 +147,22 @@ def test_a_fault_is_told_by_its_reason_and_survived(sea, steady_samples, fault):
     assert 'error of the program' not in sea.listener.report().message
 
 
+def test_two_sources_that_one_publisher_passes_on_are_told_and_not_used(sea, steady_samples):
+    sea.begun += 1
+    start = LATEST - sea.begun * 1000 * SECOND
+    told = []
+    for sample in steady_samples(start, LEG_S):
+        told.append(sample)
+        if isinstance(sample, WinchSample) and (sample.stamp - start) // SECOND % 3 == 0:
+            wrong = tuple(1.15 * tension for tension in sample.tensions)
+            told.append(replace(sample, stamp=sample.stamp + SECOND // 3, tensions=wrong))
+    sea.tell(told)
+    topic = sea.node.full_name('winch/joint_states')
+    assert sea.node.traffic.counts('refused')[topic] > LEG_S
+    sea.graph.until(lambda: 'has two sources' in sea.node.all_statuses()[0].message)
+    assert sea.node.all_statuses()[0].level != 0
+
+
 def test_after_all_that_a_sound_tow_is_estimated(sea, steady_samples):
     sea.begun += 1
     sea.tell(steady_samples(LATEST - sea.begun * 1000 * SECOND, LEG_S))

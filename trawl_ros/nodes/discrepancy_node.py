@@ -20,6 +20,7 @@ from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.reading import OneSourceEach
 from trawl_ros.nodes.runtime.rewinding import Reached, Rewinding
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, WatchingThread
@@ -62,6 +63,7 @@ class DiscrepancyNode(TrawlNode):
         self._windows: list[SteadyWindow] = []
         self._outcome = DiagnosisOutcome()
         self._reached = Reached()
+        self._instruments = OneSourceEach()
         self._rewinding = Rewinding()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._publish)
@@ -92,17 +94,21 @@ class DiscrepancyNode(TrawlNode):
 
     def _feeder(self, topic: str) -> Callable[[Any], None]:
         def feed(message: Any) -> None:
-            anew, samples = self._rewinding.take(to_sample(topic, message))
+            sample = to_sample(topic, message)
+            anew, samples = self._rewinding.take(sample)
             if anew:
                 self._forget()
-            for sample in samples:
-                self._take(self._finder.feed(sample))
-                self._progress.done(self._reached.take(sample.stamp))
+            for one in samples:
+                if one is sample:
+                    self._instruments.check(topic, sample)
+                self._take(self._finder.feed(one))
+                self._progress.done(self._reached.take(one.stamp))
 
         return feed
 
     def _forget(self) -> None:
         self._finder.reset()
+        self._instruments.forget()
         self._watching.forget()
         self._windows, self._reached, self._outcome = [], Reached(), DiagnosisOutcome()
         self.get_logger().warning('stamps of the winch went back; all begins anew')

@@ -31,6 +31,7 @@ from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.reading import OneSourceEach
 from trawl_ros.nodes.runtime.rewinding import Rewinding
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.workers.advice_worker import AdvisingThread
@@ -93,6 +94,7 @@ class IdentificationNode(TrawlNode):
             self.advertise(topic)
         self._progress = ConsumerProgress(self, idle=lambda: self._worker.idle)
         self._resets = 0
+        self._instruments = OneSourceEach()
         self._rewinding = Rewinding(identification.finder.newest('port_length'))
         self._sent: Estimate | None = None
         self._telling = Lock()
@@ -177,16 +179,20 @@ class IdentificationNode(TrawlNode):
 
     def _feeder(self, topic: str) -> Callable[[Any], None]:
         def feed(message: Any) -> None:
-            anew, samples = self._rewinding.take(to_sample(topic, message))
+            sample = to_sample(topic, message)
+            anew, samples = self._rewinding.take(sample)
             if anew:
                 self._begin_anew()
-            for sample in samples:
-                self._worker.feed(sample)
+            for one in samples:
+                if one is sample:
+                    self._instruments.check(topic, sample)
+                self._worker.feed(one)
 
         return feed
 
     def _begin_anew(self) -> None:
         self._resets += 1
+        self._instruments.forget()
         self._worker.reset()
         self.get_logger().warning('stamps of the winch went back; the estimate begins anew')
 

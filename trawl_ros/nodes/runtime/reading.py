@@ -1,7 +1,9 @@
-"""Reading that a controller follows: decoded, and within what an instrument can report."""
+"""Readings of instruments: decoded, possible where a controller follows them, and of one source."""
 
+from collections import defaultdict
 from typing import Any
 
+from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.possible import impossible
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import to_sample
@@ -21,3 +23,29 @@ def possible_sample(topic: str, message: Any) -> Sample:
     if reason := impossible(sample):
         raise MessageError(f'{topic}: {reason}')
     return sample
+
+
+class OneSourceEach:
+    """Check that each instrument topic of a node has one source.
+
+    Two publishers are told apart by the numbers of their messages; what a player or a bridge
+    passes on comes from one, and is told by its stamps and values.
+    """
+
+    def __init__(self) -> None:
+        self.forget()
+
+    def forget(self) -> None:
+        """Reset, as for a stream that begins anew."""
+        self._watches: defaultdict[str, SourceWatch] = defaultdict(SourceWatch)
+
+    def check(self, topic: str, sample: Sample) -> None:
+        """Register a reading of a topic.
+
+        Raises
+        ------
+        MessageError
+            If those so far are of two sources.
+        """
+        if why := self._watches[topic].take(0, sample):
+            raise MessageError(f'{topic} has two sources, for {why}; neither is used')
