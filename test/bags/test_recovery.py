@@ -10,9 +10,10 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
-from trawl_ros.bags.storage.mcap_output import LIBRARY
+from trawl_ros.bags.storage.mcap_output import LIBRARY, McapOutput
 from trawl_ros.bags.storage.metadata import FileEntry, TopicEntry, dump_metadata
 from trawl_ros.bags.storage.stored import describe
+from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.resources import share_path
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.pieces import topic_header, vector
@@ -192,11 +193,28 @@ def test_eight_flipped_bits_never_cost_a_chunk_that_they_miss(once, mcap_path, m
         assert len(found) == len(set(found))
 
 
+def write_as_0_1_0(bag, path, monkeypatch):
+    """Write a bag again with its topics described in the first chunk and the summary only."""
+    monkeypatch.setattr(McapOutput, '_repeat_descriptions', lambda self: None)
+    with BagWriter(path) as writer:
+        for topic, definition in bag.definitions().items():
+            writer.declare(topic, definition)
+        for m in bag.as_stored():
+            writer.write(m.topic, m.type, m.data, m.log_time, m.publish_time)
+
+
 @pytest.mark.slow
-def test_of_the_sample_all_but_the_damaged_chunk_is_saved(tmp_path):
-    bag = shutil.copytree(share_path('bags', 'sea_trial'), tmp_path / 'sea_trial')
+@pytest.mark.parametrize('described', ['again and again', 'once, as by 0.1.0'])
+def test_of_the_sample_all_but_the_damaged_chunk_is_saved(tmp_path, monkeypatch, described):
+    bag, sample = tmp_path / 'sea_trial', share_path('bags', 'sea_trial')
+    if described == 'again and again':
+        shutil.copytree(sample, bag)
+    else:
+        write_as_0_1_0(Bag(sample), bag, monkeypatch)
     file = bag / 'sea_trial_0.mcap'
     spoil(file, (5000, 1), (file.stat().st_size - 3000, 1), flip=1)
     done = repair_bag(bag)
     assert sum(done.saved.values()) == 126_945
     assert sum(done.lost.values()) == 134_526 - 126_945
+    assumed = any('confirms' in problem for problem in done.problems)
+    assert assumed == (described != 'again and again')
