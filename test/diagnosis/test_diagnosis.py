@@ -7,10 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import diagnosis, fit_beside, naming
+from trawl_ros.diagnosis import fit_beside, naming, procedure
 from trawl_ros.diagnosis.changes import changes
-from trawl_ros.diagnosis.diagnosis import diagnose, unread, values_of
+from trawl_ros.diagnosis.diagnosis import unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.refit import refit, was_in_order
 from trawl_ros.diagnosis.repair import repaired, source
 from trawl_ros.diagnosis.report.result import result
@@ -25,7 +26,7 @@ from trawl_ros.solver.predict import Predictor
 
 @pytest.fixture(scope='module')
 def clean(coarse, hide):
-    return diagnose(coarse, hide.trial(coarse, hide.nothing, 1), hide.names[:3])
+    return diagnose_windows(coarse, hide.trial(coarse, hide.nothing, 1), hide.names[:3])
 
 
 @pytest.fixture(scope='module')
@@ -35,13 +36,13 @@ def with_catch(coarse, hide):
 
 @pytest.fixture(scope='module')
 def caught(coarse, hide, with_catch):
-    return diagnose(coarse, with_catch, hide.names[:3])
+    return diagnose_windows(coarse, with_catch, hide.names[:3])
 
 
 def test_nothing_is_found_where_nothing_is(clean):
     assert clean.verdict == 'NO_DISCREPANCY', clean.reason
-    assert clean.seen.strongest < clean.seen.limit
-    assert clean.shown.after is None
+    assert clean.score_test.strongest < clean.score_test.limit
+    assert clean.holdout.after is None
     assert repaired(clean, []) is None
     assert headline(clean).startswith('No discrepancy')
 
@@ -60,18 +61,18 @@ def test_a_catch_that_comes_in_steps_is_named(caught):
 def test_a_sensor_that_jumps_is_seen_to_do_so(coarse, clean):
     late = [
         part.window
-        for part in clean.seen.fit.windows
+        for part in clean.score_test.fit.windows
         if (part.window.tow, part.window.hours) >= (2, 1.0)
     ]
     assert late
-    assert changes(clean.seen) == ()
+    assert changes(clean.score_test) == ()
     parts = tuple(
         replace(part, measured=part.measured + 4.0 * (np.array(part.channels) == 'net_depth'))
         if part.window in late
         else part
-        for part in clean.seen.fit.windows
+        for part in clean.score_test.fit.windows
     )
-    found, *_ = changes(replace(clean.seen, fit=replace(clean.seen.fit, windows=parts)))
+    found, *_ = changes(replace(clean.score_test, fit=replace(clean.score_test.fit, windows=parts)))
     assert (found.channel, found.variable) == ('net_depth', 'time')
     assert found.region == 'jumps up in tow 3 after 1.0 h'
     assert found.z > 5.0
@@ -82,9 +83,9 @@ def test_the_gap_shrinks_on_a_tow_that_decided_nothing(caught):
     deciding = {window.tow for window in caught.split.deciding}
     assert not deciding & {window.tow for window in caught.split.showing}
     # One tow of five windows, whose depths are off as one tow's may be: a study asks for more.
-    assert caught.shown.removed > 0.2
-    assert caught.shown.removed_by_placebo < caught.shown.removed
-    before, after = caught.shown.before, caught.shown.after
+    assert caught.holdout.removed > 0.2
+    assert caught.holdout.removed_by_placebo < caught.holdout.removed
+    before, after = caught.holdout.before, caught.holdout.after
     assert after.rms['door_spread'] < before.rms['door_spread']
 
 
@@ -94,7 +95,7 @@ def test_the_repaired_gear_leaves_no_discrepancy(caught, with_catch, hide, tmp_p
     (effect,) = gear.effects
     assert effect.name == 'catch_build_up'
     assert effect.provenance.evidence['delta_bic'] > 10.0
-    again = diagnose(gear, with_catch, hide.names[:3])
+    again = diagnose_windows(gear, with_catch, hide.names[:3])
     assert again.verdict == 'NO_DISCREPANCY', again.reason
 
 
@@ -143,7 +144,7 @@ BEFORE = frozenset({0, 1, 2})
 
 @pytest.fixture(scope='module')
 def beside_baseline(coarse, with_cells, hide):
-    return diagnose(coarse, with_cells, hide.names[:6], BEFORE)
+    return diagnose_windows(coarse, with_cells, hide.names[:6], BEFORE)
 
 
 def test_a_baseline_keeps_the_boards_out_of_it(beside_baseline):
@@ -162,13 +163,13 @@ def test_what_was_found_is_not_in_the_baseline(
     # comes in.
     monkeypatch.setattr(fit_beside, 'POOR', poor)
     gear = repaired(beside_baseline, [])
-    again = diagnose(gear, with_cells, hide.names[:6], BEFORE)
+    again = diagnose_windows(gear, with_cells, hide.names[:6], BEFORE)
     assert again.verdict == 'NO_DISCREPANCY', again.reason
 
 
 def test_what_does_not_vary_tells_nothing(coarse, hide):
     windows = hide.trial(coarse, hide.nothing, 5, tows=1)[:2]
-    found = diagnose(coarse, windows, hide.names[:1])
+    found = diagnose_windows(coarse, windows, hide.names[:1])
     assert found.verdict == 'NOT_TESTABLE'
     assert 'found 2 steady states' in headline(found)
     json.dumps(result(found, []), allow_nan=False)
@@ -187,13 +188,13 @@ def test_another_gear_is_not_diagnosed(coarse, hide):
         return {name: value * (1.6 if 'depth' in name else 0.5) for name, value in values.items()}
 
     windows = hide.trial(coarse, hide.Hidden(shown=other), 6, tows=1)
-    found = diagnose(coarse, windows, hide.names[:1])
+    found = diagnose_windows(coarse, windows, hide.names[:1])
     assert found.verdict == 'NOT_TESTABLE', found.reason
     assert 'another gear' in found.reason
 
 
 def test_the_next_tow_tells_an_effect_from_its_rival(coarse, caught):
-    seen = caught.seen
+    seen = caught.score_test
     best = caught.best.refit.wanted[0]
     (rival,) = [one for one in seen.wanted if one.name == 'spread_sensor']
     predictor = Predictor(build_model(coarse))
@@ -218,7 +219,7 @@ def test_what_leaves_a_towed_state_without_steady_state_explains_nothing(
     monkeypatch.setattr(naming, 'refit', lossy)
     wanted = caught.best.refit.wanted
     predictor = Predictor(build_model(coarse))
-    assert naming.refitted(predictor, caught.base, caught.seen, wanted) is None
+    assert naming.refitted(predictor, caught.base, caught.score_test, wanted) is None
 
 
 def test_a_window_that_the_likeliest_effect_loses_is_told(coarse, caught, monkeypatch):
@@ -232,12 +233,12 @@ def test_a_window_that_the_likeliest_effect_loses_is_told(coarse, caught, monkey
 
     monkeypatch.setattr(naming, 'refit', lossy)
     monkeypatch.setattr(naming, 'OPTIONS', replace(naming.OPTIONS, set_aside=0.2))
-    named = naming.name(Predictor(build_model(coarse)), base, caught.seen)
+    named = naming.name(Predictor(build_model(coarse)), base, caught.score_test)
     assert named.lost == {last}
     assert named.weighed == ()
     monkeypatch.setattr(naming, 'OPTIONS', replace(naming.OPTIONS, set_aside=0.0))
     monkeypatch.setattr(naming, 'SCREENED', 1)
-    assert naming.name(Predictor(build_model(coarse)), base, caught.seen).lost == frozenset()
+    assert naming.name(Predictor(build_model(coarse)), base, caught.score_test).lost == frozenset()
 
 
 def test_a_baseline_that_looks_like_the_gear_shows_that_it_is_the_same(coarse, hide, with_catch):
@@ -259,7 +260,7 @@ def test_another_error_of_the_same_instrument_is_looked_for_too(caught):
         effect = replace(candidate.effect, instrument='one' if same else '')
         return replace(candidate, effect=effect)
 
-    before, best = caught.seen, caught.best
+    before, best = caught.score_test, caught.best
     seen = replace(before, wanted=tuple(of_one(one) for one in before.wanted))
     (place,) = (n for n, one in enumerate(before.wanted) if one is best.refit.wanted[0])
     told = replace(best, refit=replace(best.refit, wanted=(seen.wanted[place],)))
@@ -274,4 +275,4 @@ def test_another_error_of_the_same_instrument_is_looked_for_too(caught):
 def test_where_no_effect_could_be_refitted_there_is_no_placebo(coarse, caught):
     nothing = replace(caught.named, verdict='UNKNOWN', weighed=(), alike=())
     predictor = Predictor(build_model(coarse))
-    assert diagnosis._placebo(predictor, caught.base, caught.seen, nothing) is None
+    assert procedure._placebo(predictor, caught.base, caught.score_test, nothing) is None

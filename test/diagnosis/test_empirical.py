@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis.diagnosis import diagnose
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.effects.base.effect import Situation
@@ -35,7 +35,7 @@ def windows(coarse, hide):
 
 @pytest.fixture(scope='module')
 def found(coarse, hide, windows):
-    return diagnose(coarse, windows, hide.names[:4])
+    return diagnose_windows(coarse, windows, hide.names[:4])
 
 
 def test_it_is_unknown_and_the_term_is_called_empirical(found):
@@ -49,7 +49,7 @@ def test_it_is_unknown_and_the_term_is_called_empirical(found):
 
 
 def test_it_closes_the_gap_from_the_gear_file(found, windows, hide, tmp_path):
-    assert found.shown.removed > 0.5
+    assert found.holdout.removed > 0.5
     write_diagnosis(found, [], tmp_path)
     numbers = json.loads((tmp_path / 'diagnosis.json').read_text())
     assert numbers['effects'] == []
@@ -58,7 +58,7 @@ def test_it_closes_the_gap_from_the_gear_file(found, windows, hide, tmp_path):
     gear = load_gear(tmp_path / 'model.yaml')
     (effect,) = gear.effects
     assert effect.name == found.empirical.term.name
-    again = diagnose(gear, windows, hide.names[:4])
+    again = diagnose_windows(gear, windows, hide.names[:4])
     assert again.verdict == 'NO_DISCREPANCY', again.reason
 
 

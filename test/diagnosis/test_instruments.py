@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from trawl_ros.diagnosis.diagnosis import diagnose
 from trawl_ros.diagnosis.instruments import over_ground
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import sentences
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 
@@ -26,7 +26,7 @@ def in_kilonewtons(coarse, hide):
 
 @pytest.mark.slow
 def test_a_wrong_unit_is_called_so(coarse, hide, in_kilonewtons):
-    found = diagnose(coarse, in_kilonewtons, hide.names[:2])
+    found = diagnose_windows(coarse, in_kilonewtons, hide.names[:2])
     assert found.verdict == 'NOT_TESTABLE'
     assert 'look like kilonewtons' in found.reason
     assert 'tension' in found.reason
@@ -41,7 +41,7 @@ def test_a_log_over_ground_is_told_tow_by_tow(coarse, hide):
     (said,) = over_ground(copied, ['first', 'second'])
     assert said.startswith('second: speed (vessel/velocity_water) is speed over ground')
     assert over_ground(windows, ['first', 'second']) == ()
-    found = diagnose(coarse, copied[:2], ['first', 'second'])
+    found = diagnose_windows(coarse, copied[:2], ['first', 'second'])
     assert found.verdict == 'NOT_TESTABLE'
     assert said not in sentences(found)
     assert sentences(replace(found, remarks=(said,)))[0] == said

@@ -6,8 +6,8 @@ from pathlib import Path
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import OnProgress, ignore
-from trawl_ros.diagnosis import diagnosis
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.repair import source
 from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.estimation.bag_windows import read_tows
@@ -105,12 +105,12 @@ def identify(
     options = estimator_options(prior=prior, net=net)
     record = _gear(gear)
     paths = [Path(bag) for bag in bags]
-    found = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
-    _note(found, on_note)
-    if all(part.why_not is not None for part in found):
-        raise TrawlError('; '.join(f'{part.name}: {part.why_not}' for part in found))
+    tows = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
+    _note(tows, on_note)
+    if all(tow.why_not is not None for tow in tows):
+        raise TrawlError('; '.join(f'{tow.name}: {tow.why_not}' for tow in tows))
     identification = identification_for(record, estimator_options=options)
-    names = estimate_tows(identification, found, on_progress)
+    names = estimate_tows(identification, tows, on_progress)
     if reason := identification.why_not():
         raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
     result = report(identification, known, tows=names, gear=record, on_progress=on_progress)
@@ -164,16 +164,16 @@ def diagnose(
         empty_folder(Path(out), force=force)
     record = _gear(gear)
     paths = [Path(bag) for bag in (*baseline, *bags)]
-    found = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
-    _note(found, on_note)
-    windows, names = numbered(found)
-    known, _ = numbered(found[: len(baseline)])
-    reasons = [f'{part.name}: {part.why_not}' for part in found if part.why_not is not None]
-    if len(reasons) == len(found):
+    tows = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
+    _note(tows, on_note)
+    windows, names = numbered(tows)
+    known, _ = numbered(tows[: len(baseline)])
+    reasons = [f'{tow.name}: {tow.why_not}' for tow in tows if tow.why_not is not None]
+    if len(reasons) == len(tows):
         result = unread(record, names, '; '.join(reasons))
     else:
         in_order = frozenset(window.tow for window in known)
-        result = diagnosis.diagnose(record, windows, names, in_order, on_progress)
+        result = diagnose_windows(record, windows, names, in_order, on_progress)
     if out is not None:
         write_diagnosis(result, [source(path) for path in paths], Path(out))
     return result
@@ -236,9 +236,9 @@ def _gear(gear: str | Path | GearRecord) -> GearRecord:
     return gear if isinstance(gear, GearRecord) else load_gear(gear)
 
 
-def _note(found: Sequence[FoundWindows], on_note: OnNote) -> None:
-    for part in found:
-        for problem in part.problems:
+def _note(tows: Sequence[FoundWindows], on_note: OnNote) -> None:
+    for tow in tows:
+        for problem in tow.problems:
             on_note(f'Damaged: {problem}')
-        if part.why_not is not None:
-            on_note(f'Not used: {part.name}: {part.why_not}')
+        if tow.why_not is not None:
+            on_note(f'Not used: {tow.name}: {tow.why_not}')

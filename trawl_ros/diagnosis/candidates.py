@@ -66,16 +66,16 @@ def candidates(
     depths
         Of the net in the tows at hand (n,), m.
     """
-    found = []
+    wanted = []
     for effect in effects.values():
         if effect.dynamic:
             continue
-        there = predictor.fixed.of(effect)
+        present = predictor.fixed.of(effect)
         starts = effect.starts(depths)
         if any(active.name == effect.name for active in predictor.fixed.effects):
-            starts = (there.values,)
-        found += [Candidate(effect, start, place) for place, start in enumerate(starts)]
-    return tuple(found)
+            starts = (present.values,)
+        wanted += [Candidate(effect, start, place) for place, start in enumerate(starts)]
+    return tuple(wanted)
 
 
 def values_vector(wanted: Sequence[Candidate]) -> ParameterVector:
@@ -91,7 +91,7 @@ def values_vector(wanted: Sequence[Candidate]) -> ParameterVector:
 
 
 def signatures(
-    predictor: Predictor, parts: Sequence[Linearised], wanted: Sequence[Candidate]
+    predictor: Predictor, linearised: Sequence[Linearised], wanted: Sequence[Candidate]
 ) -> list[FloatArray]:
     """Signatures of the candidates: changes in the windows' readings per unit of their values.
 
@@ -102,17 +102,17 @@ def signatures(
         value; 0 in tows without.
     """
     active = [ActiveEffect(candidate.effect, candidate.start) for candidate in wanted]
-    number = sum(len(one.values) for one in active)
-    found = []
-    for part in parts:
-        there = predictor.situated(part.window)
-        rows = [OBSERVABLES.index(name) for name in part.channels]
-        if there.absent or not active:
-            found.append(np.zeros((len(rows), number)))
+    number = sum(len(effect.values) for effect in active)
+    by_window = []
+    for linear in linearised:
+        situated = predictor.situated(linear.window)
+        rows = [OBSERVABLES.index(name) for name in linear.channels]
+        if situated.absent or not active:
+            by_window.append(np.zeros((len(rows), number)))
             continue
-        board = part.at[: len(COEFFICIENTS)]
-        found.append(there.signatures(board, part.inputs, part.state, active)[rows])
-    return found
+        board = linear.at[: len(COEFFICIENTS)]
+        by_window.append(situated.signatures(board, linear.inputs, linear.state, active)[rows])
+    return by_window
 
 
 def extended(
@@ -131,12 +131,12 @@ def extended(
     """
     board = fit.prior.slice_of('coefficients')
     starts = np.concatenate([candidate.start for candidate in wanted])
-    parts = tuple(
-        part.only(board).followed_by(starts, own)
-        for part, own in zip(fit.windows, columns, strict=True)
+    windows = tuple(
+        linear.only(board).followed_by(starts, own)
+        for linear, own in zip(fit.windows, columns, strict=True)
     )
     return Fit(
-        parts,
+        windows,
         np.concatenate((fit.coefficients[board], starts)),
         AS_STATED,
         with_candidates(fit.prior, wanted),

@@ -15,34 +15,34 @@ CHANCE = 0.01
 """Part of trials in which a jump is seen somewhere though there is none."""
 
 
-def changes(seen: ScoreTest) -> tuple[Where, ...]:
+def changes(test: ScoreTest) -> tuple[Where, ...]:
     """The most telling jump of each channel, where it alone explains more than all patterns of the
     channel together; the clearest first.
 
     A jump after each steady state is looked for in each channel, in the order in which they were
     towed, with boards and errors of calibration taken out.
     """
-    parts = seen.fit.windows
-    times = sorted({_time(part) for part in parts})
-    channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))
+    windows = test.fit.windows
+    times = sorted({_time(linear) for linear in windows})
+    channels = list(dict.fromkeys(pattern.channel for pattern in test.patterns))
     jumps = [(name, before, after) for name in channels for before, after in pairwise(times)]
     if not jumps:
         return ()
     columns = []
-    for part in parts:
-        own = np.zeros((len(part.channels), len(jumps)))
-        std = part.std(1)
+    for linear in windows:
+        own = np.zeros((len(linear.channels), len(jumps)))
+        std = linear.std(1)
         for place, (name, _, after) in enumerate(jumps):
-            if name in part.channels and _time(part) >= after:
-                row = part.channels.index(name)
+            if name in linear.channels and _time(linear) >= after:
+                row = linear.channels.index(name)
                 own[row, place] = std[row]
         columns.append(own)
-    found = evidence(seen.fit, columns, np.ones(len(jumps)), weights=seen.weights)
-    information = np.diag(found.information)
-    z = found.score / np.sqrt(np.where(information > BLIND, information, np.inf))
+    of_jumps = evidence(test.fit, columns, np.ones(len(jumps)), weights=test.weights)
+    information = np.diag(of_jumps.information)
+    z = of_jumps.score / np.sqrt(np.where(information > BLIND, information, np.inf))
     least = float(-ndtri(0.5 * CHANCE / len(jumps)))
-    usual = evidence(seen.fit, seen.shapes, np.ones(len(seen.patterns)), weights=seen.weights)
-    together = {name: usual.chi2(block) for name, block in blocks_of(seen.patterns, 0).items()}
+    usual = evidence(test.fit, test.shapes, np.ones(len(test.patterns)), weights=test.weights)
+    together = {name: usual.chi2(block) for name, block in blocks_of(test.patterns, 0).items()}
     located = []
     for name in channels:
         places = [place for place, jump in enumerate(jumps) if jump[0] == name]
@@ -55,6 +55,6 @@ def changes(seen: ScoreTest) -> tuple[Where, ...]:
     return tuple(sorted(located, key=lambda where: -abs(where.z)))
 
 
-def _time(part: Linearised) -> tuple[int, float]:
+def _time(linear: Linearised) -> tuple[int, float]:
     """Number of the tow, and hours into it."""
-    return part.window.tow, round(part.window.hours, 2)
+    return linear.window.tow, round(linear.window.hours, 2)

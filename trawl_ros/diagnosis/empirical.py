@@ -50,7 +50,7 @@ class Empirical:
         return dictionary()[self.weighed.refit.names[0]]
 
 
-def empirical(predictor: Predictor, base: Refit, seen: ScoreTest) -> Empirical | None:
+def empirical(predictor: Predictor, base: Refit, test: ScoreTest) -> Empirical | None:
     """Select the best term; None where placebos do nearly as well.
 
     Parameters
@@ -59,18 +59,18 @@ def empirical(predictor: Predictor, base: Refit, seen: ScoreTest) -> Empirical |
         The gear as it is believed.
     base
         Boards alone.
-    seen
+    test
         Result of the score test.
     """
-    depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
+    depths = np.array([linear.window.means['net_depth'] for linear in base.fit.windows])
     wanted = candidates(dictionary(), predictor, depths)
     columns = signatures(predictor, base.fit.windows, wanted)
     units = np.concatenate([candidate.scale for candidate in wanted])
 
     def gathered(some: list[FloatArray]) -> Evidence:
-        return evidence(seen.fit, some, units, weights=seen.weights)
+        return evidence(test.fit, some, units, weights=test.weights)
 
-    terms = replace(seen, wanted=wanted, columns=tuple(columns), evidence=gathered(columns))
+    terms = replace(test, wanted=wanted, columns=tuple(columns), evidence=gathered(columns))
     placebo = 0.0
     chance = np.random.default_rng(0)
     for _ in range(PLACEBOS):
@@ -82,11 +82,11 @@ def empirical(predictor: Predictor, base: Refit, seen: ScoreTest) -> Empirical |
     best = terms.evidence.chi2(terms.block(ranked[0]))
     if best < EMPIRICAL_OVER_PLACEBO * placebo:
         return None
-    tried = (refitted(predictor, base, terms, (candidate,)) for candidate in ranked[:REFITTED])
-    found = next((one for one in tried if one is not None), None)
-    if found is None:
+    refits = (refitted(predictor, base, terms, (candidate,)) for candidate in ranked[:REFITTED])
+    refit = next(filter(None, refits), None)
+    if refit is None:
         return None
-    (first,) = weigh(base, terms, [found])
+    (first,) = weigh(base, terms, [refit])
     if first.delta_bic < LEAST_BIC:
         return None
     return Empirical(first, placebo, left_over(base, terms, first.refit))

@@ -75,9 +75,9 @@ class Evidence:
         size = float(values @ self._of(block) @ values)
         if size <= BLIND:
             return 0.0
-        seen = self.information[np.ix_(columns, rows)] @ values
+        shared = self.information[np.ix_(columns, rows)] @ values
         inverse = np.linalg.pinv(self._of(other), 1e-10, hermitian=True)
-        return float(np.sqrt(np.clip(seen @ inverse @ seen / size, 0.0, 1.0)))
+        return float(np.sqrt(np.clip(shared @ inverse @ shared / size, 0.0, 1.0)))
 
     def without(self, block: Sequence[int]) -> 'Evidence':
         """Conditional evidence with some values free in any case; theirs is 0 then."""
@@ -122,10 +122,10 @@ def evidence(
     number, board = len(units), boards.stop
     jacobian = np.zeros((*fit.residual.shape, board + number))
     jacobian[:, :, boards] = fit.jacobian[:, :, boards]
-    for row, (part, own) in enumerate(zip(fit.windows, columns, strict=True)):
-        jacobian[row, :, board:] = spread(part, own * units)
+    for row, (linear, own) in enumerate(zip(fit.windows, columns, strict=True)):
+        jacobian[row, :, board:] = spread(linear, own * units)
     scales = np.array(fit.scales)[GROUP_OF]
-    found = eliminate_nuisance(
+    information = eliminate_nuisance(
         fit.errors if tows is None else tows,
         scales,
         fit.residual,
@@ -138,7 +138,7 @@ def evidence(
     known = np.zeros((board, board + number + 1))
     known[:, :board] = root * np.eye(board)
     known[:, -1] = root * away
-    rows = np.vstack((known, np.column_stack((found.triangle, found.right))))
+    rows = np.vstack((known, np.column_stack((information.triangle, information.right))))
     rest = triangular(rows)[board:]
     left, right = rest[:, board:-1], rest[:, -1]
     return Evidence(left.T @ left, left.T @ right, left)
@@ -157,15 +157,17 @@ def _tails(values: FloatArray, freedom: int) -> FloatArray:
 
 
 def threshold(
-    found: Evidence, blocks: Sequence[Sequence[int]], false_alarms: float, seed: int = 0
+    of_effects: Evidence, blocks: Sequence[Sequence[int]], false_alarms: float, seed: int = 0
 ) -> float:
     """Critical value of the largest `tail` of all blocks, for a rate of false alarms."""
-    draws = np.random.default_rng(seed).standard_normal((DRAWS, len(found.root))) @ found.root
+    draws = (
+        np.random.default_rng(seed).standard_normal((DRAWS, len(of_effects.root))) @ of_effects.root
+    )
     largest = np.zeros(DRAWS)
     for block in blocks:
-        own = found.information[np.ix_(list(block), list(block))]
+        own = of_effects.information[np.ix_(list(block), list(block))]
         inverse = np.linalg.pinv(own, 1e-10, hermitian=True)
-        freedom = found.degrees_of_freedom(block)
+        freedom = of_effects.degrees_of_freedom(block)
         if freedom == 0:
             continue
         chosen = draws[:, list(block)]
@@ -175,8 +177,8 @@ def threshold(
 
 
 def detectable(
-    found: Evidence, block: Sequence[int], limit: float, doubt: float = 1.0
+    of_effects: Evidence, block: Sequence[int], limit: float, doubt: float = 1.0
 ) -> FloatArray:
     """Detectable sizes of values, each alone, that exceed a `threshold` in 80 % of trials."""
     sigmas = doubt * float(-ndtri(0.5 * 10.0**-limit)) + POWER
-    return sigmas * found.std(block)
+    return sigmas * of_effects.std(block)

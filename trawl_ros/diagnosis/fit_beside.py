@@ -35,42 +35,42 @@ def fit_beside(
     windows
         To be explained.
     """
-    found = fit_boards(predictor, prior, windows, start=predictor.model.coefficients)
-    steady = [one for one in predictor.fixed.effects if not one.effect.dynamic]
-    added = [one for one in steady if one.name in predictor.new]
-    if not added or (found is not None and found.fit.birge_ratio < POOR):
-        return found
+    with_effects = fit_boards(predictor, prior, windows, start=predictor.model.coefficients)
+    steady = [effect for effect in predictor.fixed.effects if not effect.effect.dynamic]
+    added = [effect for effect in steady if effect.name in predictor.new]
+    if not added or (with_effects is not None and with_effects.fit.birge_ratio < POOR):
+        return with_effects
     without = replace(predictor, fixed=predictor.fixed.without(predictor.new))
     base = fit_boards(without, prior, windows)
     if base is None:
-        return found
-    wanted = tuple(_nearest(one, without, base) for one in added)
-    values = np.concatenate([one.values for one in added])
+        return with_effects
+    wanted = tuple(_nearest(effect, without, base) for effect in added)
+    values = np.concatenate([effect.values for effect in added])
     columns = signatures(without, base.fit.windows, wanted)
-    parts = extended(base.fit, wanted, columns, OPTIONS).windows
-    free = refit(without, base.fit, wanted, values, parts, OPTIONS)
+    windows_extended = extended(base.fit, wanted, columns, OPTIONS).windows
+    free = refit(without, base.fit, wanted, values, windows_extended, OPTIONS)
     if free is None:
-        return found
+        return with_effects
     estimator = Estimator(predictor, prior, OBSERVABLES, OPTIONS)
     board = prior.slice_of('coefficients')
-    held = [_held(part, board, values) for part in free.fit.windows]
+    held = [_held(linear, board, values) for linear in free.fit.windows]
     estimator.begin(held, free.estimate.values[board])
     estimate = estimator.finish()
-    return likelier(found, None if estimate is None else Refit((), estimator, estimate))
+    return likelier(with_effects, None if estimate is None else Refit((), estimator, estimate))
 
 
 def _nearest(active: ActiveEffect, predictor: Predictor, base: Refit) -> Candidate:
     """Candidate of an effect, at the start nearest to its found values."""
-    depths = np.array([part.window.means['net_depth'] for part in base.fit.windows])
+    depths = np.array([linear.window.means['net_depth'] for linear in base.fit.windows])
     places = candidates({active.name: active.effect}, predictor, depths)
 
-    def away(one: Candidate) -> float:
-        return float(np.linalg.norm((one.start - active.values) / one.scale))
+    def away(candidate: Candidate) -> float:
+        return float(np.linalg.norm((candidate.start - active.values) / candidate.scale))
 
     return min(places, key=away)
 
 
-def _held(part: Linearised, board: Slice, values: FloatArray) -> Linearised:
+def _held(linear: Linearised, board: Slice, values: FloatArray) -> Linearised:
     """Window with the effects at these values, and only coefficients free."""
-    there = part.predicted(np.concatenate((part.at[board], values)))
-    return replace(part.only(board), values=there)
+    predicted = linear.predicted(np.concatenate((linear.at[board], values)))
+    return replace(linear.only(board), values=predicted)

@@ -1,7 +1,7 @@
 """Hold-out comparison: kept-back windows predicted without the effect, with it, with a placebo."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -75,6 +75,28 @@ class HoldoutErrors:
         return max(0.0, float(np.mean(ratios)) - 1.0)
 
 
+@dataclass(frozen=True)
+class HoldoutComparison:
+    """Hold-out comparison: errors without, with the effect, and with the best wrong one
+    (``placebo``, whose name is ``instead``).
+    """
+
+    before: HoldoutErrors
+    after: HoldoutErrors | None
+    placebo: HoldoutErrors | None
+    instead: str | None
+
+    @property
+    def removed(self) -> float | None:
+        """Share of the excess error that the effect removes; None where there is none."""
+        return _removed(self.before, self.after)
+
+    @property
+    def removed_by_placebo(self) -> float | None:
+        """Share of the excess error that the best wrong effect removes."""
+        return _removed(self.before, self.placebo)
+
+
 def errors(
     fits: Sequence[tuple[Predictor, Refit]], windows: Sequence[SteadyWindow]
 ) -> list[HoldoutErrors]:
@@ -92,23 +114,65 @@ def errors(
     rows = []
     for window in windows:
         try:
-            rows.append([_predicted(predictor, one, window) for predictor, one in fits])
+            rows.append([_predicted(predictor, refit, window) for predictor, refit in fits])
         except NoSteadyState:
             continue
     return [_gathered([row[place] for row in rows]) for place in range(len(fits))]
 
 
-def _predicted(predictor: Predictor, one: Refit, window: SteadyWindow) -> Linearised:
-    places = np.array([part.inputs for part in one.fit.windows])
-    away = np.abs(places / measured_inputs(window) - 1.0).sum(axis=1)
-    near = one.fit.windows[int(np.argmin(away))].state
-    return linearise(predictor, OBSERVABLES, window, one.estimate.values, (near, None))
+def compare(
+    predictor: Predictor,
+    base: Refit,
+    best: Refit | None,
+    placebo: Refit | None,
+    windows: Sequence[SteadyWindow],
+) -> HoldoutComparison | None:
+    """Compare refits on the windows kept back; None where refits are none.
 
-
-def _gathered(parts: Sequence[Linearised]) -> HoldoutErrors:
-    found = residuals(parts)
-    return HoldoutErrors(
-        rms={row.channel: float(np.sqrt(np.mean(row.values**2))) for row in found},
-        expected={row.channel: row.stated_std for row in found},
-        windows=len(parts),
+    Parameters
+    ----------
+    predictor
+        The gear.
+    base, best, placebo
+        Refits of the boards alone, with the best effect, and with a wrong one.
+    windows
+        Kept back from all of them.
+    """
+    if not windows:
+        return None
+    refits = [refit for refit in (base, best, placebo) if refit is not None]
+    free = [
+        replace(predictor, free=tuple(candidate.effect for candidate in refit.wanted))
+        for refit in refits
+    ]
+    compared = iter(errors(list(zip(free, refits, strict=True)), windows))
+    return HoldoutComparison(
+        before=next(compared),
+        after=None if best is None else next(compared),
+        placebo=None if placebo is None else next(compared),
+        instead=None if placebo is None else placebo.names[0],
     )
+
+
+def _predicted(predictor: Predictor, refit: Refit, window: SteadyWindow) -> Linearised:
+    places = np.array([linear.inputs for linear in refit.fit.windows])
+    away = np.abs(places / measured_inputs(window) - 1.0).sum(axis=1)
+    near = refit.fit.windows[int(np.argmin(away))].state
+    return linearise(predictor, OBSERVABLES, window, refit.estimate.values, (near, None))
+
+
+def _gathered(linearised: Sequence[Linearised]) -> HoldoutErrors:
+    by_channel = residuals(linearised)
+    return HoldoutErrors(
+        rms={row.channel: float(np.sqrt(np.mean(row.values**2))) for row in by_channel},
+        expected={row.channel: row.stated_std for row in by_channel},
+        windows=len(linearised),
+    )
+
+
+def _removed(before: HoldoutErrors, after: HoldoutErrors | None) -> float | None:
+    # In the same units: a gear with an effect may feel errors of warp lengths more.
+    was = before.excess(before.expected)
+    if after is None or was <= 0.0:
+        return None
+    return 1.0 - after.excess(before.expected) / was

@@ -20,17 +20,17 @@ def wrong_unit(
     """Sentence on a channel that reports in another unit; None where none is found."""
     screening = Screening(predictor, prior, OBSERVABLES)
     for window in windows[:: max(1, len(windows) // JUDGED)]:
-        found = screening.judge(window, prior.start).found
-        if found is not None and found.reason == UNIT:
-            return found.detail
+        rejected = screening.judge(window, prior.start).found
+        if rejected is not None and rejected.reason == UNIT:
+            return rejected.detail
     return None
 
 
 def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, ...]:
     """Sentences on tows whose log gives speed over ground."""
     judge, sentences = OverGround(), {}
-    for window in sorted(windows, key=lambda one: (one.tow, one.start_ns)):
-        found = judge.judge(window.tow, window.track)
-        if found is not None:
-            sentences[window.tow] = f'{tows[window.tow]}: {found}.'
+    for window in sorted(windows, key=lambda window: (window.tow, window.start_ns)):
+        sentence = judge.judge(window.tow, window.track)
+        if sentence is not None:
+            sentences[window.tow] = f'{tows[window.tow]}: {sentence}.'
     return tuple(sentences.values())

@@ -30,33 +30,33 @@ class Where:
     z: float
 
 
-def located(seen: ScoreTest) -> tuple[Where, ...]:
+def located(test: ScoreTest) -> tuple[Where, ...]:
     """All patterns, the most significant first."""
-    found = []
-    for place, pattern in enumerate(seen.patterns, seen.number):
-        information = float(seen.evidence.information[place, place])
+    places = []
+    for place, pattern in enumerate(test.patterns, test.number):
+        information = float(test.evidence.information[place, place])
         if information <= BLIND:
             continue
-        z = float(seen.evidence.score[place]) / float(np.sqrt(information))
-        found.append(Where(pattern.channel, pattern.shape, _region(seen, pattern, z), z))
-    return tuple(sorted(found, key=lambda where: -abs(where.z)))
+        z = float(test.evidence.score[place]) / float(np.sqrt(information))
+        places.append(Where(pattern.channel, pattern.shape, _region(test, pattern, z), z))
+    return tuple(sorted(places, key=lambda where: -abs(where.z)))
 
 
-def telling(seen: ScoreTest) -> tuple[Where, ...]:
+def telling(test: ScoreTest) -> tuple[Where, ...]:
     """Significant patterns."""
-    return tuple(where for where in located(seen) if abs(where.z) >= TELLING)
+    return tuple(where for where in located(test) if abs(where.z) >= TELLING)
 
 
-def map_of(seen: ScoreTest) -> tuple[list[str], list[str], FloatArray]:
+def map_of(test: ScoreTest) -> tuple[list[str], list[str], FloatArray]:
     """Channels, variables and z (channels, variables), NaN where a pattern is unobservable."""
-    found = {(where.channel, where.variable): where.z for where in located(seen)}
-    channels = list(dict.fromkeys(pattern.channel for pattern in seen.patterns))
-    variables = [name for name in SHAPES if any(p.shape == name for p in seen.patterns)]
-    z = [[found.get((channel, name), np.nan) for name in variables] for channel in channels]
+    z_of = {(where.channel, where.variable): where.z for where in located(test)}
+    channels = list(dict.fromkeys(pattern.channel for pattern in test.patterns))
+    variables = [name for name in SHAPES if any(p.shape == name for p in test.patterns)]
+    z = [[z_of.get((channel, name), np.nan) for name in variables] for channel in channels]
     return channels, variables, np.array(z)
 
 
-def _region(seen: ScoreTest, pattern: ResidualPattern, z: float) -> str:
+def _region(test: ScoreTest, pattern: ResidualPattern, z: float) -> str:
     words = DIRECTIONS.get(pattern.shape)
     if words is not None:
         return words[0] if z > 0.0 else words[1]

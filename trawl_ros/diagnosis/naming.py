@@ -70,7 +70,7 @@ class Named:
 def name(
     predictor: Predictor,
     base: Refit,
-    seen: ScoreTest,
+    test: ScoreTest,
     on_progress: OnProgress = ignore,
 ) -> Named:
     """Name the detected effect, or say why it cannot be named.
@@ -81,38 +81,38 @@ def name(
         The gear as it is believed.
     base
         Boards alone.
-    seen
+    test
         Result of the score test.
     on_progress
         Called before each refit.
     """
-    ranked = sorted(seen.wanted, key=seen.penalised, reverse=True)
-    first = seen.penalised(ranked[0])
+    ranked = sorted(test.wanted, key=test.penalised, reverse=True)
+    first = test.penalised(ranked[0])
     chosen: list[Candidate] = []
     for candidate in ranked:
         again = any(other.name == candidate.name for other in chosen)
-        near = seen.penalised(candidate) > min(first - SCREEN, SCREEN_SHARE * first)
+        near = test.penalised(candidate) > min(first - SCREEN, SCREEN_SHARE * first)
         if near and not again:
             chosen.append(candidate)
     refits = []
     for candidate in chosen[:SCREENED]:
         on_progress(_refitting(candidate.name))
-        found = _refitted(predictor, base, seen, (candidate,), REFITTING)
-        lost = _lost(base, found)
-        if found is not None and not lost:
-            refits.append(found)
+        fitted = _refitted(predictor, base, test, (candidate,), REFITTING)
+        lost = _lost(base, fitted)
+        if fitted is not None and not lost:
+            refits.append(fitted)
         elif candidate is chosen[0] and len(lost) <= OPTIONS.set_aside * len(base.fit.windows):
             return _without_states(lost)
     if not refits:
         return _without_states(frozenset())
-    weighed = _possible_first(weigh(base, seen, refits))
+    weighed = _possible_first(weigh(base, test, refits))
     best = weighed[0]
-    left = left_over(base, seen, best.refit)
-    if seconds := _seconds(seen, weighed, left):
-        weighed, left = _with_second(predictor, base, seen, refits, weighed, seconds, on_progress)
+    left = left_over(base, test, best.refit)
+    if seconds := _seconds(test, weighed, left):
+        weighed, left = _with_second(predictor, base, test, refits, weighed, seconds, on_progress)
         best = weighed[0]
-    alike = twins(seen, best.refit)
-    rivals = _rivals(seen, weighed)
+    alike = twins(test, best.refit)
+    rivals = _rivals(test, weighed)
     grounds = Grounds(
         delta_bic=best.doubted_bic,
         gain_low=best.gain[1],
@@ -138,14 +138,14 @@ def _possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
     for other in weighed[1:]:
         near = best.delta_bic - other.delta_bic < BOUND_SHARE * best.delta_bic
         if near and not other.refit.at_bound():
-            return (other, *(one for one in weighed if one is not other))
+            return (other, *(entry for entry in weighed if entry is not other))
     return weighed
 
 
-def _rivals(seen: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
+def _rivals(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
     """Effects that are not excluded and not of the class of the best."""
     best = weighed[0]
-    taken = {*best.refit.names, *twins(seen, best.refit)}
+    taken = {*best.refit.names, *twins(test, best.refit)}
     return tuple(
         other.refit.names[0]
         for other in weighed[1:]
@@ -155,23 +155,23 @@ def _rivals(seen: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
     )
 
 
-def _near(seen: ScoreTest, weighed: Sequence[Weighed]) -> frozenset[str]:
+def _near(test: ScoreTest, weighed: Sequence[Weighed]) -> frozenset[str]:
     """Names of effects nearly as good as the best, or nearly the same: both may be present."""
     refitted_too = {name for other in weighed[1:] for name in other.refit.names}
-    alike = refitted_too.intersection(twins(seen, weighed[0].refit, NEARLY_ALIKE))
-    return frozenset({*_rivals(seen, weighed), *alike})
+    alike = refitted_too.intersection(twins(test, weighed[0].refit, NEARLY_ALIKE))
+    return frozenset({*_rivals(test, weighed), *alike})
 
 
-def _of_one_instrument(seen: ScoreTest, best: Weighed) -> frozenset[str]:
+def _of_one_instrument(test: ScoreTest, best: Weighed) -> frozenset[str]:
     """Other errors of the instrument whose error is the best: one seldom comes without them."""
     (first,) = best.refit.wanted
     own = first.effect.instrument
-    return frozenset(one.name for one in seen.wanted if own and one.effect.instrument == own) - {
-        first.name
-    }
+    return frozenset(
+        candidate.name for candidate in test.wanted if own and candidate.effect.instrument == own
+    ) - {first.name}
 
 
-def _seconds(seen: ScoreTest, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
+def _seconds(test: ScoreTest, weighed: Sequence[Weighed], left: LeftOver) -> tuple[Candidate, ...]:
     """Candidates for a second effect beside the best.
 
     Some of its rivals, or else of all effects, that explain most of what is left over; and other
@@ -179,26 +179,26 @@ def _seconds(seen: ScoreTest, weighed: Sequence[Weighed], left: LeftOver) -> tup
     """
     best = weighed[0]
     (first,) = best.refit.wanted
-    rest = seen.evidence.without(seen.block(first))
-    others = [one for one in seen.wanted if one.name != first.name]
-    others.sort(key=lambda one: seen.penalised(one, rest), reverse=True)
-    near, own = _near(seen, weighed), _of_one_instrument(seen, best)
+    rest = test.evidence.without(test.block(first))
+    others = [candidate for candidate in test.wanted if candidate.name != first.name]
+    others.sort(key=lambda candidate: test.penalised(candidate, rest), reverse=True)
+    near, own = _near(test, weighed), _of_one_instrument(test, best)
     # Residuals of the best in the direction of its like are seen badly to first order.
-    chosen = _once(one for one in others if one.name in near)[:SECONDS]
+    chosen = _once(candidate for candidate in others if candidate.name in near)[:SECONDS]
     if not chosen:
         chosen = tuple(
-            one
-            for one in others[:1]
-            if left.too_much or seen.penalised(one, rest) > _to_be_there(best)
+            candidate
+            for candidate in others[:1]
+            if left.too_much or test.penalised(candidate, rest) > _to_be_there(best)
         )
-    return _once([*chosen, *(one for one in others if one.name in own)])
+    return _once([*chosen, *(candidate for candidate in others if candidate.name in own)])
 
 
-def _once(found: Iterable[Candidate]) -> tuple[Candidate, ...]:
+def _once(wanted: Iterable[Candidate]) -> tuple[Candidate, ...]:
     """First candidate of each effect."""
     first: dict[str, Candidate] = {}
-    for one in found:
-        first.setdefault(one.name, one)
+    for candidate in wanted:
+        first.setdefault(candidate.name, candidate)
     return tuple(first.values())
 
 
@@ -210,7 +210,7 @@ def _to_be_there(best: Weighed) -> float:
 def refitted(
     predictor: Predictor,
     base: Refit,
-    seen: ScoreTest,
+    test: ScoreTest,
     wanted: Sequence[Candidate],
     options: EstimatorOptions | None = None,
 ) -> Refit | None:
@@ -219,15 +219,15 @@ def refitted(
     With ``options``, or those of a refit. None where a state that was towed has no steady state
     then: that explains nothing.
     """
-    found = _refitted(predictor, base, seen, wanted, options or REFITTING)
-    return None if _lost(base, found) else found
+    fitted = _refitted(predictor, base, test, wanted, options or REFITTING)
+    return None if _lost(base, fitted) else fitted
 
 
-def _lost(base: Refit, found: Refit | None) -> frozenset[int]:
+def _lost(base: Refit, fitted: Refit | None) -> frozenset[int]:
     """Windows that have a steady state with the boards alone, and none in a refit."""
-    if found is None:
-        return frozenset(part.window.index for part in base.fit.windows)
-    return frozenset(window.index for window in with_those_of(base.fit, found.fit)[1])
+    if fitted is None:
+        return frozenset(linear.window.index for linear in base.fit.windows)
+    return frozenset(window.index for window in with_those_of(base.fit, fitted.fit)[1])
 
 
 def _without_states(lost: frozenset[int]) -> Named:
@@ -238,21 +238,21 @@ def _without_states(lost: frozenset[int]) -> Named:
 def _refitted(
     predictor: Predictor,
     base: Refit,
-    seen: ScoreTest,
+    test: ScoreTest,
     wanted: Sequence[Candidate],
     options: EstimatorOptions,
 ) -> Refit | None:
     """Refit as `refitted`, with the remaining windows where some have lost their steady state."""
-    rows = [place for candidate in wanted for place in seen.block(candidate)]
-    columns = [own[:, rows] for own in seen.columns]
-    parts = extended(base.fit, wanted, columns, base.fit.options).windows
+    rows = [place for candidate in wanted for place in test.block(candidate)]
+    columns = [own[:, rows] for own in test.columns]
+    windows = extended(base.fit, wanted, columns, base.fit.options).windows
     scale = np.concatenate([candidate.scale for candidate in wanted])
     starts = np.concatenate([candidate.start for candidate in wanted])
-    values = starts + scale * seen.evidence.values(rows)
+    values = starts + scale * test.evidence.values(rows)
     best: Refit | None = None
     # First order may lead astray: then from where there is nothing but the boards.
     for start in (values, starts):
-        best = likelier(best, refit(predictor, base.fit, wanted, start, parts, options))
+        best = likelier(best, refit(predictor, base.fit, wanted, start, windows, options))
         if (
             best is not None
             and not _lost(base, best)
@@ -269,7 +269,7 @@ def _refitting(names: str) -> WorkProgress:
 def _with_second(
     predictor: Predictor,
     base: Refit,
-    seen: ScoreTest,
+    test: ScoreTest,
     refits: Sequence[Refit],
     weighed: tuple[Weighed, ...],
     seconds: Sequence[Candidate],
@@ -279,21 +279,23 @@ def _with_second(
     (first,) = weighed[0].refit.wanted
     more = []
     for second in seconds:
-        if second.name not in [one.names[0] for one in refits]:
+        if second.name not in [fitted.names[0] for fitted in refits]:
             on_progress(_refitting(second.name))
-            more.append(refitted(predictor, base, seen, (second,)))
+            more.append(refitted(predictor, base, test, (second,)))
         on_progress(_refitting(f'{first.name} and {second.name}'))
-        more.append(refitted(predictor, base, seen, (first, second)))
-    found = _possible_first(weigh(base, seen, [*refits, *(one for one in more if one is not None)]))
-    pair = next((one for one in found if len(one.refit.wanted) == PAIR), None)
-    alone = tuple(one for one in found if len(one.refit.wanted) < PAIR)
+        more.append(refitted(predictor, base, test, (first, second)))
+    reweighed = _possible_first(
+        weigh(base, test, [*refits, *(fitted for fitted in more if fitted is not None)])
+    )
+    pair = next((entry for entry in reweighed if len(entry.refit.wanted) == PAIR), None)
+    alone = tuple(entry for entry in reweighed if len(entry.refit.wanted) < PAIR)
     if pair is not None:
-        with_both = left_over(base, seen, pair.refit)
+        with_both = left_over(base, test, pair.refit)
         alike = {
-            *twins(seen, weighed[0].refit, NEARLY_ALIKE),
-            *_of_one_instrument(seen, weighed[0]),
+            *twins(test, weighed[0].refit, NEARLY_ALIKE),
+            *_of_one_instrument(test, weighed[0]),
         }
         least = LEAST_BIC if pair.refit.names[1] in alike else _to_be_there(alone[0])
         if not with_both.too_much and pair.delta_bic > least + alone[0].delta_bic:
             return (pair, *alone), with_both
-    return alone, left_over(base, seen, alone[0].refit)
+    return alone, left_over(base, test, alone[0].refit)

@@ -70,7 +70,7 @@ class Proposal:
 
 def propose(
     predictor: Predictor,
-    seen: ScoreTest,
+    test: ScoreTest,
     best: Candidate,
     values: FloatArray,
     rivals: Sequence[Candidate],
@@ -81,8 +81,8 @@ def propose(
     ----------
     predictor
         The gear as it is believed.
-    seen
-        The first look.
+    test
+        The score test.
     best, values
         The effect, and its values (m,) as they were found.
     rivals
@@ -95,67 +95,67 @@ def propose(
     """
     if not rivals:
         return ()
-    now = evidence(seen.fit, seen.columns, seen.units)
-    before = _apart(seen, now, best, values, rivals)
-    known = dict(zip(_places(seen), seen.fit.windows, strict=True))
+    now = evidence(test.fit, test.columns, test.units)
+    before = _apart(test, now, best, values, rivals)
+    known = dict(zip(_places(test), test.fit.windows, strict=True))
     solved: dict[tuple[float, float], Linearised] = {}
-    another = 1 + max(part.window.tow for part in seen.fit.windows)
-    found = []
-    for states in _tows(seen):
+    another = 1 + max(linear.window.tow for linear in test.fit.windows)
+    proposals = []
+    for states in _tows(test):
         for reciprocal in (False, True):
             try:
-                states_solved = [_solved(predictor, seen, known, solved, one) for one in states]
+                states_solved = [_solved(predictor, test, known, solved, state) for state in states]
             except NoSteadyState:
                 continue
-            parts = [
-                _window_of(part, another, number, reciprocal)
-                for number, part in enumerate(states_solved)
+            windows = [
+                _window_of(linear, another, number, reciprocal)
+                for number, linear in enumerate(states_solved)
             ]
-            fit = replace(seen.fit, windows=(*seen.fit.windows, *parts))
-            more = signatures(predictor, parts, seen.wanted)
-            after = evidence(fit, [*seen.columns, *more], seen.units)
-            apart = _apart(seen, after, best, values, rivals)
-            found.append(Proposal(states, reciprocal, before, apart))
-    ranked = sorted(found, key=lambda proposal: -proposal.per_hour)
+            fit = replace(test.fit, windows=(*test.fit.windows, *windows))
+            more = signatures(predictor, windows, test.wanted)
+            after = evidence(fit, [*test.columns, *more], test.units)
+            apart = _apart(test, after, best, values, rivals)
+            proposals.append(Proposal(states, reciprocal, before, apart))
+    ranked = sorted(proposals, key=lambda proposal: -proposal.per_hour)
     return tuple(proposal for proposal in ranked[:TOLD] if proposal.per_hour > 0.0)
 
 
 def _apart(
-    seen: ScoreTest,
-    there: Evidence,
+    test: ScoreTest,
+    evidence_of_tow: Evidence,
     best: Candidate,
     values: FloatArray,
     rivals: Sequence[Candidate],
 ) -> float:
     """Least χ² of an effect that a rival cannot explain."""
-    block = list(seen.block(best))
+    block = list(test.block(best))
     scaled = (values - best.start) / best.scale
     left = []
     for rival in rivals:
-        rest = there.without(seen.block(rival)).information[np.ix_(block, block)]
+        rest = evidence_of_tow.without(test.block(rival)).information[np.ix_(block, block)]
         left.append(float(scaled @ rest @ scaled))
     return min(left)
 
 
-def _places(seen: ScoreTest) -> list[tuple[float, float, int]]:
+def _places(test: ScoreTest) -> list[tuple[float, float, int]]:
     return [
-        (float(part.inputs[:2].mean()), float(part.inputs[2]), part.window.index)
-        for part in seen.fit.windows
+        (float(linear.inputs[:2].mean()), float(linear.inputs[2]), linear.window.index)
+        for linear in test.fit.windows
     ]
 
 
-def _tows(seen: ScoreTest) -> list[tuple[tuple[float, float], ...]]:
+def _tows(test: ScoreTest) -> list[tuple[tuple[float, float], ...]]:
     """Tows of speed steps at both ends of the warp's range, and warp steps at both speeds'."""
-    lengths, speeds, _ = (np.array(column) for column in zip(*_places(seen), strict=True))
+    lengths, speeds, _ = (np.array(column) for column in zip(*_places(test), strict=True))
     steps = [np.linspace(values.min(), values.max(), STATES) for values in (lengths, speeds)]
-    found = [tuple((float(end), float(u)) for u in steps[1]) for end in steps[0][[0, -1]]]
-    found += [tuple((float(w), float(end)) for w in steps[0]) for end in steps[1][[0, -1]]]
-    return found
+    tows = [tuple((float(end), float(u)) for u in steps[1]) for end in steps[0][[0, -1]]]
+    tows += [tuple((float(w), float(end)) for w in steps[0]) for end in steps[1][[0, -1]]]
+    return tows
 
 
 def _solved(
     predictor: Predictor,
-    seen: ScoreTest,
+    test: ScoreTest,
     known: dict[tuple[float, float, int], Linearised],
     solved: dict[tuple[float, float], Linearised],
     state: tuple[float, float],
@@ -165,26 +165,26 @@ def _solved(
         return solved[state]
     length, speed = state
     near = min(known, key=lambda at: abs(at[0] / length - 1.0) + abs(at[1] / speed - 1.0))
-    part = known[near]
+    nearest = known[near]
     noise = {
         name: float(np.median([w.window.noise[name] for w in known.values()
                                if name in w.window.noise]))
-        for name in part.window.means
+        for name in nearest.window.means
     }  # fmt: skip
     asked = {'port_length': length, 'starboard_length': length, 'speed': speed}
-    window = replace(part.window, means={**part.window.means, **asked}, noise=noise)
-    board = seen.fit.coefficients[seen.fit.prior.slice_of('coefficients')]
-    found = linearise(predictor, OBSERVABLES, window, board, (part.state, None), even=False)
-    means = {**window.means, **dict(zip(found.channels, map(float, found.values), strict=True))}
+    window = replace(nearest.window, means={**nearest.window.means, **asked}, noise=noise)
+    board = test.fit.coefficients[test.fit.prior.slice_of('coefficients')]
+    linear = linearise(predictor, OBSERVABLES, window, board, (nearest.state, None), even=False)
+    means = {**window.means, **dict(zip(linear.channels, map(float, linear.values), strict=True))}
     bias = {name: CHANNELS[name].bias_std(mean) for name, mean in means.items()}
     window = replace(window, means=means, bias=bias, to_come={})
-    solved[state] = replace(found, window=window, measured=np.array(found.values))
+    solved[state] = replace(linear, window=window, measured=np.array(linear.values))
     return solved[state]
 
 
-def _window_of(part: Linearised, tow: int, number: int, reciprocal: bool) -> Linearised:
+def _window_of(linear: Linearised, tow: int, number: int, reciprocal: bool) -> Linearised:
     """Copy of a window as one of a tow of its own."""
-    window: SteadyWindow = part.window
+    window: SteadyWindow = linear.window
     heading = 0.0 if window.sense > 0.0 else math.pi
     if reciprocal:
         heading = math.pi - heading
@@ -197,4 +197,4 @@ def _window_of(part: Linearised, tow: int, number: int, reciprocal: bool) -> Lin
         hours=number * STATE_MINUTES / 60.0,
         track=GroundTrack(heading, 0.0, 0.0, False),
     )
-    return replace(part, window=window)
+    return replace(linear, window=window)

@@ -23,7 +23,9 @@ class ResidualPattern:
     shape: str
 
 
-def patterns(parts: Sequence[Linearised]) -> tuple[tuple[ResidualPattern, ...], list[FloatArray]]:
+def patterns(
+    linearised: Sequence[Linearised],
+) -> tuple[tuple[ResidualPattern, ...], list[FloatArray]]:
     """All patterns that are observable in the windows.
 
     Returns
@@ -34,30 +36,30 @@ def patterns(parts: Sequence[Linearised]) -> tuple[tuple[ResidualPattern, ...], 
         For each window an array (channels of the window, patterns), each column of size 1 in std
         of the readings.
     """
-    variables = _variables(parts)
+    variables = _variables(linearised)
     varying = [i for i in range(len(SHAPES)) if i == 0 or np.ptp(variables[:, i]) > 1e-9]
-    present = [name for name in MEASURED if any(name in part.channels for part in parts)]
-    found = tuple(ResidualPattern(name, SHAPES[i]) for name in present for i in varying)
+    present = [name for name in MEASURED if any(name in linear.channels for linear in linearised)]
+    observable = tuple(ResidualPattern(name, SHAPES[i]) for name in present for i in varying)
     columns = []
-    for row, part in enumerate(parts):
-        own = np.zeros((len(part.channels), len(found)))
-        std = part.std(1)
-        for channel, name in enumerate(part.channels):
+    for row, linear in enumerate(linearised):
+        own = np.zeros((len(linear.channels), len(observable)))
+        std = linear.std(1)
+        for channel, name in enumerate(linear.channels):
             first = present.index(name) * len(varying)
             own[channel, first : first + len(varying)] = std[channel] * variables[row, varying]
         columns.append(own)
-    return found, columns
+    return observable, columns
 
 
-def _variables(parts: Sequence[Linearised]) -> FloatArray:
+def _variables(linearised: Sequence[Linearised]) -> FloatArray:
     """Shapes (windows, shapes), centred and scaled."""
-    length = np.array([0.5 * part.inputs[:2].sum() for part in parts])
-    speed = np.array([part.inputs[2] for part in parts])
-    hours = np.array([part.window.hours for part in parts])
-    course = np.array([part.window.sense for part in parts])
+    length = np.array([0.5 * linear.inputs[:2].sum() for linear in linearised])
+    speed = np.array([linear.inputs[2] for linear in linearised])
+    hours = np.array([linear.window.hours for linear in linearised])
+    course = np.array([linear.window.sense for linear in linearised])
     length, speed, hours = (_standard(values) for values in (length, speed, hours))
     square = _standard(length**2)
-    shapes = (np.ones(len(parts)), length, square, speed, length * speed, hours, course)
+    shapes = (np.ones(len(linearised)), length, square, speed, length * speed, hours, course)
     return np.column_stack(shapes)
 
 

@@ -103,15 +103,15 @@ def fit_boards(
         together.begin((), prior.clipped(start))
     together.take(windows)
     estimate = together.finish()
-    found = None if estimate is None else Refit((), together, estimate)
-    if found is not None and found.fit.birge_ratio < POOR:
-        return found
+    at_once = None if estimate is None else Refit((), together, estimate)
+    if at_once is not None and at_once.fit.birge_ratio < POOR:
+        return at_once
     # Far from where they start boards may get stuck, which window by window they need not.
     by_turns = Estimator(predictor, prior, OBSERVABLES, options)
     for window in windows:
         by_turns.add(window)
     estimate = by_turns.finish()
-    return likelier(found, None if estimate is None else Refit((), by_turns, estimate))
+    return likelier(at_once, None if estimate is None else Refit((), by_turns, estimate))
 
 
 def was_in_order(
@@ -122,17 +122,17 @@ def was_in_order(
 ) -> bool:
     """True if the baseline alone agrees with this gear."""
     before = [window for window in windows if window.tow in baseline]
-    found = fit_boards(predictor, prior, before) if before else None
-    return found is not None and float(np.median(found.fit.scales)) < NEAR
+    of_baseline = fit_boards(predictor, prior, before) if before else None
+    return of_baseline is not None and float(np.median(of_baseline.fit.scales)) < NEAR
 
 
-def likelier(one: Refit | None, other: Refit | None) -> Refit | None:
+def likelier(first: Refit | None, second: Refit | None) -> Refit | None:
     """The fit with more windows, or else the likelier, of two fits of the same ones."""
-    if one is None or other is None:
-        return one or other
-    if len(one.fit.windows) != len(other.fit.windows):
-        return max(one, other, key=lambda fit: len(fit.fit.windows))
-    return min(one, other, key=lambda fit: fit.fit.negative_log_likelihood)
+    if first is None or second is None:
+        return first or second
+    if len(first.fit.windows) != len(second.fit.windows):
+        return max(first, second, key=lambda fit: len(fit.fit.windows))
+    return min(first, second, key=lambda fit: fit.fit.negative_log_likelihood)
 
 
 def refit(
@@ -140,7 +140,7 @@ def refit(
     base: Fit,
     wanted: Sequence[Candidate],
     values: FloatArray,
-    parts: Sequence[Linearised],
+    windows: Sequence[Linearised],
     options: EstimatorOptions,
 ) -> Refit | None:
     """Fit boards and effects together.
@@ -155,7 +155,7 @@ def refit(
         The effects.
     values
         Start values, in their order.
-    parts
+    windows
         Windows of ``base`` with what these effects change behind the twelve columns of the boards.
     options
         Options of the estimator.
@@ -169,6 +169,6 @@ def refit(
     prior = with_candidates(base.prior, wanted)
     estimator = Estimator(free, prior, OBSERVABLES, options)
     board = base.coefficients[base.prior.slice_of('coefficients')]
-    estimator.begin(parts, prior.clipped(np.concatenate((board, values))))
+    estimator.begin(windows, prior.clipped(np.concatenate((board, values))))
     estimate = estimator.finish()
     return None if estimate is None else Refit(tuple(wanted), estimator, estimate)

@@ -40,22 +40,22 @@ def source(bag: Path) -> SourceBag:
     return SourceBag(bag.name, ' '.join(digests) or 'no recordings')
 
 
-def repaired(found: Diagnosis, sources: Sequence[SourceBag]) -> GearRecord | None:
+def repaired(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> GearRecord | None:
     """The gear with boards as refitted and in it the effect that is named, or two, or an empirical
     term.
 
     None where nothing has been named and no term does: a gear file is to hold what is known.
     """
-    best = found.repair
+    best = diagnosis.repair
     if best is None:
         return None
-    return with_effects(found.gear, best.refit, _provenance(best, sources))
+    return with_effects(diagnosis.gear, best.refit, _provenance(best, sources))
 
 
-def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> GearRecord:
+def with_effects(gear: GearRecord, refit: Refit, origin: ProvenanceRecord) -> GearRecord:
     """Gear with the boards and effects of a refit."""
-    board = one.fit.prior.unpacked(one.estimate.values, 'coefficients')
-    taken = set(one.names)
+    board = refit.fit.prior.unpacked(refit.estimate.values, 'coefficients')
+    taken = set(refit.names)
     effects = tuple(effect for effect in gear.effects if effect.name not in taken)
     effects += tuple(
         EffectRecord(
@@ -63,7 +63,7 @@ def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> Gear
             values={parameter: value for parameter, (value, *_) in values.items()},
             provenance=origin,
         )
-        for name, values in values_of(one).items()
+        for name, values in values_of(refit).items()
     )
     coefficients = CoefficientsRecord(**board)
     return gear.model_copy(
@@ -77,7 +77,7 @@ def with_effects(gear: GearRecord, one: Refit, origin: ProvenanceRecord) -> Gear
 def _provenance(best: Weighed, sources: Sequence[SourceBag]) -> ProvenanceRecord:
     return ProvenanceRecord(
         found_by=f'trawl diagnose {__version__}',
-        bags=tuple(SourceRecord(bag=one.bag, sha256=one.sha256) for one in sources),
+        bags=tuple(SourceRecord(bag=bag.bag, sha256=bag.sha256) for bag in sources),
         evidence={
             'delta_chi2': best.delta_chi2,
             'delta_bic': best.delta_bic,

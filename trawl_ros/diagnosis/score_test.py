@@ -87,7 +87,7 @@ class ScoreTest:
     @property
     def readings(self) -> int:
         """Number of readings in all windows."""
-        return sum(len(part.channels) for part in self.fit.windows)
+        return sum(len(linear.channels) for linear in self.fit.windows)
 
     def strength(self, candidate: Candidate) -> float:
         """Strength of a candidate: of all its values together, or of the strongest alone."""
@@ -109,11 +109,12 @@ class ScoreTest:
         """Detectable departures (m,) from the candidate's start, each value alone."""
         return candidate.scale * detectable(self.evidence, self.block(candidate), self.limit, DOUBT)
 
-    def penalised(self, candidate: Candidate, found: Evidence | None = None) -> float:
+    def penalised(self, candidate: Candidate, among: Evidence | None = None) -> float:
         """Decrease of the BIC (Bayesian information criterion) with a candidate, first order."""
-        found = found or self.evidence
+        among = among or self.evidence
         block = self.block(candidate)
-        return found.chi2(block) - found.degrees_of_freedom(block) * float(np.log(self.readings))
+        penalty = among.degrees_of_freedom(block) * float(np.log(self.readings))
+        return among.chi2(block) - penalty
 
     def resampled(self, tows: Sequence[int]) -> Evidence:
         """Evidence of tows chosen with replacement, by their place (bootstrap)."""
@@ -139,7 +140,7 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
     effects
         The catalogue.
     """
-    depths = np.array([part.window.means['net_depth'] for part in base.windows])
+    depths = np.array([linear.window.means['net_depth'] for linear in base.windows])
     wanted = candidates(effects, predictor, depths)
     columns = signatures(predictor, base.windows, wanted)
     shapes, of_shapes = patterns(base.windows)
@@ -158,11 +159,11 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
     fit = replace(base, scales=explained.scales)
     both = [np.hstack(pair) for pair in zip(columns, of_shapes, strict=True)]
     units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])
-    found = evidence(fit, both, units, weights=weights)
+    of_all = evidence(fit, both, units, weights=weights)
     number = len(units) - len(shapes)
     looks = [look for block in values_vector(wanted).blocks('effect') for look in looks_at(block)]
-    limit = threshold(found, [*looks, *blocks_of(shapes, number).values()], FALSE_ALARMS)
-    return ScoreTest(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), found, limit)
+    limit = threshold(of_all, [*looks, *blocks_of(shapes, number).values()], FALSE_ALARMS)
+    return ScoreTest(fit, weights, wanted, tuple(columns), shapes, tuple(of_shapes), of_all, limit)
 
 
 def looks_at(block: range) -> list[range]:
@@ -185,7 +186,8 @@ def with_patterns(
     return replace(
         fit,
         windows=tuple(
-            part.followed_by(nothing, own) for part, own in zip(fit.windows, columns, strict=True)
+            linear.followed_by(nothing, own)
+            for linear, own in zip(fit.windows, columns, strict=True)
         ),
         coefficients=np.concatenate((fit.coefficients, nothing)),
         prior=fit.prior.followed_by(sizes),
@@ -194,8 +196,8 @@ def with_patterns(
 
 def blocks_of(shapes: Sequence[ResidualPattern], first: int) -> dict[str, range]:
     """Slices of each channel's patterns, the first of all at ``first``."""
-    found: dict[str, range] = {}
+    blocks: dict[str, range] = {}
     for place, pattern in enumerate(shapes, first):
-        begin = found[pattern.channel].start if pattern.channel in found else place
-        found[pattern.channel] = range(begin, place + 1)
-    return found
+        begin = blocks[pattern.channel].start if pattern.channel in blocks else place
+        blocks[pattern.channel] = range(begin, place + 1)
+    return blocks

@@ -74,143 +74,145 @@ class LeftOver:
         return leaves_too_much(self.probability, self.share)
 
 
-def weigh(base: Refit, seen: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighed, ...]:
+def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighed, ...]:
     """Weigh all refits at one noise scale, best first."""
-    likeliest = min(refits, key=lambda one: one.fit.negative_log_likelihood)
+    likeliest = min(refits, key=lambda refit: refit.fit.negative_log_likelihood)
     scales = likeliest.fit.scales
     before = base.cost(scales)
-    penalty = float(np.log(seen.readings))
-    deltas = [2.0 * (before - one.cost(scales)) for one in refits]
-    criteria = [delta - one.number * penalty for delta, one in zip(deltas, refits, strict=True)]
-    gains, bests = _resampled(seen, refits, criteria)
-    classes = [{*one.names, *twins(seen, one)} for one in refits]
-    found = [
+    penalty = float(np.log(test.readings))
+    deltas = [2.0 * (before - refit.cost(scales)) for refit in refits]
+    criteria = [delta - refit.number * penalty for delta, refit in zip(deltas, refits, strict=True)]
+    gains, bests = _resampled(test, refits, criteria)
+    classes = [{*refit.names, *twins(test, refit)} for refit in refits]
+    entries = [
         Weighed(
-            refit=one,
+            refit=refit,
             delta_chi2=delta,
             delta_bic=criterion,
             doubted_bic=criterion - delta * (1.0 - 1.0 / DOUBT**2),
             gains=gain,
             share=float(np.mean([name in alike for name in bests])),
             others=tuple(dict.fromkeys(name for name in bests if name not in alike)),
-            cosine=_nearest(seen, one),
+            cosine=_nearest(test, refit),
         )
-        for one, delta, criterion, gain, alike in zip(
+        for refit, delta, criterion, gain, alike in zip(
             refits, deltas, criteria, gains, classes, strict=True
         )
     ]
-    return tuple(sorted(found, key=lambda one: one.delta_bic, reverse=True))
+    return tuple(sorted(entries, key=lambda entry: entry.delta_bic, reverse=True))
 
 
 def _resampled(
-    seen: ScoreTest, refits: Sequence[Refit], criteria: Sequence[float]
+    test: ScoreTest, refits: Sequence[Refit], criteria: Sequence[float]
 ) -> tuple[list[FloatArray], list[str]]:
     """Bootstrap: gains of each unit left out, and the best effect of each resampled trial.
 
     Both to first order; ``criteria`` are what refits came to, by which the order is set right.
     """
-    blocks = [[p for candidate in one.wanted for p in seen.block(candidate)] for one in refits]
-    number = len(seen.fit.errors)
+    blocks = [[p for candidate in refit.wanted for p in test.block(candidate)] for refit in refits]
+    number = len(test.fit.errors)
     if number >= FEWEST_UNITS:
         left_out = [
-            seen.resampled([other for other in range(number) if other != tow])
+            test.resampled([other for other in range(number) if other != tow])
             for tow in range(number)
         ]
     else:
-        states = [part.window.state for part in seen.fit.windows]
+        states = [part.window.state for part in test.fit.windows]
         left_out = [
-            seen.of_windows([row for row, own in enumerate(states) if own != state])
+            test.of_windows([row for row, own in enumerate(states) if own != state])
             for state in dict.fromkeys(states)
         ]
     trials = left_out
     if number >= FEWEST_TOWS:
         chance = np.random.default_rng(0)
         trials = [
-            seen.resampled(chance.integers(number, size=number).tolist()) for _ in range(DRAWS)
+            test.resampled(chance.integers(number, size=number).tolist()) for _ in range(DRAWS)
         ]
     gains = [
-        np.array([seen.evidence.chi2(block) - part.chi2(block) for part in left_out])
+        np.array([test.evidence.chi2(block) - rest.chi2(block) for rest in left_out])
         for block in blocks
     ]
     # First order counts the same noise as smaller, and the more so the more there is to explain.
     first = int(np.argmax(criteria))
-    scale = max(criteria[first], 0.0) / max(_penalised(seen, refits[first].wanted), 1.0)
+    scale = max(criteria[first], 0.0) / max(_penalised(test, refits[first].wanted), 1.0)
     corrections = {
-        one.names[0]: criterion - scale * _penalised(seen, one.wanted)
-        for one, criterion in zip(refits, criteria, strict=True)
-        if len(one.wanted) == 1
+        refit.names[0]: criterion - scale * _penalised(test, refit.wanted)
+        for refit, criterion in zip(refits, criteria, strict=True)
+        if len(refit.wanted) == 1
     }
 
-    def best(part: Evidence) -> str:
+    def best(trial: Evidence) -> str:
         return max(
-            seen.wanted,
-            key=lambda one: scale * seen.penalised(one, part) + corrections.get(one.name, 0.0),
+            test.wanted,
+            key=lambda candidate: (
+                scale * test.penalised(candidate, trial) + corrections.get(candidate.name, 0.0)
+            ),
         ).name
 
-    return gains, [best(part) for part in trials]
+    return gains, [best(trial) for trial in trials]
 
 
-def _penalised(seen: ScoreTest, wanted: Sequence[Candidate]) -> float:
+def _penalised(test: ScoreTest, wanted: Sequence[Candidate]) -> float:
     """Decrease of BIC with candidates together, to first order."""
-    block = [place for candidate in wanted for place in seen.block(candidate)]
-    freedom = seen.evidence.degrees_of_freedom(block)
-    return seen.evidence.chi2(block) - freedom * float(np.log(seen.readings))
+    block = [place for candidate in wanted for place in test.block(candidate)]
+    freedom = test.evidence.degrees_of_freedom(block)
+    return test.evidence.chi2(block) - freedom * float(np.log(test.readings))
 
 
-def twins(seen: ScoreTest, one: Refit, alike: float = ALIKE) -> tuple[str, ...]:
+def twins(test: ScoreTest, refit: Refit, alike: float = ALIKE) -> tuple[str, ...]:
     """Names of effects whose signatures have at least this cosine with the refitted one's."""
-    if len(one.wanted) != 1:
+    if len(refit.wanted) != 1:
         return ()
-    (candidate,) = one.wanted
+    (candidate,) = refit.wanted
     return tuple(
         dict.fromkeys(
             other.name
-            for other in seen.wanted
-            if other.name != candidate.name and _cosine(seen, one, other) > alike
+            for other in test.wanted
+            if other.name != candidate.name and _cosine(test, refit, other) > alike
         )
     )
 
 
-def _cosine(seen: ScoreTest, one: Refit, other: Candidate) -> float:
+def _cosine(test: ScoreTest, refit: Refit, other: Candidate) -> float:
     """Cosine of the refitted effect's signature with another's."""
-    rows = [place for candidate in one.wanted for place in seen.block(candidate)]
-    starts = np.concatenate([candidate.start for candidate in one.wanted])
-    scale = np.concatenate([candidate.scale for candidate in one.wanted])
-    values = (one.values - starts) / scale
-    return seen.evidence.covered(rows, values, seen.block(other))
+    rows = [place for candidate in refit.wanted for place in test.block(candidate)]
+    starts = np.concatenate([candidate.start for candidate in refit.wanted])
+    scale = np.concatenate([candidate.scale for candidate in refit.wanted])
+    values = (refit.values - starts) / scale
+    return test.evidence.covered(rows, values, test.block(other))
 
 
-def _nearest(seen: ScoreTest, one: Refit) -> float:
-    others = [other for other in seen.wanted if other.name not in one.names]
-    return max((_cosine(seen, one, other) for other in others), default=0.0)
+def _nearest(test: ScoreTest, refit: Refit) -> float:
+    others = [other for other in test.wanted if other.name not in refit.names]
+    return max((_cosine(test, refit, other) for other in others), default=0.0)
 
 
-def left_over(base: Refit, seen: ScoreTest, one: Refit) -> LeftOver:
+def left_over(base: Refit, test: ScoreTest, refit: Refit) -> LeftOver:
     """Test of the residual patterns of the most improbable channel beside a refit.
 
     Parameters
     ----------
     base
         The boards alone.
-    seen
-        The first look, whose noise and patterns are used.
-    one
+    test
+        The score test, whose noise and patterns are used.
+    refit
         The refit.
     """
-    effects = one.fit.prior.slice_of('effect')
-    fit = replace(one.fit, scales=seen.fit.scales)
+    effects = refit.fit.prior.slice_of('effect')
+    fit = replace(refit.fit, scales=test.fit.scales)
     # The same windows in the same order: a refit that loses one is none.
     columns = [
-        np.hstack((part.by_coefficients[:, effects], own))
-        for part, own in zip(fit.windows, seen.shapes, strict=True)
+        np.hstack((linear.by_coefficients[:, effects], own))
+        for linear, own in zip(fit.windows, test.shapes, strict=True)
     ]
-    number = one.number
-    units = np.concatenate((fit.prior.std[effects], np.ones(len(seen.patterns))))
-    found = evidence(fit, columns, units).without(range(number))
-    blocks = blocks_of(seen.patterns, number).values()
-    worst = max(blocks, key=found.strength)
-    explained = 2.0 * (base.cost(fit.scales) - one.cost(fit.scales))
+    number = refit.number
+    units = np.concatenate((fit.prior.std[effects], np.ones(len(test.patterns))))
+    of_patterns = evidence(fit, columns, units).without(range(number))
+    blocks = blocks_of(test.patterns, number).values()
+    worst = max(blocks, key=of_patterns.strength)
+    explained = 2.0 * (base.cost(fit.scales) - refit.cost(fit.scales))
     return LeftOver(
-        probability=min(1.0, len(blocks) * 10.0 ** -found.strength(worst)),
-        share=found.chi2(worst) / max(explained, 1.0),
+        probability=min(1.0, len(blocks) * 10.0 ** -of_patterns.strength(worst)),
+        share=of_patterns.chi2(worst) / max(explained, 1.0),
     )

@@ -9,7 +9,8 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
 from trawl_ros.core.files import empty_folder
-from trawl_ros.diagnosis.diagnosis import Diagnosis, diagnose, unread
+from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.estimation.from_gear import finder_for
 from trawl_ros.estimation.windows.records import RejectedWindow, SteadyWindow
@@ -122,7 +123,7 @@ class DiscrepancyNode(TrawlNode):
     def _look_at(self, windows: tuple[SteadyWindow, ...]) -> Diagnosis:
         tows = [f'tow {number + 1}' for number in range(1 + max(w.tow for w in windows))]
         baseline = frozenset(range(self.parameters['baseline_tows']))
-        return diagnose(self._gear, windows, tows, baseline)
+        return diagnose_windows(self._gear, windows, tows, baseline)
 
     def _publish(self, outcome: DiagnosisOutcome) -> None:
         self._outcome = replace(outcome, diagnosis=outcome.diagnosis or self._outcome.diagnosis)

@@ -4,7 +4,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.diagnosis.candidates import Candidate
-from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison
+from trawl_ros.diagnosis.diagnosis import Diagnosis
+from trawl_ros.diagnosis.holdout import HoldoutComparison
 from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.report.pictures import Drawing
@@ -19,16 +20,16 @@ BARS = 10
 """So many effects are drawn."""
 
 
-def drawings(found: Diagnosis) -> list[Drawing]:
+def drawings(diagnosis: Diagnosis) -> list[Drawing]:
     """Return all figures for which there are numbers."""
-    seen, shown, made = found.seen, found.shown, []
-    if seen is not None:
+    test, holdout, made = diagnosis.score_test, diagnosis.holdout, []
+    if test is not None:
         made.append(
             Drawing(
                 'where',
                 'Residuals of each channel with each variable, in standard deviations of what '
                 'errors would make, boards and calibration taken out. Red: grows with it.',
-                where_figure(seen), WHERE,
+                where_figure(test), WHERE,
             )
         )  # fmt: skip
         made.append(
@@ -36,7 +37,7 @@ def drawings(found: Diagnosis) -> list[Drawing]:
                 'evidence',
                 'By how much each effect alone lowers χ² of all readings, boards refitted (dark: '
                 'solved anew, light: to first order).',
-                evidence_figure(found, seen), WHICH,
+                evidence_figure(diagnosis, test), WHICH,
             )
         )  # fmt: skip
         made.append(
@@ -44,35 +45,35 @@ def drawings(found: Diagnosis) -> list[Drawing]:
                 'confusable',
                 'How alike effects look in these tows: the cosine of what the one changes with '
                 'the nearest that the other could do. 1 cannot be told apart.',
-                confusable_figure(seen), WHICH,
+                confusable_figure(test), WHICH,
             )
         )  # fmt: skip
-    if shown is not None and shown.after is not None:
+    if holdout is not None and holdout.after is not None:
         made.append(
             Drawing(
                 'gap',
                 'Errors of each channel on what was kept back, over what errors of instruments '
                 'alone would make (1): boards refitted alone, with '
-                f'{found.added_as}, and with the best other effect.',
-                gap_figure(shown, found.added_as), GAP,
+                f'{diagnosis.added_as}, and with the best other effect.',
+                gap_figure(holdout, diagnosis.added_as), GAP,
             )
         )  # fmt: skip
-    if found.base is not None and found.added is not None:
+    if diagnosis.base is not None and diagnosis.added is not None:
         made.append(
             Drawing(
                 'coefficients',
                 'The coefficients of the boards with and without '
-                f'{found.added_as}, in standard deviations of the prior: what moves had been '
+                f'{diagnosis.added_as}, in standard deviations of the prior: what moves had been '
                 'bent to hide it.',
-                coefficients_figure(found), GAP,
+                coefficients_figure(diagnosis), GAP,
             )
         )  # fmt: skip
     return made
 
 
-def where_figure(seen: ScoreTest) -> Figure:
+def where_figure(test: ScoreTest) -> Figure:
     """Map of residual patterns: channels by variables."""
-    channels, variables, z = map_of(seen)
+    channels, variables, z = map_of(test)
     figure = Figure(figsize=(8.0, 0.35 * len(channels) + 1.8), layout='constrained')
     axes = figure.subplots()
     picture = axes.imshow(z, cmap='RdBu_r', vmin=-MOST_Z, vmax=MOST_Z, aspect='auto')
@@ -85,14 +86,14 @@ def where_figure(seen: ScoreTest) -> Figure:
     return figure
 
 
-def evidence_figure(found: Diagnosis, seen: ScoreTest) -> Figure:
+def evidence_figure(diagnosis: Diagnosis, test: ScoreTest) -> Figure:
     """Bars of the effects in order of the χ² they explain."""
     first: dict[str, float] = {}
-    for candidate in seen.wanted:
-        chi2 = seen.evidence.chi2(seen.block(candidate))
+    for candidate in test.wanted:
+        chi2 = test.evidence.chi2(test.block(candidate))
         first[candidate.name] = max(chi2, first.get(candidate.name, 0.0))
-    weighed = found.named.weighed if found.named else ()
-    anew = {' and '.join(one.refit.names): one.delta_chi2 for one in weighed}
+    weighed = diagnosis.named.weighed if diagnosis.named else ()
+    anew = {' and '.join(entry.refit.names): entry.delta_chi2 for entry in weighed}
     ranked = sorted({*first, *anew}, key=lambda name: anew.get(name, first.get(name, 0.0)))
     ranked = ranked[-BARS:]
     figure = Figure(figsize=(8.0, 0.35 * len(ranked) + 1.2), layout='constrained')
@@ -106,15 +107,15 @@ def evidence_figure(found: Diagnosis, seen: ScoreTest) -> Figure:
     return figure
 
 
-def confusable_figure(seen: ScoreTest) -> Figure:
+def confusable_figure(test: ScoreTest) -> Figure:
     """Matrix of the cosines of all effects' signatures."""
-    wanted = [one for one in seen.wanted if not one.place]
+    wanted = [candidate for candidate in test.wanted if not candidate.place]
     size = len(wanted)
-    cosines = np.array([[largest_cosine(seen, a, b) for b in wanted] for a in wanted])
+    cosines = np.array([[largest_cosine(test, a, b) for b in wanted] for a in wanted])
     figure = Figure(figsize=(0.42 * size + 2.5, 0.42 * size + 1.8), layout='constrained')
     axes = figure.subplots()
     picture = axes.imshow(cosines, cmap='Greys', vmin=0.0, vmax=1.0)
-    names = [_words(one.name) for one in wanted]
+    names = [_words(candidate.name) for candidate in wanted]
     axes.set_xticks(range(size), names, rotation=60, ha='right')
     axes.set_yticks(range(size), names)
     for row, column in np.argwhere(cosines > 0.8):
@@ -127,34 +128,34 @@ def confusable_figure(seen: ScoreTest) -> Figure:
     return figure
 
 
-def largest_cosine(seen: ScoreTest, one: Candidate, other: Candidate) -> float:
+def largest_cosine(test: ScoreTest, first: Candidate, second: Candidate) -> float:
     """Largest cosine of the signatures of two effects."""
-    a, b = (list(seen.block(which)) for which in (one, other))
-    information = seen.evidence.information
+    a, b = (list(test.block(which)) for which in (first, second))
+    information = test.evidence.information
     roots = []
     for block in (a, b):
         values, vectors = np.linalg.eigh(information[np.ix_(block, block)])
-        kept = values > 1e-9 * max(values.max(), 1e-30)
-        roots.append(vectors[:, kept] / np.sqrt(values[kept]))
+        present = values > 1e-9 * max(values.max(), 1e-30)
+        roots.append(vectors[:, present] / np.sqrt(values[present]))
     if not (roots[0].size and roots[1].size):
         return 0.0
     between = roots[0].T @ information[np.ix_(a, b)] @ roots[1]
     return float(min(1.0, np.linalg.svd(between, compute_uv=False)[0]))
 
 
-def gap_figure(shown: HoldoutComparison, added: str) -> Figure:
+def gap_figure(holdout: HoldoutComparison, added: str) -> Figure:
     """Errors before and after the repair, and with the placebo."""
-    channels = list(shown.before.rms)
+    channels = list(holdout.before.rms)
     figure = Figure(figsize=(9.0, 4.5), layout='constrained')
     axes = figure.subplots()
     places = np.arange(len(channels))
-    bars = [('boards alone', shown.before, SECOND), (f'with {added}', shown.after, MEASURED)]
-    if shown.placebo is not None:
-        bars.append((f'with {_words(shown.instead or "")} instead', shown.placebo, FAINT))
+    bars = [('boards alone', holdout.before, SECOND), (f'with {added}', holdout.after, MEASURED)]
+    if holdout.placebo is not None:
+        bars.append((f'with {_words(holdout.instead or "")} instead', holdout.placebo, FAINT))
     width = 0.8 / len(bars)
     for number, (label, errors, colour) in enumerate(bars):
         assert errors is not None
-        heights = [errors.rms.get(name, np.nan) / shown.before.expected[name]
+        heights = [errors.rms.get(name, np.nan) / holdout.before.expected[name]
                    for name in channels]  # fmt: skip
         shift = (number - 0.5 * (len(bars) - 1)) * width
         axes.bar(places + shift, heights, width, color=colour, label=label)
@@ -166,22 +167,22 @@ def gap_figure(shown: HoldoutComparison, added: str) -> Figure:
     return figure
 
 
-def coefficients_figure(found: Diagnosis) -> Figure:
+def coefficients_figure(diagnosis: Diagnosis) -> Figure:
     """Coefficients of the boards with and without the effect."""
-    base, added = found.base, found.added
+    base, added = diagnosis.base, diagnosis.added
     assert base is not None
     assert added is not None
     board = base.fit.prior.only('coefficients')
     figure = Figure(figsize=(9.0, 4.0), layout='constrained')
     axes = figure.subplots()
-    for shift, (label, one, colour) in zip(
+    for shift, (label, refit, colour) in zip(
         (-0.12, 0.12),
-        (('boards alone', base, SECOND), (f'with {found.added_as}', added.refit, MEASURED)),
+        (('boards alone', base, SECOND), (f'with {diagnosis.added_as}', added.refit, MEASURED)),
         strict=True,
     ):
-        own = one.fit.prior.slice_of('coefficients')
-        values = board.departure(one.estimate.values[own])
-        std = one.estimate.std[own] / board.std
+        own = refit.fit.prior.slice_of('coefficients')
+        values = board.departure(refit.estimate.values[own])
+        std = refit.estimate.std[own] / board.std
         axes.errorbar(
             np.arange(len(board)) + shift, values, 1.96 * std, fmt='o', color=colour, label=label
         )

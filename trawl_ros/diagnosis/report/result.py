@@ -4,7 +4,8 @@ import math
 from collections.abc import Sequence
 
 from trawl_ros.core.version import __version__
-from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, values_of
+from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
+from trawl_ros.diagnosis.holdout import HoldoutComparison
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import SourceBag
 from trawl_ros.diagnosis.score_test import ScoreTest
@@ -12,17 +13,17 @@ from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.records.channels import CHANNELS
 
 
-def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, object]:
+def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, object]:
     """Build the content of ``diagnosis.json``; numbers that are not finite are null."""
-    named, best = found.named, found.best
-    sure = found.verdict in ('NAMED', 'AMBIGUOUS')
+    named, best = diagnosis.named, diagnosis.best
+    sure = diagnosis.verdict in ('NAMED', 'AMBIGUOUS')
     ambiguous = () if named is None or best is None else (*named.rivals, *named.alike)
     return {
-        'verdict': found.verdict,
-        'reason': found.reason,
-        'effects': _effects(found) if sure else [],
+        'verdict': diagnosis.verdict,
+        'reason': diagnosis.reason,
+        'effects': _effects(diagnosis) if sure else [],
         'ambiguous_with': list(dict.fromkeys(ambiguous)) if sure else [],
-        'empirical': _empirical(found),
+        'empirical': _empirical(diagnosis),
         'where': [
             {
                 'channel': where.channel,
@@ -30,22 +31,27 @@ def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, object]:
                 'region': where.region,
                 'z': _number(where.z),
             }
-            for where in found.where
+            for where in diagnosis.where
         ],
-        'added': None if found.added is None else ' and '.join(found.added.refit.names),
+        'added': None if diagnosis.added is None else ' and '.join(diagnosis.added.refit.names),
         'evidence': {} if named is None else _evidence(named.weighed),
-        'channels': _channels(found.shown),
-        'shown_by': found.split.by if found.shown else None,
-        'excess_removed': None if found.shown is None else _number(found.shown.removed),
+        'channels': _channels(diagnosis.holdout),
+        'shown_by': diagnosis.split.by if diagnosis.holdout else None,
+        'excess_removed': None if diagnosis.holdout is None else _number(diagnosis.holdout.removed),
         'excess_removed_by_placebo': (
-            None if found.shown is None else _number(found.shown.removed_by_placebo)
+            None if diagnosis.holdout is None else _number(diagnosis.holdout.removed_by_placebo)
         ),
-        'placebo': None if found.shown is None else found.shown.instead,
-        'coefficients': _coefficients(found.base, found.added),
-        'smallest_detectable': {} if found.seen is None else _detectable(found.seen),
+        'placebo': None if diagnosis.holdout is None else diagnosis.holdout.instead,
+        'coefficients': _coefficients(diagnosis.base, diagnosis.added),
+        'smallest_detectable': {}
+        if diagnosis.score_test is None
+        else _detectable(diagnosis.score_test),
         'detection': None
-        if found.seen is None
-        else {'strongest': _number(found.seen.strongest), 'limit': _number(found.seen.limit)},
+        if diagnosis.score_test is None
+        else {
+            'strongest': _number(diagnosis.score_test.strongest),
+            'limit': _number(diagnosis.score_test.limit),
+        },
         'left_over': None
         if named is None
         else {
@@ -53,19 +59,19 @@ def result(found: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, object]:
             'share': _number(named.left_over.share),
             'noise': None if best is None else max(best.refit.fit.scales),
         },
-        'remarks': list(found.remarks),
-        'next_tow': _next(found),
+        'remarks': list(diagnosis.remarks),
+        'next_tow': _next(diagnosis),
         'tows': [
-            {'name': name, 'baseline': place in found.baseline}
-            for place, name in enumerate(found.tows)
+            {'name': name, 'baseline': place in diagnosis.baseline}
+            for place, name in enumerate(diagnosis.tows)
         ],
-        'bags': [{'bag': one.bag, 'sha256': one.sha256} for one in sources],
+        'bags': [{'bag': source.bag, 'sha256': source.sha256} for source in sources],
         'version': __version__,
     }
 
 
-def _effects(found: Diagnosis) -> list[dict[str, object]]:
-    best, named = found.best, found.named
+def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
+    best, named = diagnosis.best, diagnosis.named
     if best is None or named is None:
         return []
     return [
@@ -81,11 +87,11 @@ def _effects(found: Diagnosis) -> list[dict[str, object]]:
     ]
 
 
-def _empirical(found: Diagnosis) -> dict[str, object] | None:
+def _empirical(diagnosis: Diagnosis) -> dict[str, object] | None:
     """Empirical term, labelled as such."""
-    if found.empirical is None:
+    if diagnosis.empirical is None:
         return None
-    weighed, term = found.empirical.weighed, found.empirical.term
+    weighed, term = diagnosis.empirical.weighed, diagnosis.empirical.term
     values = values_of(weighed.refit)[term.name]
     return {
         'name': term.name,
@@ -98,53 +104,57 @@ def _empirical(found: Diagnosis) -> dict[str, object] | None:
         },
         'delta_chi2': _number(weighed.delta_chi2),
         'delta_bic': _number(weighed.delta_bic),
-        'placebo_chi2': _number(found.empirical.placebo),
-        'left_over': _number(found.empirical.left_over.probability),
+        'placebo_chi2': _number(diagnosis.empirical.placebo),
+        'left_over': _number(diagnosis.empirical.left_over.probability),
     }
 
 
-def _next(found: Diagnosis) -> list[dict[str, object]]:
+def _next(diagnosis: Diagnosis) -> list[dict[str, object]]:
     """Checks, which need no tow, and tows with the gain of χ² per hour."""
-    checks: list[dict[str, object]] = [{'sentence': check, 'states': []} for check in found.checks]
+    checks: list[dict[str, object]] = [
+        {'sentence': check, 'states': []} for check in diagnosis.checks
+    ]
     return checks + [
         {
-            'sentence': str(one),
-            'states': [{'warp_length': length, 'speed': speed} for length, speed in one.states],
-            'reciprocal': one.reciprocal,
-            'hours': one.hours,
-            'delta_chi2_per_hour': _number(one.per_hour),
+            'sentence': str(proposal),
+            'states': [
+                {'warp_length': length, 'speed': speed} for length, speed in proposal.states
+            ],
+            'reciprocal': proposal.reciprocal,
+            'hours': proposal.hours,
+            'delta_chi2_per_hour': _number(proposal.per_hour),
         }
-        for one in found.proposals
+        for proposal in diagnosis.proposals
     ]
 
 
 def _evidence(weighed: Sequence[Weighed]) -> dict[str, object]:
     return {
-        ' and '.join(one.refit.names): {
-            'delta_chi2': _number(one.delta_chi2),
-            'delta_bic': _number(one.delta_bic),
-            'held_out_gain': _number(one.gain[0]),
-            'held_out_gain_low': _number(one.gain[1]),
-            'held_out_gain_high': _number(one.gain[2]),
-            'bootstrap_share': _number(one.share),
-            'cosine': _number(one.cosine),
+        ' and '.join(entry.refit.names): {
+            'delta_chi2': _number(entry.delta_chi2),
+            'delta_bic': _number(entry.delta_bic),
+            'held_out_gain': _number(entry.gain[0]),
+            'held_out_gain_low': _number(entry.gain[1]),
+            'held_out_gain_high': _number(entry.gain[2]),
+            'bootstrap_share': _number(entry.share),
+            'cosine': _number(entry.cosine),
         }
-        for one in weighed
+        for entry in weighed
     }
 
 
-def _channels(shown: HoldoutComparison | None) -> dict[str, object]:
-    if shown is None:
+def _channels(holdout: HoldoutComparison | None) -> dict[str, object]:
+    if holdout is None:
         return {}
     return {
         name: {
             'unit': CHANNELS[name].unit,
             'before': _number(before),
-            'after': None if shown.after is None else _number(shown.after.rms.get(name)),
-            'placebo': None if shown.placebo is None else _number(shown.placebo.rms.get(name)),
-            'expected': _number(shown.before.expected[name]),
+            'after': None if holdout.after is None else _number(holdout.after.rms.get(name)),
+            'placebo': None if holdout.placebo is None else _number(holdout.placebo.rms.get(name)),
+            'expected': _number(holdout.before.expected[name]),
         }
-        for name, before in shown.before.rms.items()
+        for name, before in holdout.before.rms.items()
     }
 
 
@@ -165,17 +175,17 @@ def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, object
     }
 
 
-def _detectable(seen: ScoreTest) -> dict[str, object]:
-    found: dict[str, object] = {}
-    for candidate in seen.wanted:
+def _detectable(test: ScoreTest) -> dict[str, object]:
+    by_candidate: dict[str, object] = {}
+    for candidate in test.wanted:
         if candidate.place:
             continue
-        sizes = seen.detectable(candidate)
-        found[candidate.name] = {
+        sizes = test.detectable(candidate)
+        by_candidate[candidate.name] = {
             parameter.name: {'size': _number(size), 'unit': parameter.unit}
             for parameter, size in zip(candidate.effect.parameters, sizes, strict=True)
         }
-    return found
+    return by_candidate
 
 
 def _number(value: float | None) -> float | None:

@@ -15,12 +15,12 @@ from trawl_ros.report.rendering import page
 MODEL = 'model.yaml'
 
 
-def write_diagnosis(found: Diagnosis, sources: Sequence[SourceBag], folder: Path) -> None:
+def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: Path) -> None:
     """Write ``diagnosis.json``, both reports, the figures, and ``model.yaml`` where there is one.
 
     Parameters
     ----------
-    found
+    diagnosis
         The diagnosis.
     sources
         The bags.
@@ -32,22 +32,22 @@ def write_diagnosis(found: Diagnosis, sources: Sequence[SourceBag], folder: Path
     TrawlError
         If the folder cannot be written to.
     """
-    numbers = result(found, sources)
-    gear = repaired(found, sources)
+    numbers = result(diagnosis, sources)
+    gear = repaired(diagnosis, sources)
     made_folder(folder)
     write_json(folder / 'diagnosis.json', numbers, indent=2)
     if gear is not None:
         write_text(folder / MODEL, gear_text(gear))
-    pictures = embedded(folder, draw(folder, drawings(found)))
+    pictures = embedded(folder, draw(folder, drawings(diagnosis)))
     for name in ('report.html', 'report.md'):
         text = page(
             'trawl_ros.diagnosis.report',
             name,
-            result={**numbers, 'gear': found.gear.name},
-            headline=headline(found),
-            sentences=sentences(found),
+            result={**numbers, 'gear': diagnosis.gear.name},
+            headline=headline(diagnosis),
+            sentences=sentences(diagnosis),
             sections=by_section(pictures),
             repaired=gear is not None,
-            added_as=found.added_as,
+            added_as=diagnosis.added_as,
         )
         write_text(folder / name, text)

@@ -10,28 +10,28 @@ CALM = ('NO_DISCREPANCY', 'NOT_TESTABLE')
 """Verdicts that raise no finding."""
 
 
-def finding_statuses(found: Diagnosis) -> list[Status]:
+def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
     """Return the verdict's status, then one per finding: an effect, or an empirical term."""
-    seen = found.seen
+    test = diagnosis.score_test
     values = {
-        'verdict': found.verdict,
-        'reason': found.reason,
-        'windows': str(len(found.split.deciding) + len(found.split.showing)),
-        'tows': str(len(found.tows)),
+        'verdict': diagnosis.verdict,
+        'reason': diagnosis.reason,
+        'windows': str(len(diagnosis.split.deciding) + len(diagnosis.split.showing)),
+        'tows': str(len(diagnosis.tows)),
     }
-    if seen is not None:
-        values |= {'evidence': f'{seen.strongest:.2f}', 'limit': f'{seen.limit:.2f}'}
-    for where in found.where:
+    if test is not None:
+        values |= {'evidence': f'{test.strongest:.2f}', 'limit': f'{test.limit:.2f}'}
+    for where in diagnosis.where:
         values.setdefault(f'{where.channel} {where.variable}', f'{where.region}, z {where.z:.1f}')
-    level = OK if found.verdict in CALM else WARN
-    statuses = [Status(f'{NAME}: verdict', level, headline(found), values)]
-    repair = found.repair
-    if repair is None and found.verdict == 'AMBIGUOUS':
-        repair = found.best
+    level = OK if diagnosis.verdict in CALM else WARN
+    statuses = [Status(f'{NAME}: verdict', level, headline(diagnosis), values)]
+    repair = diagnosis.repair
+    if repair is None and diagnosis.verdict == 'AMBIGUOUS':
+        repair = diagnosis.best
     if repair is not None:
-        kind = 'empirical term' if found.empirical is not None else 'effect'
+        kind = 'empirical term' if diagnosis.empirical is not None else 'effect'
         more = {
-            'verdict': found.verdict,
+            'verdict': diagnosis.verdict,
             'delta chi2': f'{repair.delta_chi2:.1f}',
             'delta bic': f'{repair.delta_bic:.1f}',
             'bootstrap share': f'{repair.share:.2f}',

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
-from trawl_ros.diagnosis.diagnosis import Diagnosis, HoldoutComparison, diagnose, values_of
-from trawl_ros.diagnosis.holdout import HoldoutErrors
+from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
+from trawl_ros.diagnosis.holdout import HoldoutComparison, HoldoutErrors
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.figures import gap_figure
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.effects.base.effect import Situation
@@ -136,8 +137,10 @@ def run_counters(
     without = _diagnosed(alone, len(planned), 0)
     done()
     rows = _rows(table, with_baseline, without, floor)
-    shown = with_baseline.shown
-    figure = Figure() if shown is None or shown.after is None else gap_figure(shown, 'the effect')
+    holdout = with_baseline.holdout
+    figure = (
+        Figure() if holdout is None or holdout.after is None else gap_figure(holdout, 'the effect')
+    )
     page = Page(
         name='counters',
         title='Winch counters that err as measured ones did',
@@ -162,7 +165,7 @@ def run_counters(
 
 def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> Diagnosis:
     names = [f'tow {number + 1}' for number in range(tows)]
-    return diagnose(FINER.model(GEAR), windows, names, frozenset(range(baseline)))
+    return diagnose_windows(FINER.model(GEAR), windows, names, frozenset(range(baseline)))
 
 
 def _rows(
@@ -173,8 +176,8 @@ def _rows(
     nothing = (np.nan, np.nan, np.nan, '')
     part = values.get('counter_scale', {}).get('scale', nothing)
     metres = values.get('counter_offset', {}).get('offset', nothing)
-    shown = found.shown
-    removed, other = _removed(shown, floor)
+    holdout = found.holdout
+    removed, other = _removed(holdout, floor)
     named = [] if without.best is None else list(without.best.refit.names)
     others = [] if without.named is None else [*without.named.rivals, *without.named.alike]
     return [
@@ -211,20 +214,20 @@ def _rows(
     ]
 
 
-def _removed(shown: HoldoutComparison | None, floor: Mapping[str, float]) -> tuple[float, str]:
+def _removed(holdout: HoldoutComparison | None, floor: Mapping[str, float]) -> tuple[float, str]:
     """Share of the excess error that the repair removes, in per cent, with that of the best other
     effect.
     """
-    if shown is None:
+    if holdout is None:
         return np.nan, ''
 
     def part(after: HoldoutErrors | None) -> float:
         if after is None:
             return np.nan
-        before = shown.before
+        before = holdout.before
         found = part_removed(before.rms, after.rms, before.expected, floor)
         return np.nan if found is None else 100.0 * found
 
-    other = part(shown.placebo)
-    named = '' if np.isnan(other) else f'; the best other effect, {shown.instead}, {other:.0f} %'
-    return part(shown.after), named
+    other = part(holdout.placebo)
+    named = '' if np.isnan(other) else f'; the best other effect, {holdout.instead}, {other:.0f} %'
+    return part(holdout.after), named

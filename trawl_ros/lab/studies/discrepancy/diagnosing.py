@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trawl_ros.core.files import write_json
-from trawl_ros.diagnosis.diagnosis import diagnose
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.tows import numbered
@@ -32,7 +32,7 @@ def diagnose_case(case: DiagnosisTask) -> str:
     """Diagnose, write the diagnosis, and give its verdict."""
     gear = case.cut.model(case.gear)
     windows, tows = _of_bags(case.seen, gear) if case.seen.is_dir() else _of_file(case.seen)
-    found = diagnose(gear, windows, tows, frozenset(range(case.baseline)))
+    found = diagnose_windows(gear, windows, tows, frozenset(range(case.baseline)))
     write_json(case.diagnosis, result(found, ()))
     return found.verdict
 
