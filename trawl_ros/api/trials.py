@@ -105,12 +105,12 @@ def identify(
     options = estimator_options(prior=prior, net=net)
     record = _gear(gear)
     paths = [Path(bag) for bag in bags]
-    tows = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
-    _note(tows, on_note)
-    if all(tow.why_not is not None for tow in tows):
-        raise TrawlError('; '.join(f'{tow.name}: {tow.why_not}' for tow in tows))
+    recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
+    _note(recordings, on_note)
+    if len(reasons := _reasons(recordings)) == len(recordings):
+        raise TrawlError('; '.join(reasons))
     identification = identification_for(record, estimator_options=options)
-    names = estimate_tows(identification, tows, on_progress)
+    names = estimate_tows(identification, recordings, on_progress)
     if reason := identification.why_not():
         raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
     result = report(identification, known, tows=names, gear=record, on_progress=on_progress)
@@ -164,12 +164,11 @@ def diagnose(
         empty_folder(Path(out), force=force)
     record = _gear(gear)
     paths = [Path(bag) for bag in (*baseline, *bags)]
-    tows = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
-    _note(tows, on_note)
-    windows, names = numbered(tows)
-    known, _ = numbered(tows[: len(baseline)])
-    reasons = [f'{tow.name}: {tow.why_not}' for tow in tows if tow.why_not is not None]
-    if len(reasons) == len(tows):
+    recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
+    _note(recordings, on_note)
+    windows, names = numbered(recordings)
+    known, _ = numbered(recordings[: len(baseline)])
+    if len(reasons := _reasons(recordings)) == len(recordings):
         result = unread(record, names, '; '.join(reasons))
     else:
         in_order = frozenset(window.tow for window in known)
@@ -236,9 +235,18 @@ def _gear(gear: str | Path | GearRecord) -> GearRecord:
     return gear if isinstance(gear, GearRecord) else load_gear(gear)
 
 
-def _note(tows: Sequence[FoundWindows], on_note: OnNote) -> None:
-    for tow in tows:
-        for problem in tow.problems:
+def _reasons(recordings: Sequence[FoundWindows]) -> list[str]:
+    """Sentences on the recordings that cannot be used."""
+    return [
+        f'{recording.name}: {recording.why_not}'
+        for recording in recordings
+        if recording.why_not is not None
+    ]
+
+
+def _note(recordings: Sequence[FoundWindows], on_note: OnNote) -> None:
+    for recording in recordings:
+        for problem in recording.problems:
             on_note(f'Damaged: {problem}')
-        if tow.why_not is not None:
-            on_note(f'Not used: {tow.name}: {tow.why_not}')
+        if recording.why_not is not None:
+            on_note(f'Not used: {recording.name}: {recording.why_not}')

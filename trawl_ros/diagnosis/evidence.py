@@ -1,6 +1,6 @@
 """Score tests of effects with the coefficients eliminated: information, score and χ² of each.
 
-Errors, calibration and coefficients are eliminated together (`marginal`), which leaves a triangle T
+Errors, calibration and coefficients are eliminated together (`eliminate_nuisance`): a triangle T
 and a right side z for the values of effects: T'T is their information and T'z their score. The
 evidence for each is a χ², and so are rivalry and what a trial could have shown.
 """

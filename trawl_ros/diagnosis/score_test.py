@@ -155,7 +155,7 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
         explained = gauss_newton_step(
             replace(free, scales=base.scales), free.prior.low, free.prior.high
         )
-    weights = reweighted(explained.marginal, base.options.huber)
+    weights = reweighted(explained.elimination, base.options.huber)
     fit = replace(base, scales=explained.scales)
     both = [np.hstack(pair) for pair in zip(columns, of_shapes, strict=True)]
     units = np.concatenate([*(candidate.scale for candidate in wanted), np.ones(len(shapes))])

@@ -91,19 +91,19 @@ def read_tows(
 
 
 def _in_turn(tasks: Sequence[BagTask], on_progress: OnProgress) -> list[FoundWindows]:
-    found: list[FoundWindows] = []
+    recordings: list[FoundWindows] = []
     before_s = reached_s = 0.0
 
     def show(progress: WorkProgress) -> None:
         nonlocal reached_s
         reached_s = before_s + progress.done
-        bag = f'bag {len(found) + 1} of {len(tasks)}, ' if len(tasks) > 1 else ''
+        bag = f'bag {len(recordings) + 1} of {len(tasks)}, ' if len(tasks) > 1 else ''
         on_progress(replace(progress, done=reached_s, detail=f'{bag}{progress.detail}'))
 
     for task in tasks:
-        found.append(read_tow(task, show))
+        recordings.append(read_tow(task, show))
         before_s = reached_s
-    return found
+    return recordings
 
 
 def _at_once(
@@ -114,8 +114,8 @@ def _at_once(
 
     # A bag may be given twice; its place among the others is unique.
     by_name = {f'{number}: {task.path}': task for number, task in enumerate(tasks, start=1)}
-    found: dict[str, FoundWindows] = {}
+    recordings: dict[str, FoundWindows] = {}
     for name, windows in run_tasks(read_tow, by_name, scheduler=scheduler):
-        found[name] = windows
-        on_progress(WorkProgress('reading', len(found), len(tasks), 'bags'))
-    return [found[name] for name in by_name]
+        recordings[name] = windows
+        on_progress(WorkProgress('reading', len(recordings), len(tasks), 'bags'))
+    return [recordings[name] for name in by_name]

@@ -91,9 +91,9 @@ class Identification:
         """Decide the remaining windows of this tow; later samples belong to another."""
         return self._use(self.finder.next_tow())
 
-    def take(self, found: Sequence[SteadyWindow]) -> list[Event]:
+    def take(self, windows: Sequence[SteadyWindow]) -> list[Event]:
         """Use windows from other finders, one after another."""
-        return self._use(found)
+        return self._use(windows)
 
     @property
     def estimate(self) -> Estimate | None:
@@ -138,9 +138,9 @@ class Identification:
     def _about_missing(self, missing: Sequence[str]) -> str:
         arrived = self.finder.arrived
         silent = dict.fromkeys(CHANNELS[name].topic for name in missing if not arrived[name])
-        parts = [f'no readings on {", ".join(silent)}'] if silent else []
-        parts += [f'none usable of {arrived[n]} of {n}' for n in missing if arrived[n]]
-        return f'nothing is estimated: {"; ".join(parts)}'
+        phrases = [f'no readings on {", ".join(silent)}'] if silent else []
+        phrases += [f'none usable of {arrived[n]} of {n}' for n in missing if arrived[n]]
+        return f'nothing is estimated: {"; ".join(phrases)}'
 
     def _about_clocks(self) -> str | None:
         stamps = {name: self.finder.newest(name) or 0 for name in REQUIRED}
@@ -153,9 +153,9 @@ class Identification:
             f'two clocks, expected one, so nothing is estimated'
         )
 
-    def _use(self, found: Sequence[SteadyWindow | RejectedWindow]) -> list[Event]:
+    def _use(self, decided: Sequence[SteadyWindow | RejectedWindow]) -> list[Event]:
         events: list[Event] = []
-        for item in found:
+        for item in decided:
             if isinstance(item, RejectedWindow):
                 events.append(item)
                 continue
@@ -188,10 +188,10 @@ class Identification:
         """Repeat the estimate without the windows of a tow."""
         if all(used.window.tow != tow for used in self.course):
             return
-        kept = [used.window for used in self.course if used.window.tow != tow]
+        remaining = [used.window for used in self.course if used.window.tow != tow]
         self.estimator.reset()
         self.course = []
-        for window in kept:
+        for window in remaining:
             estimate = self.estimator.add(window)
             if estimate is not None:
                 self.course.append(WindowUsed(window, estimate))

@@ -111,14 +111,14 @@ class Screening:
             rest = {name: mean for name, mean in window.means.items() if name not in channels}
             if len(rest) < len(window.means) and distance(rest) <= SUSPICIOUS:
                 names = ' and '.join(channels)
-                found = Unheld('implausible', f'{names} contradict all other channels')
-                return ScreeningResult(found, channels)
-        found = Unheld(
+                refusal = Unheld('implausible', f'{names} contradict all other channels')
+                return ScreeningResult(refusal, channels)
+        refusal = Unheld(
             'implausible',
             f'the channels contradict each other: whatever the board may be, they lie '
             f'{stated**0.5:.0f} standard deviations from what the model expects',
         )
-        return ScreeningResult(found, refused=True)
+        return ScreeningResult(refusal, refused=True)
 
     def _distance(
         self, window: SteadyWindow, coefficients: FloatArray
@@ -161,11 +161,11 @@ class Screening:
         starts = [None] if self._start is None else [self._start, None]
         for start in starts:
             try:
-                found = self._predictor.predict(coefficients, *inputs, start)
+                steady = self._predictor.predict(coefficients, *inputs, start)
             except NoSteadyState:
                 continue
-            self._start = found.state
-            return found
+            self._start = steady.state
+            return steady
         return None
 
 
@@ -178,8 +178,8 @@ def _explanations(
         for unit in misreadings(means)
         if towable(repaired := unit.repaired(means))
     ]
-    credible = [one for one in tried if one[0] <= CREDIBLE]
-    return [unit for _, unit in sorted(credible, key=lambda one: one[0])]
+    credible = [(distance, unit) for distance, unit in tried if distance <= CREDIBLE]
+    return [unit for _, unit in sorted(credible, key=lambda pair: pair[0])]
 
 
 def _unit_judgement(
@@ -189,11 +189,11 @@ def _unit_judgement(
     rivals = [other for other in others if not set(other.channels) & set(unit.channels)]
     if rivals:
         sentence += f' (or {" and ".join(rivals[0].channels)} are in {rivals[0].unit})'
-    found = Unheld('wrong unit', sentence)
+    refusal = Unheld('wrong unit', sentence)
     return (
-        ScreeningResult(found, unit.channels)
+        ScreeningResult(refusal, unit.channels)
         if unit.optional
-        else ScreeningResult(found, refused=True)
+        else ScreeningResult(refusal, refused=True)
     )
 
 

@@ -37,7 +37,7 @@ class FoundWindows:
     problems: tuple[str, ...]
 
 
-def numbered(found: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[str]]:
+def numbered(recordings: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[str]]:
     """Number windows, states and tows consecutively over all recordings.
 
     Returns
@@ -50,9 +50,9 @@ def numbered(found: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[st
     windows: list[SteadyWindow] = []
     names: list[str] = []
     states = 0
-    for part in found:
+    for recording in recordings:
         first = len(names)
-        tows = 1 + max((window.tow for window in part.windows), default=-1)
+        tows = 1 + max((window.tow for window in recording.windows), default=-1)
         base = len(windows)
         windows += [
             replace(
@@ -61,16 +61,17 @@ def numbered(found: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[st
                 state=states + window.state,
                 tow=first + window.tow,
             )
-            for window in part.windows
+            for window in recording.windows
         ]
-        states += 1 + max((window.state for window in part.windows), default=-1)
-        names += [part.name] if tows == 1 else [f'{part.name}, tow {i + 1}' for i in range(tows)]
+        states += 1 + max((window.state for window in recording.windows), default=-1)
+        name = recording.name
+        names += [name] if tows == 1 else [f'{name}, tow {i + 1}' for i in range(tows)]
     return windows, names
 
 
 def estimate_tows(
     identification: Identification,
-    found: Sequence[FoundWindows],
+    recordings: Sequence[FoundWindows],
     on_progress: OnProgress = ignore,
 ) -> list[str]:
     """Use the windows of several recordings, as if one finder had found them one after another.
@@ -79,8 +80,8 @@ def estimate_tows(
     ----------
     identification
         To which nothing was fed yet; brought to rest afterwards.
-    found
-        Recordings in the order in which they count.
+    recordings
+        In the order in which they count.
     on_progress
         Called after each window.
 
@@ -89,13 +90,13 @@ def estimate_tows(
     list
         The name of each tow.
     """
-    windows, names = numbered(found)
+    windows, names = numbered(recordings)
     finder = identification.finder
-    for part in found:
-        finder.arrived.update(part.arrived)
-        finder.readings.update(part.readings)
-        finder.rejections.counts.update(part.rejections.counts)
-        finder.rejections.sentences.update(part.rejections.sentences)
+    for recording in recordings:
+        finder.arrived.update(recording.arrived)
+        finder.readings.update(recording.readings)
+        finder.rejections.counts.update(recording.rejections.counts)
+        finder.rejections.sentences.update(recording.rejections.sentences)
     for number, window in enumerate(windows, start=1):
         identification.take([window])
         on_progress(WorkProgress('fitting', number, len(windows), 'windows'))

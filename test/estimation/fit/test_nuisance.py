@@ -62,7 +62,7 @@ def dense(fit):
 def test_the_triangle_holds_the_information_of_all_readings(fit, dense):
     residual, jacobian, _, covariance, _ = dense
     weighed = np.linalg.solve(covariance, jacobian)
-    triangle, right = fit.marginal.triangle, fit.marginal.right
+    triangle, right = fit.elimination.triangle, fit.elimination.right
     np.testing.assert_allclose(triangle.T @ triangle, jacobian.T @ weighed, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(triangle.T @ right, weighed.T @ residual, rtol=1e-8, atol=1e-8)
 
@@ -70,14 +70,14 @@ def test_the_triangle_holds_the_information_of_all_readings(fit, dense):
 def test_the_cost_is_half_the_squared_residual_in_that_covariance(fit, dense):
     residual, _, _, covariance, _ = dense
     expected = 0.5 * residual @ np.linalg.solve(covariance, residual)
-    assert fit.marginal.cost == pytest.approx(expected, rel=1e-9)
+    assert fit.elimination.cost == pytest.approx(expected, rel=1e-9)
 
 
 def test_own_errors_and_their_shares_are_those_of_the_whole(fit, dense):
     residual, jacobian, own, covariance, there = dense
     solved = own * np.linalg.solve(covariance, residual)
     found = np.zeros(fit.residual.shape)
-    for part in fit.marginal.tows:
+    for part in fit.elimination.tows:
         found[part.errors.rows] = part.own * part.std
     np.testing.assert_allclose(found.reshape(-1)[there], solved, rtol=1e-7, atol=1e-9)
     inverse = np.linalg.inv(covariance)
@@ -96,7 +96,7 @@ def test_a_wild_reading_loses_weight_and_its_neighbours_do_not(fit):
     measured[0] *= 3.0
     wild[2] = replace(wild[2], measured=measured)
     robust = replace(fit, windows=tuple(wild), options=EstimatorOptions())
-    (first, _) = robust.marginal.tows
+    (first, _) = robust.elimination.tows
     assert first.weights[2, 0] < 0.02
     assert np.median(first.weights) == 1.0
 

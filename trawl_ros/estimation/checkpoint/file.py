@@ -129,12 +129,12 @@ def load_checkpoint(path: Path, fresh: Identification, gear: GearRecord) -> Iden
     for difference in _differences(record.get('settings'), settings):
         raise CheckpointError(f'{path}: the state is of an identification with {difference}')
     try:
-        found = Unpacker(numbers, packer).unpack(record['identification'])
+        identification = Unpacker(numbers, packer).unpack(record['identification'])
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as reason:
         raise CheckpointError(f'{unfit} of this version ({reason})') from reason
-    if not isinstance(found, Identification):
+    if not isinstance(identification, Identification):
         raise CheckpointError(unfit)
-    return found
+    return identification
 
 
 def _read(path: Path) -> tuple[bytes, bytes]:
@@ -165,11 +165,11 @@ def _settings(identification: Identification, gear: GearRecord) -> dict[str, Any
     }
 
 
-def _differences(found: Any, expected: Any, key: str = '') -> Iterator[str]:
+def _differences(saved: Any, expected: Any, key: str = '') -> Iterator[str]:
     """Yield the differences of settings, as 'key found, expected expected'."""
-    if isinstance(found, Mapping) and isinstance(expected, Mapping):
-        for name in dict.fromkeys((*expected, *found)):
+    if isinstance(saved, Mapping) and isinstance(expected, Mapping):
+        for name in dict.fromkeys((*expected, *saved)):
             below = f'{key}.{name}' if key else name
-            yield from _differences(found.get(name), expected.get(name), below)
-    elif found != expected:
-        yield f'{key or "settings"} {shown(found)}, expected {shown(expected)}'
+            yield from _differences(saved.get(name), expected.get(name), below)
+    elif saved != expected:
+        yield f'{key or "settings"} {shown(saved)}, expected {shown(expected)}'

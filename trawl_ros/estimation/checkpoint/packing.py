@@ -140,20 +140,20 @@ class Unpacker:
     def _content(self, tree: dict[str, Any], number: int) -> Any:
         if 'object' in tree:
             return self._object(tree, number)
-        found: Any
+        made: Any
         if 'array' in tree:
-            found = self._array(tree)
+            made = self._array(tree)
         elif 'deque' in tree:
-            found = deque(map(self.unpack, tree['deque']), maxlen=tree['most'])
+            made = deque(map(self.unpack, tree['deque']), maxlen=tree['most'])
         elif names := SEQUENCES.keys() & tree.keys():
             (name,) = names
-            found = SEQUENCES[name](map(self.unpack, tree[name]))
+            made = SEQUENCES[name](map(self.unpack, tree[name]))
         else:
             (name,) = MAPPINGS.keys() & tree.keys()
             pairs = ((self.unpack(key), self.unpack(value)) for key, value in tree[name])
-            found = MAPPINGS[name](dict(pairs))
-        self._made[number] = found
-        return found
+            made = MAPPINGS[name](dict(pairs))
+        self._made[number] = made
+        return made
 
     def _object(self, tree: dict[str, Any], number: int) -> Any:
         name, has = present(tree['object'], tree['has'])
@@ -163,12 +163,12 @@ class Unpacker:
             now = sorted(field.name for field in fields(kind))
         if now is not None and now != sorted(has):
             raise ValueError(f'{name} has other attributes')
-        found: Any = object.__new__(kind)
+        made: Any = object.__new__(kind)
         # Known before it is whole, for what it has may refer to it.
-        self._made[number] = found
+        self._made[number] = made
         for key, value in has.items():
-            object.__setattr__(found, key, self.unpack(value))
-        return found
+            object.__setattr__(made, key, self.unpack(value))
+        return made
 
     def _array(self, tree: dict[str, Any]) -> FloatArray | IntArray | BoolArray:
         if tree['array'] not in NUMBERS:

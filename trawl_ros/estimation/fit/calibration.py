@@ -12,11 +12,11 @@ from trawl_ros.records.channels import CHANNELS
 def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
     """Return the calibration errors by tow and channel, inputs included."""
     share = fit.scheme.tow_share
-    joint = joint_root(fit.marginal, fit.posterior.root)
-    found = []
-    for part in fit.marginal.tows:
-        root = calibration_root(part, joint)
-        windows = [fit.windows[row].window for row in part.errors.rows]
+    joint = joint_root(fit.elimination, fit.posterior.root)
+    biases = []
+    for tow in fit.elimination.tows:
+        root = calibration_root(tow, joint)
+        windows = [fit.windows[row].window for row in tow.errors.rows]
         for name in dict.fromkeys(term.channel for term in TERMS):
             means = [window.means[name] for window in windows if name in window.means]
             if not means:
@@ -29,17 +29,17 @@ def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
                     for term in TERMS
                 ]
             )
-            found.append(
+            biases.append(
                 TowBias(
                     tow=windows[0].tow,
                     channel=name,
                     unit=CHANNELS[name].unit,
-                    value=float(size @ part.calibration),
+                    value=float(size @ tow.calibration),
                     std=float(np.linalg.norm(size @ root)),
                     known=float(np.linalg.norm(size)),
                 )
             )
-    return tuple(found)
+    return tuple(biases)
 
 
 def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
@@ -47,7 +47,7 @@ def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
     if fit.net is None:
         return ()
     std = fit.scheme.net_std
-    root = joint_root(fit.marginal, fit.posterior.root)
+    root = joint_root(fit.elimination, fit.posterior.root)
     (rows,) = fit.scheme.model_errors.blocks('net')
     return tuple(
         NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))

@@ -172,63 +172,69 @@ class TowErrors:
     model: FloatArray
 
 
-def spread(part: Linearised, values: FloatArray) -> FloatArray:
+def spread(linear: Linearised, values: FloatArray) -> FloatArray:
     """Rows of a window's channels scattered among all channels, 0 for those it has not.
 
     Parameters
     ----------
-    part
+    linear
         The window.
     values
         (channels of the window, ...) array.
     """
     full = np.zeros((len(MEASURED), *values.shape[1:]))
-    full[[MEASURED.index(name) for name in part.channels]] = values
+    full[[MEASURED.index(name) for name in linear.channels]] = values
     return full
 
 
-def tow_errors(parts: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, ...]:
+def tow_errors(linearised: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, ...]:
     """Errors of all windows, tow by tow.
 
     Parameters
     ----------
-    parts
+    linearised
         Linearised windows of any tows.
     scheme
         Scheme of the errors.
     """
-    states = [part.window.state for part in parts]
+    states = [linear.window.state for linear in linearised]
     in_state = {state: states.count(state) for state in set(states)}
-    usual = _usual_noise([part.window for part in parts])
+    usual = _usual_noise([linear.window for linear in linearised])
     tows: dict[int, list[int]] = {}
-    for row, part in enumerate(parts):
-        tows.setdefault(part.window.tow, []).append(row)
+    for row, linear in enumerate(linearised):
+        tows.setdefault(linear.window.tow, []).append(row)
     return tuple(
-        _of_one_tow(rows, [parts[row] for row in rows], in_state, usual, scheme)
+        _of_one_tow(rows, [linearised[row] for row in rows], in_state, usual, scheme)
         for _, rows in sorted(tows.items())
     )
 
 
 def _of_one_tow(
     rows: Sequence[int],
-    parts: Sequence[Linearised],
+    linearised: Sequence[Linearised],
     in_state: Mapping[int, int],
     usual: Mapping[str, float],
     scheme: Scheme,
 ) -> TowErrors:
-    present = np.array([[name in part.channels for name in MEASURED] for part in parts])
-    by_inputs = np.array([spread(part, part.by_inputs) for part in parts])
+    present = np.array([[name in linear.channels for name in MEASURED] for linear in linearised])
+    by_inputs = np.array([spread(linear, linear.by_inputs) for linear in linearised])
     own = np.array(
-        [[_own_std(part, name, in_state, usual, scheme) for name in MEASURED] for part in parts]
+        [
+            [_own_std(linear, name, in_state, usual, scheme) for name in MEASURED]
+            for linear in linearised
+        ]
     )
     alone = np.array(
-        [[_own_std(part, name, {part.window.state: 1}, usual, scheme) for name in MEASURED]
-         for part in parts]
+        [[_own_std(linear, name, {linear.window.state: 1}, usual, scheme) for name in MEASURED]
+         for linear in linearised]
     )  # fmt: skip
     input_std = np.array(
-        [[_own_std(part, name, in_state, usual, scheme) for name in INPUTS] for part in parts]
+        [
+            [_own_std(linear, name, in_state, usual, scheme) for name in INPUTS]
+            for linear in linearised
+        ]
     )
-    slow = np.array([_unsettled(part, in_state, scheme) for part in parts])
+    slow = np.array([_unsettled(linear, in_state, scheme) for linear in linearised])
     return TowErrors(
         rows=np.array(rows),
         present=present,
@@ -236,30 +242,30 @@ def _of_one_tow(
         numbers=present * alone**2 / own**2,
         inputs=np.concatenate((by_inputs * input_std[:, None, :], slow[:, :, None]), axis=2),
         input_std=input_std,
-        calibration=np.array([_calibration(part, scheme) for part in parts]),
-        input_calibration=np.array([_of_inputs(part, scheme) for part in parts]),
-        model=np.array([_model(part, scheme) for part in parts]),
+        calibration=np.array([_calibration(linear, scheme) for linear in linearised]),
+        input_calibration=np.array([_of_inputs(linear, scheme) for linear in linearised]),
+        model=np.array([_model(linear, scheme) for linear in linearised]),
     )
 
 
 def _usual_noise(windows: Sequence[SteadyWindow]) -> dict[str, float]:
     """Median over windows of each quantity's noise."""
-    found: dict[str, list[float]] = {}
+    by_group: dict[str, list[float]] = {}
     for window in windows:
         for name, noise in window.noise.items():
-            found.setdefault(group_of(name), []).append(noise)
-    return {group: float(np.median(noise)) for group, noise in found.items()}
+            by_group.setdefault(group_of(name), []).append(noise)
+    return {group: float(np.median(noise)) for group, noise in by_group.items()}
 
 
 def _own_std(
-    part: Linearised,
+    linear: Linearised,
     name: str,
     in_state: Mapping[int, int],
     usual: Mapping[str, float],
     scheme: Scheme,
 ) -> float:
-    window = part.window
-    if name not in window.means or (name in MEASURED and name not in part.channels):
+    window = linear.window
+    if name not in window.means or (name in MEASURED and name not in linear.channels):
         return 1.0
     # All windows of a state share what changes with it, so their number must not wear it down.
     changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
@@ -268,45 +274,47 @@ def _own_std(
     return float(np.sqrt(noise**2 + changing))
 
 
-def _unsettled(part: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> FloatArray:
-    depth = part.window.means.get('net_depth', 0.0)
+def _unsettled(linear: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> FloatArray:
+    depth = linear.window.means.get('net_depth', 0.0)
     # The windows of one state come to rest together.
-    size = scheme.unsettled * abs(depth) * np.sqrt(in_state[part.window.state])
-    return spread(part, size * part.slow)
+    size = scheme.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
+    return spread(linear, size * linear.slow)
 
 
-def _calibration(part: Linearised, scheme: Scheme) -> FloatArray:
+def _calibration(linear: Linearised, scheme: Scheme) -> FloatArray:
     # An input read too large makes the prediction differ, not the reading.
-    columns = -spread(part, part.by_inputs) @ _of_inputs(part, scheme)
+    columns = -spread(linear, linear.by_inputs) @ _of_inputs(linear, scheme)
     for column, term in enumerate(TERMS):
-        if term.channel in part.channels:
-            columns[MEASURED.index(term.channel), column] = _size(part, term, scheme)
+        if term.channel in linear.channels:
+            columns[MEASURED.index(term.channel), column] = _size(linear, term, scheme)
     return columns
 
 
-def _of_inputs(part: Linearised, scheme: Scheme) -> FloatArray:
+def _of_inputs(linear: Linearised, scheme: Scheme) -> FloatArray:
     columns = np.zeros((len(INPUTS), len(TERMS)))
     for column, term in enumerate(TERMS):
         if term.channel in INPUTS:
-            columns[INPUTS.index(term.channel), column] = _size(part, term, scheme)
+            columns[INPUTS.index(term.channel), column] = _size(linear, term, scheme)
     return columns
 
 
-def _size(part: Linearised, term: ErrorTerm, scheme: Scheme) -> float:
-    mean = part.window.means[term.channel]
+def _size(linear: Linearised, term: ErrorTerm, scheme: Scheme) -> float:
+    mean = linear.window.means[term.channel]
     return scheme.tow_share * term.std * (mean if term.relative else 1.0)
 
 
-def _model(part: Linearised, scheme: Scheme) -> FloatArray:
+def _model(linear: Linearised, scheme: Scheme) -> FloatArray:
     columns = np.zeros((len(MEASURED), len(GROUPS)))
-    for name, value in zip(part.channels, part.values, strict=True):
+    for name, value in zip(linear.channels, linear.values, strict=True):
         row = MEASURED.index(name)
         size = MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
         columns[row, GROUP_OF[row]] = scheme.model_error * size
     if scheme.model_trend:
-        length = 0.5 * (part.window.means['port_length'] + part.window.means['starboard_length'])
+        length = 0.5 * (
+            linear.window.means['port_length'] + linear.window.means['starboard_length']
+        )
         longer = np.log(length / USUAL_LENGTH) / np.log(LONGER)
         columns = np.hstack((columns, scheme.model_trend * longer * columns))
     if not scheme.net_std.any():
         return columns
-    return np.hstack((columns, spread(part, part.by_net) * scheme.net_std))
+    return np.hstack((columns, spread(linear, linear.by_net) * scheme.net_std))

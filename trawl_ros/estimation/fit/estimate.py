@@ -211,15 +211,15 @@ def undetermined(
     if not np.any(weak):
         return ()
     basis = _varimax(knowledge.directions[weak].T)
-    seen = knowledge.singular[:, None] * (knowledge.directions @ basis)
-    found = []
+    scaled = knowledge.singular[:, None] * (knowledge.directions @ basis)
+    combinations = []
     for column, weights in enumerate(basis.T):
         order = np.argsort(-np.abs(weights))
         among = [names[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
-        information = float(seen[:, column] @ seen[:, column])
+        information = float(scaled[:, column] @ scaled[:, column])
         std = information**-0.5 if information > 1e-24 else float('inf')
-        found.append(Combination(tuple(among or [names[order[0]]]), weights, std))
-    return tuple(sorted(found, key=lambda combination: -combination.std))
+        combinations.append(Combination(tuple(among or [names[order[0]]]), weights, std))
+    return tuple(sorted(combinations, key=lambda combination: -combination.std))
 
 
 def _varimax(basis: FloatArray) -> FloatArray:
@@ -250,18 +250,22 @@ def is_determined(values: FloatArray, std: FloatArray, prior: ParameterVector) -
 def active_bounds(values: FloatArray, prior: ParameterVector) -> tuple[str, ...]:
     """Names of the active bounds."""
     at_low, at_high = prior.on_bounds(values)
-    found = []
+    active = []
     for i, name in enumerate(prior.names):
         if at_low[i]:
-            found.append(f'{name} at its lower bound {prior.low[i]:g}')
+            active.append(f'{name} at its lower bound {prior.low[i]:g}')
         elif at_high[i]:
-            found.append(f'{name} at its upper bound {prior.high[i]:g}')
-    return tuple(found)
+            active.append(f'{name} at its upper bound {prior.high[i]:g}')
+    return tuple(active)
 
 
 def interval(
-    values: FloatArray, std: FloatArray, freedom: float, confidence: float, prior: ParameterVector
+    values: FloatArray,
+    std: FloatArray,
+    degrees_of_freedom: float,
+    confidence: float,
+    prior: ParameterVector,
 ) -> tuple[FloatArray, FloatArray]:
     """Student's interval (12,), (12,) around the values, cut at the bounds."""
-    half = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) * std
+    half = float(stdtrit(degrees_of_freedom, 0.5 + 0.5 * confidence)) * std
     return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

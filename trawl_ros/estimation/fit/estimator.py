@@ -7,7 +7,6 @@ would no longer do. There is no forgetting: without excitation it would wind up.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,13 +16,13 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import Estimate, Innovation
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
-from trawl_ros.estimation.fit.gauss_newton import gauss_newton_step
+from trawl_ros.estimation.fit.line_search import Step, line_search
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.posterior import innovation_of, posterior_estimate
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
-from trawl_ros.estimation.fit.relinearise import comparable, far, moved, with_those_of
+from trawl_ros.estimation.fit.relinearise import far
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 if TYPE_CHECKING:
@@ -34,8 +33,6 @@ SHORTER = 0.5
 
 GETTING_ON = 0.5
 """The part of the step before to which one must have come down where full steps do lead on."""
-
-NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
 
 POOR = 1.2
 """Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
@@ -52,18 +49,6 @@ class Progress:
     windows: int
     cost: float
     objective: float
-
-
-@dataclass(frozen=True)
-class _Step:
-    """Step: ``size`` in std of the coefficients; ``obstacle`` says what kept it from being taken,
-    ``needless`` that there was nothing to be taken.
-    """
-
-    size: float
-    gain: float
-    obstacle: str | None = None
-    needless: bool = False
 
 
 class Estimator:
@@ -112,7 +97,7 @@ class Estimator:
     @property
     def windows(self) -> tuple[SteadyWindow, ...]:
         """Windows in the fit."""
-        return tuple(part.window for part in self._fit.windows)
+        return tuple(linear.window for linear in self._fit.windows)
 
     @property
     def coefficients(self) -> FloatArray:
@@ -135,12 +120,12 @@ class Estimator:
         ``near`` is a steady state to start from, beside those of other windows.
         """
         try:
-            part = self._linearise(window, self.coefficients, self._inputs_of(window), start=near)
+            linear = self._linearise(window, self.coefficients, self._inputs_of(window), start=near)
         except NoSteadyState:
             self._without.append(window)
             return None
-        innovation = self._innovation(part)
-        self._fit = replace(self._fit, windows=(*self._fit.windows, part))
+        innovation = self._innovation(linear)
+        self._fit = replace(self._fit, windows=(*self._fit.windows, linear))
         for _ in range(self.options.iterations_per_window):
             step = self._step(self.options.relinearise)
             if step.obstacle or step.needless:
@@ -167,11 +152,13 @@ class Estimator:
                 self._fit, self._without, self.history = first, without, course
         return self._publish(None, converged, reason) if self._fit.windows else None
 
-    def begin(self, parts: Sequence[Linearised], coefficients: FloatArray) -> None:
+    def begin(self, linearised: Sequence[Linearised], coefficients: FloatArray) -> None:
         """Take windows that were solved elsewhere; `finish` solves them anew where they are wanted
         at these coefficients.
         """
-        self._fit = replace(self._fit, windows=tuple(parts), coefficients=np.array(coefficients))
+        self._fit = replace(
+            self._fit, windows=tuple(linearised), coefficients=np.array(coefficients)
+        )
 
     def take(self, windows: Sequence[SteadyWindow]) -> None:
         """Take windows unsolved; `finish` solves all of them at once."""
@@ -179,10 +166,10 @@ class Estimator:
 
     def subset(self, states: set[int], options: EstimatorOptions | None = None) -> 'Estimator':
         """Return an estimator with the windows of some states only, starting from this estimate."""
-        part = Estimator(self.predictor, self.prior, self.observables, options or self.options)
-        chosen = tuple(fit for fit in self._fit.windows if fit.window.state in states)
-        part._fit = replace(self._fit, windows=chosen, options=part.options)
-        return part
+        subset = Estimator(self.predictor, self.prior, self.observables, options or self.options)
+        chosen = tuple(linear for linear in self._fit.windows if linear.window.state in states)
+        subset._fit = replace(self._fit, windows=chosen, options=subset.options)
+        return subset
 
     def predictions(
         self, coefficients: FloatArray, windows: Sequence[SteadyWindow] | None = None
@@ -196,11 +183,11 @@ class Estimator:
         rows = []
         for window in self.windows if windows is None else windows:
             try:
-                part = self._linearise(window, coefficients)
+                linear = self._linearise(window, coefficients)
             except NoSteadyState:
                 rows.append(np.full(len(PAPER_CHANNELS), np.nan))
             else:
-                rows.append(paper_values(dict(zip(part.channels, part.solved, strict=True))))
+                rows.append(paper_values(dict(zip(linear.channels, linear.solved, strict=True))))
         return stack(rows)
 
     def _inputs_of(self, window: SteadyWindow) -> FloatArray:
@@ -209,14 +196,14 @@ class Estimator:
         One that is new is taken to share those of the last window of its tow.
         """
         measured = measured_inputs(window)
-        found = measured
-        for part, inputs in zip(self._fit.windows, self._fit.inputs, strict=True):
-            if part.window.index == window.index:
-                found = inputs
+        corrected = measured
+        for linear, inputs in zip(self._fit.windows, self._fit.inputs, strict=True):
+            if linear.window.index == window.index:
+                corrected = inputs
                 break
-            if part.window.tow == window.tow:
-                found = measured + inputs - measured_inputs(part.window)
-        return found
+            if linear.window.tow == window.tow:
+                corrected = measured + inputs - measured_inputs(linear.window)
+        return corrected
 
     def _linearise(
         self,
@@ -229,9 +216,9 @@ class Estimator:
     ) -> Linearised:
         """Linearise the model at a window, from a given state or that of the nearest window."""
 
-        def distance(part: Linearised) -> float:
+        def distance(linear: Linearised) -> float:
             return sum(
-                abs(window.means[name] / part.window.means[name] - 1.0)
+                abs(window.means[name] / linear.window.means[name] - 1.0)
                 for name in ('port_length', 'starboard_length', 'speed')
             )
 
@@ -260,30 +247,30 @@ class Estimator:
 
     def _solve_all(self) -> None:
         """Linearise all windows at the present coefficients; set aside those without a state."""
-        solved = {part.window.index: part for part in self._fit.windows}
+        solved = {linear.window.index: linear for linear in self._fit.windows}
         windows = sorted((*self.windows, *self._without), key=lambda window: window.index)
         self._without = []
-        parts: list[Linearised] = []
+        linearised: list[Linearised] = []
         for window in windows:
-            part, inputs = solved.get(window.index), self._inputs_of(window)
+            linear, inputs = solved.get(window.index), self._inputs_of(window)
             threshold = self.options.relinearise_final
-            if part is None or far(part, self.coefficients, inputs, self._fit.net, threshold):
+            if linear is None or far(linear, self.coefficients, inputs, self._fit.net, threshold):
                 try:
-                    part = self._linearise(window, self.coefficients, inputs, near=parts)
+                    linear = self._linearise(window, self.coefficients, inputs, near=linearised)
                 except NoSteadyState:
                     self._without.append(window)
                     continue
-            parts.append(part)
-        self._fit = replace(self._fit, windows=tuple(parts))
+            linearised.append(linear)
+        self._fit = replace(self._fit, windows=tuple(linearised))
 
     def _rest(self) -> tuple[bool, str]:
         """Iterate to convergence; return its success and reason."""
         if not self._fit.windows:
             return False, 'no window has a steady state in the model'
         limit = self.options.iterations_final
-        part, last = 1.0, np.inf
+        share, last = 1.0, np.inf
         for iteration in range(1, limit + 1):
-            step = self._step(self.options.relinearise_final, part)
+            step = self._step(self.options.relinearise_final, share)
             if step.needless:
                 return True, (
                     f'after {iteration} iterations the step is below '
@@ -294,47 +281,20 @@ class Estimator:
                     return False, f'{step.obstacle}, {step.size:.2g} std from rest'
                 return True, f'after {iteration} iterations no step can lower the cost noticeably'
             # The share of the errors changes with a step, and may change back with the next.
-            part = SHORTER if step.size > GETTING_ON * last else 1.0
+            share = SHORTER if step.size > GETTING_ON * last else 1.0
             last = step.size
         return False, f'still moving by {step.size:.2g} std after {limit} iterations'
 
-    def _step(self, relinearise: float, part: float = 1.0) -> _Step:
-        """Go this part of the way to where the linearised windows aim, and halve it until it
-        lowers the cost of the windows solved anew.
-        """
-        prior, options, fit = self.prior, self.options, self._fit
-        low, high = prior.box(fit.coefficients, options.largest_step)
-        aimed = gauss_newton_step(fit, low, high)
-        fit = replace(fit, scales=aimed.scales)
-        size = float(np.max(np.abs(aimed.coefficients - fit.coefficients) / aimed.std))
-        step = _Step(size, fit.cost - aimed.cost)
-        self._fit = fit
-        known = all(
-            not far(window, aimed.coefficients, inputs, aimed.net, relinearise)
-            for window, inputs in zip(fit.windows, aimed.inputs, strict=True)
+    def _step(self, relinearise: float, share: float = 1.0) -> Step:
+        """Take a step that lowers the cost, if there is one."""
+        step = line_search(
+            self._fit, self.predictor, self.observables, relinearise, share, self._spares()
         )
-        if size < options.tolerance and known:
-            return replace(step, needless=True)
-        for spare, halving in product(self._spares(), range(options.halvings + 1)):
-            if spare and step.obstacle != NO_STEADY_STATE:
-                break
-            try:
-                there = moved(
-                    fit, aimed, part * 0.5**halving, relinearise, self.predictor,
-                    self.observables, spare,
-                )  # fmt: skip
-            except NoSteadyState:
-                step = replace(step, obstacle=NO_STEADY_STATE)
-                continue
-            left, lost = with_those_of(fit, there)
-            # Errors do something else there; whichever way one looks at it, it is to be better.
-            better = min(there.cost, there.cost_beside(left)) <= left.cost * (1.0 + 1e-12)
-            if better or not comparable(left, there):
-                self._fit = there
-                self._without += lost
-                self.history.append(Progress(len(there.windows), there.cost, there.objective))
-                return replace(step, obstacle=None)
-            step = replace(step, obstacle='no step lowers the cost')
+        self._fit = step.fit
+        self._without += step.lost
+        if step.taken:
+            fit = step.fit
+            self.history.append(Progress(len(fit.windows), fit.cost, fit.objective))
         return step
 
     def _spares(self) -> tuple[int, ...]:
@@ -343,9 +303,9 @@ class Estimator:
         left = int(self.options.set_aside * number) - len(self._without)
         return (0, left) if left > 0 else (0,)
 
-    def _innovation(self, part: Linearised) -> Innovation:
+    def _innovation(self, linear: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
-        return innovation_of(part, self._fit, known)
+        return innovation_of(linear, self._fit, known)
 
     def _publish(self, innovation: Innovation | None, converged: bool, reason: str) -> Estimate:
         self._revision += 1

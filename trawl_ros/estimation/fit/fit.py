@@ -79,43 +79,47 @@ class Fit:
         std = self.scheme.net_std
         if not std.any():
             return None
-        found = np.zeros(2)
+        factors = np.zeros(2)
         if self.windows:
             errors = self.scheme.model_errors
-            found = errors.clipped(self.marginal.model)[errors.slice_of('net')]
-        return np.maximum(1.0 + std * found, LEAST_FACTOR)
+            factors = errors.clipped(self.elimination.model)[errors.slice_of('net')]
+        return np.maximum(1.0 + std * factors, LEAST_FACTOR)
 
     @cached_property
     def residual(self) -> FloatArray:
         """Residuals (windows, k), measured minus predicted, to first order; 0 where unmeasured."""
         rows = [
-            spread(part, part.measured - part.predicted(self.coefficients)) for part in self.windows
+            spread(linear, linear.measured - linear.predicted(self.coefficients))
+            for linear in self.windows
         ]
         return np.array(rows).reshape(-1, len(GROUP_OF))
 
     @cached_property
     def inputs(self) -> FloatArray:
         """Most likely warp lengths and speed (windows, 3), corrected for their estimated errors."""
-        found = np.array([measured_inputs(part.window) for part in self.windows]).reshape(-1, 3)
-        for part in self.marginal.tows:
-            own = np.clip(part.inputs[:, :3], -FARTHEST, FARTHEST)
-            calibration = CALIBRATION.clipped(part.calibration)
-            errors = part.errors
-            found[errors.rows] += errors.input_std * own - errors.input_calibration @ calibration
-        return found
+        measured = [measured_inputs(linear.window) for linear in self.windows]
+        inputs = np.array(measured).reshape(-1, 3)
+        for tow in self.elimination.tows:
+            own = np.clip(tow.inputs[:, :3], -FARTHEST, FARTHEST)
+            calibration = CALIBRATION.clipped(tow.calibration)
+            errors = tow.errors
+            inputs[errors.rows] += errors.input_std * own - errors.input_calibration @ calibration
+        return inputs
 
     @cached_property
     def jacobian(self) -> FloatArray:
         """Sensitivities (windows, k, 12) per prior std."""
-        rows = [spread(part, part.by_coefficients * self.prior.std) for part in self.windows]
+        rows = [spread(linear, linear.by_coefficients * self.prior.std) for linear in self.windows]
         return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior))
 
     @cached_property
-    def marginal(self) -> NuisanceElimination:
+    def elimination(self) -> NuisanceElimination:
         """Square-root information after elimination of all nuisance parameters."""
-        return self._marginal(self.errors, self.jacobian)
+        return self._eliminated(self.errors, self.jacobian)
 
-    def _marginal(self, errors: tuple[TowErrors, ...], jacobian: FloatArray) -> NuisanceElimination:
+    def _eliminated(
+        self, errors: tuple[TowErrors, ...], jacobian: FloatArray
+    ) -> NuisanceElimination:
         scales = np.array(self.scales)[GROUP_OF]
         huber = self.options.huber
         return eliminate_nuisance(errors, scales, self.residual, jacobian, huber, self.weights)
@@ -123,14 +127,14 @@ class Fit:
     @property
     def cost(self) -> float:
         """Robust loss of all windows plus half the squared departure from the prior."""
-        return self.marginal.cost + self._prior_cost
+        return self.elimination.cost + self._prior_cost
 
     def cost_beside(self, other: 'Fit') -> float:
         """Cost with the nuisance parameters' effect taken from another fit of the same windows.
 
         A step is judged with that held still, as the step itself was found.
         """
-        return self._marginal(other.errors, self.jacobian[:, :, :0]).cost + self._prior_cost
+        return self._eliminated(other.errors, self.jacobian[:, :, :0]).cost + self._prior_cost
 
     @property
     def _prior_cost(self) -> float:
@@ -146,15 +150,15 @@ class Fit:
         number = len(self.coefficients)
         root = np.sqrt(self.options.prior_weight)
         away = -self.prior.departure(self.coefficients)
-        left = np.vstack((self.marginal.triangle, root * np.eye(number)))
-        right = np.concatenate((self.marginal.right, root * away))
+        left = np.vstack((self.elimination.triangle, root * np.eye(number)))
+        right = np.concatenate((self.elimination.right, root * away))
         triangle = triangular(np.column_stack((left, right)))
         return triangle[:number, :-1], triangle[:number, -1]
 
     @cached_property
     def posterior(self) -> Posterior:
         """Posterior covariance and singular directions."""
-        return posterior_of(self.marginal.triangle, self.prior.std, self.options.prior_weight)
+        return posterior_of(self.elimination.triangle, self.prior.std, self.options.prior_weight)
 
     @property
     def std(self) -> FloatArray:
@@ -164,7 +168,7 @@ class Fit:
     @cached_property
     def redundancy_numbers(self) -> FloatArray:
         """Redundancy numbers (windows, k) of the readings, for their own errors."""
-        return redundancy_numbers(self.marginal, self.jacobian, self.posterior.root)
+        return redundancy_numbers(self.elimination, self.jacobian, self.posterior.root)
 
     @property
     def degrees_of_freedom(self) -> float:
@@ -203,12 +207,12 @@ class Fit:
     def objective(self) -> float:
         """Eq. 35, to first order around the last solutions."""
         predicted, measured = [], []
-        for part in self.windows:
-            values = part.predicted(self.coefficients)
+        for linear in self.windows:
+            values = linear.predicted(self.coefficients)
             if self.net is not None:
-                values = values + part.by_net @ (self.net - 1.0)
-            predicted.append(paper_values(dict(zip(part.channels, values, strict=True))))
-            measured.append(paper_values(part.window.means))
+                values = values + linear.by_net @ (self.net - 1.0)
+            predicted.append(paper_values(dict(zip(linear.channels, values, strict=True))))
+            measured.append(paper_values(linear.window.means))
         return objective(stack(predicted), stack(measured))
 
     def rescaled(self) -> 'Fit':
@@ -223,8 +227,8 @@ class Fit:
         shares = np.clip(self.redundancy_numbers, 0.0, 1.0) * self._numbers
         huber, stated = self.options.huber, self.options.stated_noise_readings
         own = np.zeros(shares.shape)
-        for part in self.marginal.tows:
-            own[part.errors.rows] = part.own
+        for tow in self.elimination.tows:
+            own[tow.errors.rows] = tow.own
         clipped = np.minimum(np.abs(own), huber) ** 2
         # A share of nothing has no noise to tell of.
         limit = huber / np.sqrt(np.maximum(shares, 1e-12))

@@ -44,7 +44,7 @@ def gauss_newton_step(fit: Fit, low: FloatArray, high: FloatArray) -> Fit:
         move = lsq_linear(triangle, right, box, 'bvls', max_iter=200).x * std
         size = float(np.max(np.abs(move) / here.std))
         coefficients = np.clip(here.coefficients + move, low, high)
-        weights = reweighted(here.marginal, fit.options.huber)
+        weights = reweighted(here.elimination, fit.options.huber)
         moved = replace(here, coefficients=coefficients, weights=weights).rescaled()
         change = np.max(np.abs(np.array(moved.scales) / np.array(here.scales) - 1.0))
         here = moved

@@ -86,20 +86,23 @@ QUANTITIES = tuple(f'{law.symbol} {what}' for what in ('value', 'slope') for law
 """Names of the twelve quantities, in order."""
 
 
-def working_angles(seen: Iterable[Observables], slip_sign: int) -> WorkingAngles:
+def working_angles(observables: Iterable[Observables], slip_sign: int) -> WorkingAngles:
     """Average the angles of both boards over steady states.
 
     Parameters
     ----------
-    seen
+    observables
         Observables of the states.
     slip_sign
         Sign with which β of eq. 2 enters eq. 14, from the gear file.
     """
     angles = np.array(
         [
-            (one.port_attack + one.starboard_attack, one.port_slip + one.starboard_slip)
-            for one in seen
+            (
+                observed.port_attack + observed.starboard_attack,
+                observed.port_slip + observed.starboard_slip,
+            )
+            for observed in observables
         ]
     )
     attack, slip = 0.5 * angles.mean(axis=0)

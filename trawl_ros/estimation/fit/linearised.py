@@ -52,9 +52,9 @@ class Linearised:
         """Predictions (n,) with the net as it was when they were solved."""
         return self.values + self.by_net @ (self.net - 1.0)
 
-    def only(self, part: Slice) -> 'Linearised':
+    def only(self, columns: Slice) -> 'Linearised':
         """Linearisation by some of the parameters; the others stay where it was solved."""
-        return replace(self, at=self.at[part], by_coefficients=self.by_coefficients[:, part])
+        return replace(self, at=self.at[columns], by_coefficients=self.by_coefficients[:, columns])
 
     def followed_by(self, values: FloatArray, columns: FloatArray) -> 'Linearised':
         """Linearisation by m more parameters: at these values (m,), with these columns (n, m)."""

@@ -118,8 +118,8 @@ def eliminate_nuisance(
         return _solved(tows, weights, scales, residual, jacobian, huber)
     weights = [np.ones(tow.noise.shape) for tow in tows]
     for _ in range(ROUNDS):
-        found = _solved(tows, weights, scales, residual, jacobian, huber)
-        updated = reweighted(found, huber)
+        elimination = _solved(tows, weights, scales, residual, jacobian, huber)
+        updated = reweighted(elimination, huber)
         change = max(
             (float(np.max(np.abs(a - b))) for a, b in zip(updated, weights, strict=True)),
             default=0.0,
@@ -127,12 +127,12 @@ def eliminate_nuisance(
         if change < ALIKE:
             break
         weights = updated
-    return found
+    return elimination
 
 
-def reweighted(found: NuisanceElimination, huber: float) -> tuple[FloatArray, ...]:
+def reweighted(elimination: NuisanceElimination, huber: float) -> tuple[FloatArray, ...]:
     """Huber weights (n, k) of each tow for the readings' own errors."""
-    return tuple(huber / np.maximum(np.abs(part.own), huber) for part in found.tows)
+    return tuple(huber / np.maximum(np.abs(tow.own), huber) for tow in elimination.tows)
 
 
 def _solved(
@@ -170,17 +170,17 @@ def _solved(
     padded = np.vstack((of_coefficients, np.zeros((q + 1, q + 1))))
     last = triangular(padded)
     model = solve_triangular(of_model[:, :m], of_model[:, -1])
-    parts = tuple(
+    tow_parts = tuple(
         _explained(tow, weight, *solution, model, residual, huber)
         for tow, weight, solution in zip(tows, weights, whitened, strict=True)
     )
     return NuisanceElimination(
-        tows=parts,
+        tows=tow_parts,
         triangle=last[:q, :q],
         right=last[:q, q],
         model_triangle=of_model[:, :-1],
         model=model,
-        cost=float(sum(part.cost for part in parts) + 0.5 * model @ model),
+        cost=float(sum(tow_part.cost for tow_part in tow_parts) + 0.5 * model @ model),
     )
 
 
@@ -237,7 +237,7 @@ def _explained(
 
 
 def redundancy_numbers(
-    marginal: NuisanceElimination, jacobian: FloatArray, root: FloatArray
+    elimination: NuisanceElimination, jacobian: FloatArray, root: FloatArray
 ) -> FloatArray:
     """Redundancy numbers (windows, k): share of each reading's variance kept by its own error.
 
@@ -246,7 +246,7 @@ def redundancy_numbers(
 
     Parameters
     ----------
-    marginal
+    elimination
         From `eliminate_nuisance` with the same ``jacobian``.
     jacobian
         Sensitivities (windows, k, q) per prior std.
@@ -254,44 +254,44 @@ def redundancy_numbers(
         Of the posterior covariance (q, q) of the coefficients, S Sᵀ, in prior std.
     """
     shares = np.zeros(jacobian.shape[:2])
-    joint = joint_root(marginal, root)
-    for part in marginal.tows:
-        tow = part.errors
-        p = part.triangle.shape[0]
+    joint = joint_root(elimination, root)
+    for tow_part in elimination.tows:
+        tow = tow_part.errors
+        p = tow_part.triangle.shape[0]
         upper = np.concatenate((tow.model, jacobian[tow.rows]), axis=2)
-        solved = solve_triangular(part.triangle[:, :p], np.eye(p))
+        solved = solve_triangular(tow_part.triangle[:, :p], np.eye(p))
         of_tow = tow.calibration @ solved
-        of_upper = upper - of_tow @ part.triangle[:, p:]
+        of_upper = upper - of_tow @ tow_part.triangle[:, p:]
         terms = np.concatenate((of_tow, of_upper @ joint), axis=2)
-        inverse = np.linalg.inv(part.roots)
+        inverse = np.linalg.inv(tow_part.roots)
         known = inverse.transpose(0, 2, 1) @ (inverse @ terms)
         own = np.einsum('nij,nij->nj', inverse, inverse) - np.einsum('nkt,nkt->nk', known, known)
-        shares[tow.rows] = np.where(tow.present, part.std**2 / part.weights * own, 0.0)
+        shares[tow.rows] = np.where(tow.present, tow_part.std**2 / tow_part.weights * own, 0.0)
     return shares
 
 
-def joint_root(marginal: NuisanceElimination, root: FloatArray) -> FloatArray:
+def joint_root(elimination: NuisanceElimination, root: FloatArray) -> FloatArray:
     """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
 
     ``root`` (q, q) is that of the coefficients alone.
     """
-    m, q = len(marginal.model), len(root)
-    solved = solve_triangular(marginal.model_triangle[:, :m], np.eye(m))
+    m, q = len(elimination.model), len(root)
+    solved = solve_triangular(elimination.model_triangle[:, :m], np.eye(m))
     joint = np.zeros((m + q, m + q))
     joint[:m, :m] = solved
-    joint[:m, m:] = -solved @ marginal.model_triangle[:, m:] @ root
+    joint[:m, m:] = -solved @ elimination.model_triangle[:, m:] @ root
     joint[m:, m:] = root
     return joint
 
 
-def calibration_root(part: TowPart, joint: FloatArray) -> FloatArray:
+def calibration_root(tow_part: TowPart, joint: FloatArray) -> FloatArray:
     """Root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
 
     ``joint`` is from `joint_root`.
     """
-    p = len(part.triangle)
-    solved = solve_triangular(part.triangle[:, :p], np.eye(p))
-    return np.hstack((solved, -solved @ part.triangle[:, p:] @ joint))
+    p = len(tow_part.triangle)
+    solved = solve_triangular(tow_part.triangle[:, :p], np.eye(p))
+    return np.hstack((solved, -solved @ tow_part.triangle[:, p:] @ joint))
 
 
 def clipped_variance(limit: FloatArray) -> FloatArray:

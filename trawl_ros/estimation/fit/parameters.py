@@ -121,12 +121,12 @@ class ParameterVector:
 
     def only(self, kind: Kind) -> 'ParameterVector':
         """Vector of the groups of a kind."""
-        part = self.slice_of(kind)
+        own = self.slice_of(kind)
         return ParameterVector(
-            self.start[part],
-            self.std[part],
-            self.low[part],
-            self.high[part],
+            self.start[own],
+            self.std[own],
+            self.low[own],
+            self.high[own],
             tuple(group for group in self.groups if group.kind == kind),
         )
 
@@ -160,8 +160,8 @@ class ParameterVector:
 
     def unpacked(self, values: FloatArray, kind: Kind) -> Mapping[str, float]:
         """Values of the groups of a kind, by name."""
-        part = self.slice_of(kind)
-        return dict(zip(self.names[part], map(float, values[part]), strict=True))
+        own = self.slice_of(kind)
+        return dict(zip(self.names[own], map(float, values[own]), strict=True))
 
     def _placed(self) -> Iterator[tuple[ParameterGroup, range]]:
         ends = accumulate(map(len, self.groups), initial=0)

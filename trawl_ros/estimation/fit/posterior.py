@@ -22,28 +22,28 @@ GATE = 3.0
 """Standard deviations at which an innovation's test ratio is 1."""
 
 
-def innovation_of(part: Linearised, fit: Fit, known: FloatArray) -> Innovation:
+def innovation_of(linear: Linearised, fit: Fit, known: FloatArray) -> Innovation:
     """Innovations of a window.
 
     Parameters
     ----------
-    part
+    linear
         The window, solved at the coefficients of the fit.
     fit
         Of the windows before it.
     known : (12, 12) array
         Covariance of the coefficients before it.
     """
-    (errors,) = replace(fit, windows=(part,)).errors
+    (errors,) = replace(fit, windows=(linear,)).errors
     there = errors.present[0]
     own = (errors.noise[0] * np.array(fit.scales)[GROUP_OF])[there]
     shared = np.hstack(
         [errors.inputs[0][there], errors.calibration[0][there], errors.model[0][there]]
     )
-    spread = part.by_coefficients @ known @ part.by_coefficients.T
+    spread = linear.by_coefficients @ known @ linear.by_coefficients.T
     std = np.sqrt(own**2 + np.sum(shared**2, axis=1) + np.diag(spread))
-    difference = part.measured - part.solved
-    return Innovation(part.channels, difference, std, (difference / (GATE * std)) ** 2)
+    difference = linear.measured - linear.solved
+    return Innovation(linear.channels, difference, std, (difference / (GATE * std)) ** 2)
 
 
 def posterior_estimate(
@@ -57,11 +57,11 @@ def posterior_estimate(
     prior, options = fit.prior, fit.options
     values = np.array(fit.coefficients)
     std = fit.birge_ratio * fit.std
-    freedom = fit.degrees_of_freedom + options.stated_noise_readings
-    low, high = interval(values, std, freedom, options.confidence, prior)
+    degrees_of_freedom = fit.degrees_of_freedom + options.stated_noise_readings
+    low, high = interval(values, std, degrees_of_freedom, options.confidence, prior)
     return Estimate(
         revision=revision,
-        stamp=max(part.window.end_ns for part in fit.windows),
+        stamp=max(linear.window.end_ns for linear in fit.windows),
         windows=len(fit.windows),
         values=values,
         std=std,
@@ -76,7 +76,7 @@ def posterior_estimate(
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
         tow_biases=tow_biases(fit),
         net=net_factors(fit),
-        degrees_of_freedom=freedom,
+        degrees_of_freedom=degrees_of_freedom,
         birge_ratio=fit.birge_ratio,
         cost=fit.cost,
         objective=fit.objective,

@@ -72,7 +72,7 @@ class NetPredictor(SteadyPredictor, Protocol):
         ...
 
     def by_net(
-        self, coefficients: FloatArray, inputs: FloatArray, found: 'Equilibrium'
+        self, coefficients: FloatArray, inputs: FloatArray, steady: 'Equilibrium'
     ) -> FloatArray:
         """Derivatives (n, 2) by factors on drag and weight at a prediction's ``state``."""
         ...

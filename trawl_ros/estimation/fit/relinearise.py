@@ -16,7 +16,7 @@ WELL_KNOWN = 0.5
 
 
 def far(
-    part: Linearised,
+    linear: Linearised,
     coefficients: FloatArray,
     inputs: FloatArray,
     net: FloatArray | None,
@@ -26,7 +26,7 @@ def far(
 
     Parameters
     ----------
-    part
+    linear
         The window as it was solved.
     coefficients, inputs, net
         Point of linearisation: (12,), warp lengths and speed (3,), factors on the net's drag and
@@ -34,16 +34,16 @@ def far(
     threshold
         Standard deviations of a window's mean.
     """
-    change = part.by_coefficients @ (coefficients - part.at)
-    change += part.by_inputs @ (inputs - part.inputs)
+    change = linear.by_coefficients @ (coefficients - linear.at)
+    change += linear.by_inputs @ (inputs - linear.inputs)
     if net is not None:
-        change += part.by_net @ (net - part.net)
-    return bool(np.max(np.abs(change) / part.std(1)) > threshold)
+        change += linear.by_net @ (net - linear.net)
+    return bool(np.max(np.abs(change) / linear.std(1)) > threshold)
 
 
 def moved(
     fit: Fit,
-    aimed: Fit,
+    target: Fit,
     share: float,
     threshold: float,
     predictor: SteadyPredictor,
@@ -60,31 +60,31 @@ def moved(
     NoSteadyState
         If more windows have none there.
     """
-    coefficients = fit.coefficients + share * (aimed.coefficients - fit.coefficients)
+    coefficients = fit.coefficients + share * (target.coefficients - fit.coefficients)
     coefficients = fit.prior.clipped(coefficients)
     windows = []
-    for part, ahead in zip(fit.windows, aimed.inputs, strict=True):
-        inputs = part.inputs + share * (ahead - part.inputs)
-        net = None if aimed.net is None else part.net + share * (aimed.net - part.net)
-        if part is fit.windows[-1] or far(part, coefficients, inputs, net, threshold):
+    for linear, ahead in zip(fit.windows, target.inputs, strict=True):
+        inputs = linear.inputs + share * (ahead - linear.inputs)
+        net = None if target.net is None else linear.net + share * (target.net - linear.net)
+        if linear is fit.windows[-1] or far(linear, coefficients, inputs, net, threshold):
             try:
-                part = linearise(
-                    predictor, observables, part.window, coefficients, (part.state,), inputs, net,
-                    even=False,
+                linear = linearise(
+                    predictor, observables, linear.window, coefficients, (linear.state,), inputs,
+                    net, even=False,
                 )  # fmt: skip
             except NoSteadyState:
                 if not spare:
                     raise
                 spare -= 1
                 continue
-        windows.append(part)
+        windows.append(linear)
     return replace(fit, windows=tuple(windows), coefficients=coefficients)
 
 
 def with_those_of(fit: Fit, other: Fit) -> tuple[Fit, list[SteadyWindow]]:
     """Fit with the windows of another only, and the windows that it loses by that."""
-    kept = {part.window.index for part in other.windows}
-    lost = [part.window for part in fit.windows if part.window.index not in kept]
+    kept = {linear.window.index for linear in other.windows}
+    lost = [linear.window for linear in fit.windows if linear.window.index not in kept]
     if not lost:
         return fit, lost
     return replace(fit, windows=tuple(p for p in fit.windows if p.window.index in kept)), lost
@@ -93,6 +93,6 @@ def with_those_of(fit: Fit, other: Fit) -> tuple[Fit, list[SteadyWindow]]:
 def comparable(fit: Fit, other: Fit) -> bool:
     """True if the costs compare: windows relinearised in another fit were well predicted before."""
     return not any(
-        part is not old and far(old, fit.coefficients, inputs, fit.net, WELL_KNOWN)
-        for part, old, inputs in zip(other.windows, fit.windows, fit.inputs, strict=True)
+        linear is not old and far(old, fit.coefficients, inputs, fit.net, WELL_KNOWN)
+        for linear, old, inputs in zip(other.windows, fit.windows, fit.inputs, strict=True)
     )

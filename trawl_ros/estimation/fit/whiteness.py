@@ -57,15 +57,19 @@ def ljung_box(series: Sequence[FloatArray], lags: int | None = None) -> Whitenes
     .. [2] R. J. Hyndman and G. Athanasopoulos, Forecasting: principles and practice, 3rd ed.,
        section 5.4.
     """
-    parts = [part - part.mean() for part in series if len(part)]
-    number = sum(map(len, parts))
-    power = sum(float(part @ part) for part in parts)
+    centred = [residuals - residuals.mean() for residuals in series if len(residuals)]
+    number = sum(map(len, centred))
+    power = sum(float(residuals @ residuals) for residuals in centred)
     if number < FEWEST or power <= 0.0:
         return None
     lags = min(LONGEST_LAG, number // 5) if lags is None else lags
     statistic = 0.0
     for lag in range(1, lags + 1):
-        product = sum(float(part[lag:] @ part[:-lag]) for part in parts if len(part) > lag)
+        product = sum(
+            float(residuals[lag:] @ residuals[:-lag])
+            for residuals in centred
+            if len(residuals) > lag
+        )
         statistic += (product / power) ** 2 / (number - lag)
     statistic *= number * (number + 2)
     return Whiteness(statistic, lags, float(chdtrc(lags, statistic)))

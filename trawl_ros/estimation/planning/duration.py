@@ -49,7 +49,7 @@ class Ability:
 
 def ability_of(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> Ability:
     """Limits by a gear file, between the speeds of these manoeuvres."""
-    speeds = [one.speed for one in manoeuvres]
+    speeds = [manoeuvre.speed for manoeuvre in manoeuvres]
     return Ability(
         gear.winch.max_speed_m_s,
         gear.winch.max_acceleration_m_s2,
@@ -127,10 +127,10 @@ class Rest:
 
 def rest_of(candidate: TowableManoeuvre, options: WindowOptions) -> Rest:
     """Settling of the gear at a candidate, by the windows' criterion."""
-    part = candidate.part
+    linear = candidate.part
     depths = {
         name: float(value)
-        for name, value in zip(part.channels, part.values, strict=True)
+        for name, value in zip(linear.channels, linear.values, strict=True)
         if name in DEPTHS
     }
     steady = min(
@@ -170,15 +170,17 @@ def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
     on gives no more windows. None where nothing can come in between.
     """
     ordered: list[Manoeuvre] = []
-    for length in sorted({one.length for one in manoeuvres}):
-        left = Counter(one for one in manoeuvres if one.length == length)
+    for length in sorted({manoeuvre.length for manoeuvre in manoeuvres}):
+        left = Counter(manoeuvre for manoeuvre in manoeuvres if manoeuvre.length == length)
         while left:
             last = ordered[-1] if ordered else None
-            free = [one for one in left if one != last]
+            free = [manoeuvre for manoeuvre in left if manoeuvre != last]
             if not free:
                 return None
             # The one that is left most often first: else it would meet itself at the end.
-            chosen = max(free, key=lambda one: (left[one], one.equal, one.speed))
+            chosen = max(
+                free, key=lambda manoeuvre: (left[manoeuvre], manoeuvre.equal, manoeuvre.speed)
+            )
             ordered.append(chosen)
             left -= Counter([chosen])
     return tuple(ordered)
@@ -203,10 +205,10 @@ class Timetable:
         self.ability = ability
         self.options = options
         self._by_lengths: dict[tuple[float, float], dict[float, Rest]] = {}
-        for one in candidates:
-            done = one.manoeuvre
+        for candidate in candidates:
+            done = candidate.manoeuvre
             lengths = (done.port_length, done.starboard_length)
-            self._by_lengths.setdefault(lengths, {})[done.speed] = rest_of(one, options)
+            self._by_lengths.setdefault(lengths, {})[done.speed] = rest_of(candidate, options)
         self._legs: dict[tuple[Manoeuvre, Manoeuvre, float], Leg] = {}
 
     def legs(
@@ -263,9 +265,9 @@ class Timetable:
 
     def _depth_at(self, manoeuvre: Manoeuvre, speed: float, known: float) -> float:
         """Depth (m) of the net at these lengths, at the nearest known speed."""
-        depths = {one: rest.net_depth for one, rest in self._at(manoeuvre).items()}
+        depths = {at_speed: rest.net_depth for at_speed, rest in self._at(manoeuvre).items()}
         depths[manoeuvre.speed] = known
-        return depths[min(depths, key=lambda one: abs(one - speed))]
+        return depths[min(depths, key=lambda at_speed: abs(at_speed - speed))]
 
     def _at(self, manoeuvre: Manoeuvre) -> Mapping[float, Rest]:
         """Settling at these lengths, by speed."""

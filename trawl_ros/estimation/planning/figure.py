@@ -33,28 +33,38 @@ def _legs(axes: Axes, plan: TrialPlan) -> None:
         (True, 'o', 'warps equal'),
         (False, '^', 'port warp shorter'),
     ):
-        chosen = {one: number for one, number in visits.items() if one.equal == equal}
+        chosen = {
+            manoeuvre: number for manoeuvre, number in visits.items() if manoeuvre.equal == equal
+        }
         axes.scatter(
-            [one.length for one in chosen],
+            [manoeuvre.length for manoeuvre in chosen],
             # Beside each other, since many have the same length and speed.
-            [one.speed + (0.016 if equal else -0.016) for one in chosen],
+            [manoeuvre.speed + (0.016 if equal else -0.016) for manoeuvre in chosen],
             s=[70.0 * number for number in chosen.values()],
             marker=mark,
             color=PLAN if equal else SECOND,
             label=label,
             zorder=3,
         )
-    free = {one.manoeuvre for one in plan.choice.candidates} - visits.keys()
-    _crosses(axes, [(one.length, one.speed) for one in free if one.equal], '+', 'not needed')
-    refused = {one.manoeuvre for one in plan.choice.refused}
+    free = {candidate.manoeuvre for candidate in plan.choice.candidates} - visits.keys()
     _crosses(
-        axes, [(one.length, one.speed) for one in refused if one.equal], 'x', 'cannot be towed'
+        axes,
+        [(manoeuvre.length, manoeuvre.speed) for manoeuvre in free if manoeuvre.equal],
+        '+',
+        'not needed',
+    )
+    refused = {state.manoeuvre for state in plan.choice.refused}
+    _crosses(
+        axes,
+        [(manoeuvre.length, manoeuvre.speed) for manoeuvre in refused if manoeuvre.equal],
+        'x',
+        'cannot be towed',
     )
     sweep = plan.sweeps[0].manoeuvres
     if sweep:
         axes.plot(
-            [one.length for one in sweep],
-            [one.speed for one in sweep],
+            [manoeuvre.length for manoeuvre in sweep],
+            [manoeuvre.speed for manoeuvre in sweep],
             color=FAINT,
             label="the paper's sweep",
             zorder=1,

@@ -26,7 +26,7 @@ def unknowns(prior: ParameterVector, options: EstimatorOptions) -> ParameterVect
 
 
 def information_of(
-    parts: Sequence[Linearised],
+    linearised: Sequence[Linearised],
     prior: ParameterVector,
     options: EstimatorOptions,
     scales: Sequence[float] = AS_STATED,
@@ -35,7 +35,7 @@ def information_of(
 
     Parameters
     ----------
-    parts
+    linearised
         All windows of the state, as they would be.
     prior
         Its std is the coefficients' scale.
@@ -44,7 +44,7 @@ def information_of(
     scales
         Factors on the stated noise, by group of channels.
     """
-    fit = Fit(tuple(parts), parts[0].at, tuple(scales), prior, options)
+    fit = Fit(tuple(linearised), linearised[0].at, tuple(scales), prior, options)
     (errors,) = fit.errors
     std = np.where(errors.present, errors.noise * np.array(scales)[GROUP_OF], 1.0)
     variance = std[:, :, None] ** 2 * np.eye(std.shape[1])
@@ -72,19 +72,19 @@ def information_in(fit: Fit) -> FloatArray:
     fit
         With one window at least.
     """
-    marginal = fit.marginal
-    of_tow, of_model = marginal.tows[-1].triangle, marginal.model_triangle
+    elimination = fit.elimination
+    of_tow, of_model = elimination.tows[-1].triangle, elimination.model_triangle
     among = unknowns(fit.prior, fit.options)
     board = among.slice_of('coefficients')
-    parts = [
+    linearised = [
         of_tow,
         np.pad(of_model, ((0, 0), (len(CALIBRATION), 0))),
-        np.pad(marginal.triangle, ((0, 0), (board.start, 0))),
+        np.pad(elimination.triangle, ((0, 0), (board.start, 0))),
     ]
     weights = np.zeros(len(among))
     weights[board] = max(fit.options.prior_weight, 1e-12)
     before = np.diag(weights)
-    information: FloatArray = sum((part.T @ part for part in parts), before)
+    information: FloatArray = sum((rows.T @ rows for rows in linearised), before)
     return information
 
 
@@ -99,13 +99,14 @@ def covariance_from(information: FloatArray, prior: ParameterVector) -> FloatArr
 
 
 def fitted_covariance(
-    parts: Sequence[Linearised],
+    linearised: Sequence[Linearised],
     coefficients: FloatArray,
     prior: ParameterVector,
     options: EstimatorOptions,
 ) -> FloatArray:
     """Posterior covariance (12, 12) that the estimator would give with these windows."""
     numbered = tuple(
-        replace(part, window=replace(part.window, index=index)) for index, part in enumerate(parts)
+        replace(linear, window=replace(linear.window, index=index))
+        for index, linear in enumerate(linearised)
     )
     return Fit(numbered, coefficients, AS_STATED, prior, options).posterior.covariance

@@ -45,19 +45,19 @@ def limits_of(
         ('noise and calibration', often, every - calibration),
         ('noise, calibration and model', often, every - calibration - model),
     )
-    found: dict[str, str] = {}
+    remedy: dict[str, str] = {}
     for name, information, kept in remedies:
         chosen = sorted(kept)
         covariance = covariance_from(information[np.ix_(chosen, chosen)], designer.question.prior)
         helped = designer.question.quantities(covariance).well_known
         for quantity, before, after in zip(QUANTITIES, known.well_known, helped, strict=True):
             if after and not before:
-                found.setdefault(quantity, name)
+                remedy.setdefault(quantity, name)
     covariance = designer.covariance(manoeuvres)
     for index, quantity in enumerate(QUANTITIES):
-        if not known.well_known[index] and quantity not in found:
-            found[quantity] = f'confounded with {_partner(designer, covariance, index)}'
-    return {quantity: found[quantity] for quantity in QUANTITIES if quantity in found}
+        if not known.well_known[index] and quantity not in remedy:
+            remedy[quantity] = f'confounded with {_partner(designer, covariance, index)}'
+    return {quantity: remedy[quantity] for quantity in QUANTITIES if quantity in remedy}
 
 
 def _partner(designer: Designer, covariance: FloatArray, index: int) -> str:

@@ -71,7 +71,7 @@ class Advice:
     @property
     def helped(self) -> int:
         """Index into `QUANTITIES` of the quantity that improves most."""
-        terms = [np.log1p((one.ratio / WELL_KNOWN) ** 2) for one in (self.before, self.after)]
+        terms = [np.log1p((known.ratio / WELL_KNOWN) ** 2) for known in (self.before, self.after)]
         return int(np.argmax(terms[0] - terms[1]))
 
     def __str__(self) -> str:
@@ -146,11 +146,11 @@ class Adviser:
         if not self._waiting:
             return False
         manoeuvre = self._waiting.pop(0)
-        found = explorer.look_up(manoeuvre, list(self._known.values()))
-        if isinstance(found, Refused):
+        state = explorer.look_up(manoeuvre, list(self._known.values()))
+        if isinstance(state, Refused):
             self._known.pop(manoeuvre, None)
         else:
-            self._known[manoeuvre] = found
+            self._known[manoeuvre] = state
         return True
 
     def advise(self, fit: Fit) -> Advice | None:
@@ -166,8 +166,8 @@ class Adviser:
         timetable = self._timetable()
         best, most = None, -np.inf
         for manoeuvre, candidate in sorted(self._known.items()):
-            parts = expected_windows(fit, candidate, self._windows.max_windows_per_state)
-            taught = information_of(parts, fit.prior, fit.options, fit.scales)
+            windows = expected_windows(fit, candidate, self._windows.max_windows_per_state)
+            taught = information_of(windows, fit.prior, fit.options, fit.scales)
             after = shortfall(question.quantities(covariance_from(information + taught, fit.prior)))
             rate = (before - after) / _minutes(timetable, fit, manoeuvre)
             if rate > most:
@@ -186,9 +186,9 @@ class Adviser:
         """
         question = _Question.of(fit, self._gear)
         number = self._windows.max_windows_per_state
-        parts = expected_windows(fit, self._known[manoeuvre], number)
+        windows = expected_windows(fit, self._known[manoeuvre], number)
         now = fit.posterior.covariance
-        then = replace(fit, windows=(*fit.windows, *parts)).posterior.covariance
+        then = replace(fit, windows=(*fit.windows, *windows)).posterior.covariance
         return Advice(
             manoeuvre=manoeuvre,
             minutes=_minutes(self._timetable(), fit, manoeuvre),
@@ -209,26 +209,26 @@ class Adviser:
 def expected_windows(fit: Fit, candidate: TowableManoeuvre, number: int) -> tuple[Linearised, ...]:
     """Predicted windows of a manoeuvre in a fit's newest tow, at its noise."""
     newest = fit.windows[-1].window
-    parts = imagined_windows(
+    imagined = imagined_windows(
         candidate,
         fit.coefficients,
-        state=1 + max(part.window.state for part in fit.windows),
+        state=1 + max(linear.window.state for linear in fit.windows),
         number=number,
         tow=newest.tow,
         noise=_noise_of(fit),
     )
-    first = 1 + max(part.window.index for part in fit.windows)
+    first = 1 + max(linear.window.index for linear in fit.windows)
     return tuple(
-        replace(part, window=replace(part.window, index=first + index))
-        for index, part in enumerate(parts)
+        replace(linear, window=replace(linear.window, index=first + index))
+        for index, linear in enumerate(imagined)
     )
 
 
 def _noise_of(fit: Fit) -> Mapping[str, float]:
     """Median standard error of each channel with readings, over the windows of the newest tow."""
     tow = fit.windows[-1].window.tow
-    windows = [part.window for part in fit.windows if part.window.tow == tow]
-    heard = {*INPUTS, *(name for part in fit.windows for name in part.channels)}
+    windows = [linear.window for linear in fit.windows if linear.window.tow == tow]
+    heard = {*INPUTS, *(name for linear in fit.windows for name in linear.channels)}
     return {
         name: float(np.median([window.noise[name] for window in windows if name in window.noise]))
         for name in sorted(heard)
@@ -261,10 +261,10 @@ class _Question:
 
     @classmethod
     def of(cls, fit: Fit, gear: GearRecord) -> '_Question':
-        seen = [part.state.observables for part in fit.windows]
+        observables = [linear.state.observables for linear in fit.windows]
         return cls(
             fit.coefficients,
-            working_angles(seen, gear.board.slip_sign),
+            working_angles(observables, gear.board.slip_sign),
             law_spans(fit.prior.start, fit.prior.std),
         )
 

@@ -137,11 +137,11 @@ def plan_trial(
         span=law_spans(prior.start, prior.std),
         estimator=estimator or EstimatorOptions(),
         windows=windows or WindowOptions(),
-        ability=ability_of(gear, [one.manoeuvre for one in choice.candidates]),
+        ability=ability_of(gear, [candidate.manoeuvre for candidate in choice.candidates]),
         minutes=60.0 * hours,
     )
     filed = Explorer(predictor, gear.board.coefficients.array(), limits)
-    seen: dict[Manoeuvre, TowableManoeuvre] = {}
+    explored: dict[Manoeuvre, TowableManoeuvre] = {}
     while True:
         designer = Designer(question, choice.candidates)
         legs = designer.best()
@@ -151,11 +151,11 @@ def plan_trial(
                 'until the gear has settled and its windows are taken; expected more hours'
             )
         sweep = best_sweep(designer)
-        lost = _look_up((*legs, *sweep), filed, choice.candidates, seen, on_progress)
+        lost = _look_up((*legs, *sweep), filed, choice.candidates, explored, on_progress)
         if not lost:
             break
         choice = choice.without(lost)
-    there = _as_filed(question, list(seen.values()), gear)
+    there = _as_filed(question, list(explored.values()), gear)
     data_alone = replace(question, estimator=replace(question.estimator, prior_weight=0.0))
     trials = []
     for name, chosen, noise in (
@@ -169,7 +169,7 @@ def plan_trial(
             for asked, candidates in (
                 (question, choice.candidates),
                 (data_alone, choice.candidates),
-                (there, seen.values()),
+                (there, explored.values()),
             )
         )
         trials.append(SweepTrial(name, chosen, known, by_data, as_filed))
@@ -187,27 +187,29 @@ def plan_trial(
 
 
 def _angles(candidates: Sequence[TowableManoeuvre], gear: GearRecord) -> WorkingAngles:
-    return working_angles([one.part.state.observables for one in candidates], gear.board.slip_sign)
+    return working_angles(
+        [candidate.part.state.observables for candidate in candidates], gear.board.slip_sign
+    )
 
 
 def _look_up(
     legs: Sequence[Leg],
     explorer: Explorer,
     near: Sequence[TowableManoeuvre],
-    seen: dict[Manoeuvre, TowableManoeuvre],
+    explored: dict[Manoeuvre, TowableManoeuvre],
     on_progress: OnProgress,
 ) -> dict[Manoeuvre, Refused]:
     """Look the legs up with another board, from the states near them that are known; give those
     that are not to be had with it.
     """
-    wanted = sorted({leg.manoeuvre for leg in legs} - seen.keys())
+    wanted = sorted({leg.manoeuvre for leg in legs} - explored.keys())
     lost = {}
     for done, manoeuvre in enumerate(wanted, 1):
-        found = explorer.look_up(manoeuvre, near)
-        if isinstance(found, TowableManoeuvre):
-            seen[manoeuvre] = found
+        state = explorer.look_up(manoeuvre, near)
+        if isinstance(state, TowableManoeuvre):
+            explored[manoeuvre] = state
         else:
-            lost[manoeuvre] = found
+            lost[manoeuvre] = state
         on_progress(WorkProgress('the plan with the board of the file', done, len(wanted)))
     return lost
 
@@ -218,7 +220,7 @@ def _gains(designer: Designer, manoeuvres: Sequence[Manoeuvre]) -> tuple[Gain, .
     for number in range(1, len(manoeuvres) + 1):
         after = designer.quantities(manoeuvres[:number])
         # As the search counts it: the logarithm, and little of it for what is well known.
-        term = [np.log1p((one.ratio / WELL_KNOWN) ** 2) for one in (before, after)]
+        term = [np.log1p((known.ratio / WELL_KNOWN) ** 2) for known in (before, after)]
         most = int(np.argmax(term[0] - term[1]))
         gains.append(
             Gain(

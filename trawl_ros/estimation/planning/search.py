@@ -91,11 +91,13 @@ class Designer:
         self.candidates = tuple(candidates)
         self.noise = noise
         self.timetable = Timetable(question.ability, question.windows, self.candidates)
-        self._number = {one.manoeuvre: index for index, one in enumerate(self.candidates)}
+        self._number = {
+            candidate.manoeuvre: index for index, candidate in enumerate(self.candidates)
+        }
         self._before = information_before(question.prior, question.estimator)
         self._taught = [
-            information_of(self._windows(one, 0), question.prior, question.estimator)
-            for one in self.candidates
+            information_of(self._windows(candidate, 0), question.prior, question.estimator)
+            for candidate in self.candidates
         ]
 
     def legs(self, manoeuvres: Sequence[Manoeuvre]) -> tuple[Leg, ...] | None:
@@ -121,7 +123,7 @@ class Designer:
 
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> FloatArray:
         """Information matrix after manoeuvres, each repeated ``times`` times."""
-        taught = [self._taught[self._number[one]] for one in manoeuvres]
+        taught = [self._taught[self._number[manoeuvre]] for manoeuvre in manoeuvres]
         return self._before + times * sum(taught)
 
     def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
@@ -131,12 +133,12 @@ class Designer:
     def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
         """Posterior covariance (12, 12) as the estimator itself gives it."""
         question = self.question
-        parts = [
-            part
-            for state, one in enumerate(manoeuvres)
-            for part in self._windows(self.candidates[self._number[one]], state)
+        windows = [
+            linear
+            for state, manoeuvre in enumerate(manoeuvres)
+            for linear in self._windows(self.candidates[self._number[manoeuvre]], state)
         ]
-        return fitted_covariance(parts, question.coefficients, question.prior, question.estimator)
+        return fitted_covariance(windows, question.coefficients, question.prior, question.estimator)
 
     def quantities(self, manoeuvres: Sequence[Manoeuvre]) -> LawQuantities:
         """Quantities of the laws after manoeuvres."""
@@ -166,8 +168,8 @@ class Designer:
             now = self.shortfall(chosen)
             minutes = minutes_of(self.legs(chosen) or ())
             best, most = chosen, 0.0
-            for one in self.candidates:
-                trial = [*chosen, one.manoeuvre]
+            for candidate in self.candidates:
+                trial = [*chosen, candidate.manoeuvre]
                 gain = now - self.shortfall(trial)
                 if gain <= LEAST_GAIN:
                     continue
@@ -187,8 +189,8 @@ class Designer:
         for place in range(len(chosen)):
             rest = chosen[:place] + chosen[place + 1 :]
             least = self.shortfall(chosen)
-            for one in self.candidates:
-                trial = [*rest[:place], one.manoeuvre, *rest[place:]]
+            for candidate in self.candidates:
+                trial = [*rest[:place], candidate.manoeuvre, *rest[place:]]
                 left = self.shortfall(trial)
                 if left < least - LEAST_GAIN and self.legs(trial) is not None:
                     chosen, least, changed = trial, left, True

@@ -108,13 +108,13 @@ class ManoeuvreChoice:
 
     def without(self, lost: Mapping[Manoeuvre, Refused]) -> 'ManoeuvreChoice':
         """Copy of the choice without manoeuvres found infeasible."""
-        left = tuple(one for one in self.candidates if one.manoeuvre not in lost)
+        left = tuple(candidate for candidate in self.candidates if candidate.manoeuvre not in lost)
         return ManoeuvreChoice(left, (*self.refused, *lost.values()))
 
 
-def deepest_point(model: GearModel, found: Equilibrium) -> float:
+def deepest_point(model: GearModel, steady: Equilibrium) -> float:
     """Depth (m) of the gear's deepest node or door's edge."""
-    state = found.state
+    state = steady.state
     half = 0.5 * model.board.span * np.abs(state.board_rotations[:, 2, 2])
     return -float(min(state.nodes[:, 2].min(), (state.board_positions[:, 2] - half).min()))
 
@@ -170,12 +170,12 @@ class Explorer:
             if manoeuvre.speed <= slowest:
                 yield Refused(manoeuvre, reason)
                 continue
-            found = self.look_up(manoeuvre, known)
-            if isinstance(found, TowableManoeuvre):
-                known.append(found)
-            elif any(_faster(one.manoeuvre, manoeuvre) for one in known):
-                lost[manoeuvre.length] = manoeuvre.speed, found.reason
-            yield found
+            state = self.look_up(manoeuvre, known)
+            if isinstance(state, TowableManoeuvre):
+                known.append(state)
+            elif any(_faster(towable.manoeuvre, manoeuvre) for towable in known):
+                lost[manoeuvre.length] = manoeuvre.speed, state.reason
+            yield state
 
     def look_up(
         self, manoeuvre: Manoeuvre, known: Sequence[TowableManoeuvre]
@@ -193,24 +193,24 @@ class Explorer:
         starts = (min(known, key=distance).part.state, None) if known else (None,)
         try:
             asked = _asked(manoeuvre)
-            part = linearise(
+            linear = linearise(
                 self.predictor, OBSERVABLES, asked, self.coefficients, starts, even=False
             )
-            model = self.predictor.gear(self.coefficients, part.inputs)
-            steady = require_usable(model, part.state)
+            model = self.predictor.gear(self.coefficients, linear.inputs)
+            steady = require_usable(model, linear.state)
         except NoSteadyState as reason:
             return Refused(manoeuvre, reason.reason)
-        if trouble := self._trouble(model, part):
+        if trouble := self._trouble(model, linear):
             return Refused(manoeuvre, trouble)
-        return TowableManoeuvre(manoeuvre, part, steady.stability.settling_time)
+        return TowableManoeuvre(manoeuvre, linear, steady.stability.settling_time)
 
-    def _trouble(self, model: GearModel, part: Linearised) -> str:
-        limits, seen = self.limits, part.state.observables
-        tension = max(seen.port_tension, seen.starboard_tension)
+    def _trouble(self, model: GearModel, linear: Linearised) -> str:
+        limits, observables = self.limits, linear.state.observables
+        tension = max(observables.port_tension, observables.starboard_tension)
         if limits.max_tension is not None and tension > limits.max_tension:
             return 'tension'
         if limits.seabed is not None:
-            depth = deepest_point(model, part.state)
+            depth = deepest_point(model, linear.state)
             if depth + limits.clearance > limits.seabed:
                 return 'seabed'
         return ''
@@ -232,15 +232,15 @@ def explore(explorer: Explorer, on_progress: OnProgress = ignore) -> ManoeuvreCh
         If the gear can be towed in none of them.
     """
     candidates, refused = [], []
-    for done, found in enumerate(explorer, 1):
-        if isinstance(found, TowableManoeuvre):
-            candidates.append(found)
+    for done, state in enumerate(explorer, 1):
+        if isinstance(state, TowableManoeuvre):
+            candidates.append(state)
         else:
-            refused.append(found)
+            refused.append(state)
         stage = 'steady states of the board as believed'
         on_progress(WorkProgress(stage, done, len(explorer)))
     if not candidates:
-        reasons = ', '.join(sorted({one.reason for one in refused}))
+        reasons = ', '.join(sorted({refusal.reason for refusal in refused}))
         limits = explorer.limits
         raise TrawlError(
             f'the gear can be towed in none of {len(explorer)} manoeuvres, '
@@ -250,9 +250,9 @@ def explore(explorer: Explorer, on_progress: OnProgress = ignore) -> ManoeuvreCh
     return ManoeuvreChoice(tuple(candidates), tuple(refused))
 
 
-def _faster(one: Manoeuvre, other: Manoeuvre) -> bool:
+def _faster(first: Manoeuvre, second: Manoeuvre) -> bool:
     """True if one is the other at a higher speed."""
-    return one.speed > other.speed and replace(one, speed=other.speed) == other
+    return first.speed > second.speed and replace(first, speed=second.speed) == second
 
 
 def _asked(manoeuvre: Manoeuvre) -> SteadyWindow:

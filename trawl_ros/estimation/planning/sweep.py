@@ -48,16 +48,22 @@ def best_sweep(designer: Designer) -> tuple[Leg, ...]:
 
     Of all speeds, the one is taken at which this teaches most.
     """
-    speeds = sorted({one.manoeuvre.speed for one in designer.candidates if one.manoeuvre.equal})
+    speeds = sorted(
+        {
+            candidate.manoeuvre.speed
+            for candidate in designer.candidates
+            if candidate.manoeuvre.equal
+        }
+    )
     sweeps = [_sweep(designer, speed) for speed in speeds]
     return min(sweeps, key=lambda legs: designer.shortfall([leg.manoeuvre for leg in legs]))
 
 
 def _sweep(designer: Designer, speed: float) -> tuple[Leg, ...]:
     out = sorted(
-        one.manoeuvre
-        for one in designer.candidates
-        if one.manoeuvre.equal and one.manoeuvre.speed == speed
+        candidate.manoeuvre
+        for candidate in designer.candidates
+        if candidate.manoeuvre.equal and candidate.manoeuvre.speed == speed
     )
     legs: tuple[Leg, ...] = ()
     done: list[Manoeuvre] = []

@@ -50,11 +50,11 @@ def imagined_windows(
     to_come
         By how much (m) depths are still to change.
     """
-    part = candidate.part
-    rows = [row for row, name in enumerate(part.channels) if name in noise]
-    channels = tuple(part.channels[row] for row in rows)
-    measured = part.predicted(coefficients)[rows]
-    means = {name: part.window.means[name] for name in INPUTS}
+    linear = candidate.part
+    rows = [row for row, name in enumerate(linear.channels) if name in noise]
+    channels = tuple(linear.channels[row] for row in rows)
+    measured = linear.predicted(coefficients)[rows]
+    means = {name: linear.window.means[name] for name in INPUTS}
     means |= {name: float(value) for name, value in zip(channels, measured, strict=True)}
     bias = {name: CHANNELS[name].bias_std(value) for name, value in means.items()}
     counts = dict.fromkeys(means, 1)
@@ -62,15 +62,15 @@ def imagined_windows(
     left = {name: to_come for name in DEPTHS if name in means}
     return tuple(
         replace(
-            part,
+            linear,
             window=SteadyWindow(index, state, 0, 0, means, chosen, bias, counts, tow, to_come=left),
             channels=channels,
             measured=measured,
-            values=part.values[rows],
-            by_coefficients=part.by_coefficients[rows],
-            by_inputs=part.by_inputs[rows],
-            by_net=part.by_net[rows],
-            slow=part.slow[rows],
+            values=linear.values[rows],
+            by_coefficients=linear.by_coefficients[rows],
+            by_inputs=linear.by_inputs[rows],
+            by_net=linear.by_net[rows],
+            slow=linear.slow[rows],
         )
         for index in range(number)
     )

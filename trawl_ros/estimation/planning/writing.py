@@ -74,15 +74,19 @@ def plan_record(plan: TrialPlan) -> dict[str, object]:
         'quantities': {
             name: {
                 'sd_of_span_before': finite(plan.before.ratio[index]),
-                **{_key(one): finite(one.known.ratio[index]) for one in (plan.trial, *plan.sweeps)},
+                **{
+                    _key(trial): finite(trial.known.ratio[index])
+                    for trial in (plan.trial, *plan.sweeps)
+                },
                 'well_known': bool(plan.trial.known.well_known[index]),
                 'limited_by': plan.limits.get(name),
             }
             for index, name in enumerate(QUANTITIES)
         },
-        'trials': [_trial(one) for one in (plan.trial, *plan.sweeps)],
+        'trials': [_trial(trial) for trial in (plan.trial, *plan.sweeps)],
         'refused': [
-            {**_manoeuvre(one.manoeuvre), 'reason': one.reason} for one in plan.choice.refused
+            {**_manoeuvre(refused.manoeuvre), 'reason': refused.reason}
+            for refused in plan.choice.refused
         ],
     }
 

@@ -96,17 +96,17 @@ def spectrum_figure(report: Report) -> Figure:
     """Singular values of the data's sensitivities, and the coefficients in their directions."""
     figure = Figure(figsize=(11.0, 5.0), layout='constrained')
     bars, made_of = figure.subplots(1, 2, width_ratios=(1.0, 1.25))
-    found = report.spectrum
-    rows = np.arange(len(found.singular))
-    weak = found.singular < 1.0
-    shown = np.maximum(found.singular, LEAST_SHOWN)
+    spectrum = report.spectrum
+    rows = np.arange(len(spectrum.singular))
+    weak = spectrum.singular < 1.0
+    shown = np.maximum(spectrum.singular, LEAST_SHOWN)
     bars.barh(
         rows, shown, left=0.0, color=[PORT if flag else MEASURED for flag in weak], height=0.6
     )
     bars.axvline(1.0, color=MEASURED_TRUTH, lw=1.0, ls='--')
     bars.set_xscale('log')
     bars.set_xlim(left=min(0.1, 0.5 * float(shown.min())))
-    bars.set_yticks(rows, [found.name(row) for row in range(len(rows))])
+    bars.set_yticks(rows, [spectrum.name(row) for row in range(len(rows))])
     bars.invert_yaxis()
     bars.set_xlabel("prior's std over what the data leave (singular value)")
     bars.set_title(
@@ -116,9 +116,9 @@ def spectrum_figure(report: Report) -> Figure:
         fontsize='medium',
     )
     quiet(bars)
-    image = made_of.imshow(found.directions**2, cmap='Blues', vmin=0.0, vmax=1.0, aspect='auto')
+    image = made_of.imshow(spectrum.directions**2, cmap='Blues', vmin=0.0, vmax=1.0, aspect='auto')
     made_of.set_xticks(np.arange(len(COEFFICIENTS)), COEFFICIENTS)
-    made_of.set_yticks(rows, [f'{value:.2g}' for value in found.singular])
+    made_of.set_yticks(rows, [f'{value:.2g}' for value in spectrum.singular])
     for row in rows[weak]:
         made_of.get_yticklabels()[row].set_color(PORT)
         bars.get_yticklabels()[row].set_color(PORT)

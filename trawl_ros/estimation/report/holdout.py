@@ -67,11 +67,13 @@ def hold_out(
     tows = sorted({window.tow for window in windows})
     if len(tows) > 1:
         by, groups = 'tow', len(tows)
-        parts = [_states(windows, tow) for tow in tows]
+        folds_of_states = [_states(windows, tow) for tow in tows]
     else:
         by, groups = 'state', len(states)
         order = np.random.default_rng(seed).permutation(sorted(states))
-        parts = [set(part.tolist()) for part in np.array_split(order, min(folds, max(groups, 1)))]
+        folds_of_states = [
+            set(fold.tolist()) for fold in np.array_split(order, min(folds, max(groups, 1)))
+        ]
     if groups < 2:
         return HeldOut(by, groups, predicted)
     options = replace(
@@ -82,13 +84,15 @@ def hold_out(
         # They are stopped before they are at rest.
         second_start=False,
     )
-    for number, left_out in enumerate(parts):
-        on_progress(WorkProgress('leaving out, one after another', number, len(parts), 'fits'))
-        part = estimator.subset(states - left_out, options)
-        if part.finish() is None:
+    for number, left_out in enumerate(folds_of_states):
+        on_progress(
+            WorkProgress('leaving out, one after another', number, len(folds_of_states), 'fits')
+        )
+        rest = estimator.subset(states - left_out, options)
+        if rest.finish() is None:
             continue
         rows = [i for i, window in enumerate(windows) if window.state in left_out]
-        predicted[rows] = part.predictions(part.coefficients, [windows[i] for i in rows])
+        predicted[rows] = rest.predictions(rest.coefficients, [windows[i] for i in rows])
     return HeldOut(by, groups, predicted)
 
 

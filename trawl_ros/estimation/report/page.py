@@ -21,12 +21,12 @@ from trawl_ros.report.rendering import page as filled
 PAGE = 'report.html'
 
 
-def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> None:
+def write_report(report: Report, folder: Path, advice: Sequence[str] = ()) -> None:
     """Write ``identification.json``, the figures and ``report.html``.
 
     Parameters
     ----------
-    found
+    report
         Report of the identification.
     folder
         Made if it does not exist.
@@ -39,9 +39,9 @@ def write_report(found: Report, folder: Path, advice: Sequence[str] = ()) -> Non
         If the folder cannot be written to.
     """
     made_folder(folder)
-    write_json(folder / 'identification.json', result(found), indent=2)
-    pictures = embedded(folder, draw(folder, drawings(found)))
-    write_text(folder / PAGE, page(found, pictures, advice))
+    write_json(folder / 'identification.json', result(report), indent=2)
+    pictures = embedded(folder, draw(folder, drawings(report)))
+    write_text(folder / PAGE, page(report, pictures, advice))
 
 
 def page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()) -> str:

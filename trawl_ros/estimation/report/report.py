@@ -134,13 +134,13 @@ class Report:
     @property
     def objectives(self) -> dict[str, float]:
         """Objective of eq. 35 at ``start``, ``end``, and the ``truth`` where that is known."""
-        found = {
+        objectives = {
             'start': objective(self.at_start, self.measured),
             'end': objective(self.at_end, self.measured),
         }
         if self.at_truth is not None:
-            found['truth'] = objective(self.at_truth, self.measured)
-        return found
+            objectives['truth'] = objective(self.at_truth, self.measured)
+        return objectives
 
     @property
     def errors(self) -> dict[str, FloatArray]:
@@ -154,11 +154,11 @@ class Report:
     @property
     def by_tow(self) -> tuple[TowOutcome, ...]:
         """Outcomes of the tows."""
-        found = []
+        outcomes = []
         for tow in map(int, np.unique(self.tow_of)):
             of_tow = self.tow_of == tow
             windows = [window for window in self.windows if window.tow == tow]
-            found.append(
+            outcomes.append(
                 TowOutcome(
                     tow=tow,
                     name=self.tows[tow],
@@ -167,7 +167,7 @@ class Report:
                     held_out=mnae(self.held_out.predicted[of_tow], self.measured[of_tow]),
                 )
             )
-        return tuple(found)
+        return tuple(outcomes)
 
 
 def report(
@@ -230,13 +230,13 @@ def report(
 
 
 def _laws(
-    parts: Sequence[Linearised | None], estimate: Estimate, gear: GearRecord
+    linearised: Sequence[Linearised | None], estimate: Estimate, gear: GearRecord
 ) -> KnownLaws | None:
-    seen = [part.state.observables for part in parts if part is not None]
-    if not seen:
+    observables = [linear.state.observables for linear in linearised if linear is not None]
+    if not observables:
         return None
-    attack = [0.5 * (one.port_attack + one.starboard_attack) for one in seen]
-    angles = working_angles(seen, gear.board.slip_sign)
+    attack = [0.5 * (observed.port_attack + observed.starboard_attack) for observed in observables]
+    angles = working_angles(observables, gear.board.slip_sign)
     span = law_spans(estimate.values, estimate.std)
     return KnownLaws(
         attack=(min(attack), max(attack)),
@@ -245,13 +245,13 @@ def _laws(
     )
 
 
-def _values(parts: Sequence[Linearised | None]) -> FloatArray:
+def _values(linearised: Sequence[Linearised | None]) -> FloatArray:
     """Values of the channels of eq. 35 (n, 4), NaN where there is no steady state."""
     return stack(
         [
             np.full(len(PAPER_CHANNELS), np.nan)
-            if part is None
-            else paper_values(dict(zip(part.channels, part.solved, strict=True)))
-            for part in parts
+            if linear is None
+            else paper_values(dict(zip(linear.channels, linear.solved, strict=True)))
+            for linear in linearised
         ]
     )

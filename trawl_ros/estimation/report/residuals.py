@@ -87,50 +87,50 @@ def solve(
     list
         In the order of the windows; None where the model has no steady state.
     """
-    found: list[Linearised | None] = []
+    solved_in_order: list[Linearised | None] = []
     inputs = np.array([[window.means[name] for name in INPUTS] for window in estimator.windows])
     without: set[int] = set()
     for row, window in enumerate(estimator.windows):
         if window.state in without:
             # It takes long to find that there is none, and is the same throughout a state.
-            found.append(None)
+            solved_in_order.append(None)
             continue
         away = np.abs(inputs[:row] / inputs[row] - 1.0).sum(axis=1)
-        solved = [found[i] for i in np.argsort(away, kind='stable')]
-        near = next((part.state for part in solved if part is not None), None)
+        solved = [solved_in_order[i] for i in np.argsort(away, kind='stable')]
+        near = next((linear.state for linear in solved if linear is not None), None)
         starts = (None,) if near is None else (near, None)
         try:
-            part = linearise(
+            linear = linearise(
                 estimator.predictor, estimator.observables, window, coefficients, starts, net=net
             )
         except NoSteadyState:
             without.add(window.state)
-            found.append(None)
+            solved_in_order.append(None)
         else:
-            found.append(part)
-    return found
+            solved_in_order.append(linear)
+    return solved_in_order
 
 
-def residuals(parts: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...]:
+def residuals(linearised: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...]:
     """Collect the residuals of each channel that any of the windows has.
 
     Parameters
     ----------
-    parts
+    linearised
         From `solve`, at the estimate.
     """
     rows: dict[str, list[tuple[int, int, float, float]]] = {}
-    for i, part in enumerate(parts):
-        if part is None:
+    for i, linear in enumerate(linearised):
+        if linear is None:
             continue
-        window = part.window
+        window = linear.window
         input_std = np.array([window.std(name) for name in INPUTS])
         std = np.hypot(
-            [window.std(name) for name in part.channels],
-            np.linalg.norm(part.by_inputs * input_std, axis=1),
+            [window.std(name) for name in linear.channels],
+            np.linalg.norm(linear.by_inputs * input_std, axis=1),
         )
-        left = part.measured - part.solved
-        for name, value, size in zip(part.channels, left, std, strict=True):
+        left = linear.measured - linear.solved
+        for name, value, size in zip(linear.channels, left, std, strict=True):
             rows.setdefault(name, []).append((i, window.tow, float(value), float(size)))
     return _gathered(rows)
 
@@ -145,10 +145,12 @@ def innovations(course: Sequence[WindowUsed]) -> tuple[ChannelResiduals, ...]:
     """
     rows: dict[str, list[tuple[int, int, float, float]]] = {}
     for i, event in enumerate(course):
-        found = event.estimate.innovation
-        if found is None:
+        innovation = event.estimate.innovation
+        if innovation is None:
             continue
-        for name, value, std in zip(found.channels, found.values, found.stds, strict=True):
+        for name, value, std in zip(
+            innovation.channels, innovation.values, innovation.stds, strict=True
+        ):
             rows.setdefault(name, []).append((i, event.window.tow, float(value), float(std)))
     return _gathered(rows)
 

@@ -109,24 +109,26 @@ def _knowledge(report: Report) -> tuple[str, ...]:
 
 def _concerns(report: Report) -> tuple[str, ...]:
     estimate = report.estimate
-    found = [
+    concerns = [
         f'Refused, {reason}: {report.found[reason]}.' for reason in GRAVE if reason in report.found
     ]
     if not estimate.converged:
-        found.append(f'The iteration has not come to rest: {estimate.reason}.')
+        concerns.append(f'The iteration has not come to rest: {estimate.reason}.')
     if estimate.active_bounds:
         bounds = '; '.join(estimate.active_bounds)
-        found.append(f'On a bound, so that its interval is worth little: {bounds}.')
+        concerns.append(f'On a bound, so that its interval is worth little: {bounds}.')
     if estimate.birge_ratio > WIDENED:
-        found.append(
+        concerns.append(
             'The readings differ from the model by more than all known errors explain; intervals '
             f'are widened {estimate.birge_ratio:.1f} times for it.'
         )
     if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > BEYOND]:
-        found.append(f'Residuals are beyond what the stated errors allow in {", ".join(beyond)}.')
+        concerns.append(
+            f'Residuals are beyond what the stated errors allow in {", ".join(beyond)}.'
+        )
     if coloured := [row for row in report.residuals if row.whiteness and not row.whiteness.white]:
         names = ', '.join(_words(row) for row in coloured)
-        found.append(
+        concerns.append(
             f'Residuals follow each other, rather than scatter, in {names}: something that '
             'changes slowly is not in the model.'
         )
@@ -135,13 +137,13 @@ def _concerns(report: Report) -> tuple[str, ...]:
         for group, scale in estimate.noise_scales.items()
         if scale > NOISY
     ]:
-        found.append(f'Readings scatter far more than stated in {", ".join(noisy)}.')
+        concerns.append(f'Readings scatter far more than stated in {", ".join(noisy)}.')
     if report.held_out.by == 'state':
-        found.append(
+        concerns.append(
             'There is one tow only: errors of calibration are in what was fitted and in what was '
             'left out alike.'
         )
-    return tuple(found)
+    return tuple(concerns)
 
 
 def _ratio(row: ChannelResiduals) -> str:

@@ -59,7 +59,10 @@ class ChannelBuffer:
         Each one refused is counted by its reason.
         """
         # Stamps first: a sensor that says nonsense in time is not silent.
-        return sum(self._plausible(one) and self._insert(one) for one in self.order.judge(reading))
+        return sum(
+            self._plausible(accepted) and self._insert(accepted)
+            for accepted in self.order.judge(reading)
+        )
 
     def _plausible(self, reading: Reading) -> bool:
         if not math.isfinite(reading.value):
@@ -69,8 +72,8 @@ class ChannelBuffer:
         high = min(self.channel.high, reading.high if math.isfinite(reading.high) else math.inf)
         if not low <= reading.value <= high:
             expected = f'expected {low:g} to {high:g} {self.channel.unit}'
-            found = f'{self._where} reads {reading.value:g} {self.channel.unit}, {expected}'
-            self._rejections.add('out of range', found)
+            sentence = f'{self._where} reads {reading.value:g} {self.channel.unit}, {expected}'
+            self._rejections.add('out of range', sentence)
             self._outside.append((reading.stamp, reading.value))
             del self._outside[:-CAPACITY]
             return False

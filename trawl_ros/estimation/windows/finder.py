@@ -122,11 +122,11 @@ class SteadyWindowFinder:
 
     def next_tow(self) -> list[SteadyWindow | RejectedWindow]:
         """Decide the remaining windows of this tow and begin the next; states and counts go on."""
-        found = self.finish()
+        decided = self.finish()
         if any(buffer.newest is not None for buffer in self._buffers.values()):
             self._begin_tow()
         self._clear()
-        return found
+        return decided
 
     def _watermark(self) -> int | None:
         """Watermark: stamp (ns) that all channels have passed that are waited for."""
@@ -150,7 +150,7 @@ class SteadyWindowFinder:
             return []
         if self._next_block is None:
             self._next_block = self._timeline.first // self._block_ns
-        found: list[SteadyWindow | RejectedWindow] = []
+        decided: list[SteadyWindow | RejectedWindow] = []
         end_block = watermark // self._block_ns
         history = self._operation.most_blocks
         if end_block - self._next_block > 2 * history:
@@ -159,19 +159,19 @@ class SteadyWindowFinder:
             if all(len(self._buffers[name].window(start_ns, end_ns)[0]) == 0 for name in WINCH):
                 self._next_block = end_block - history
         while self._next_block < end_block:
-            found.extend(self._block(self._next_block))
+            decided.extend(self._block(self._next_block))
             self._next_block += 1
-        return found
+        return decided
 
     def _block(self, index: int) -> list[SteadyWindow | RejectedWindow]:
         end_ns = (index + 1) * self._block_ns
         self._look_for_tow(end_ns - self._block_ns, end_ns)
         self._operation.add(self._summary(index))
         start_ns = end_ns - self._operation.window_blocks * self._block_ns
-        found = self._decide(start_ns, end_ns) if self._operation.full else []
+        decided = self._decide(start_ns, end_ns) if self._operation.full else []
         for buffer in self._buffers.values():
             buffer.decide(end_ns, start_ns + self._block_ns)
-        return found
+        return decided
 
     def _look_for_tow(self, start_ns: int, end_ns: int) -> None:
         stamps = np.concatenate([self._buffers[name].window(start_ns, end_ns)[0] for name in WINCH])
@@ -194,7 +194,7 @@ class SteadyWindowFinder:
             return self._buffers[name].window(start_ns, start_ns + self._block_ns)[1]
 
         def median(name: str) -> float | None:
-            return float(np.median(found)) if len(found := values(name)) else None
+            return float(np.median(block)) if len(block := values(name)) else None
 
         heading = values('heading')
         return Block(
@@ -256,13 +256,13 @@ class SteadyWindowFinder:
             silent = not buffer.heard(end_ns) and len(buffer.outside(start_ns, end_ns)) == 0
             if name in WITNESSES or (silent and not channel.required):
                 continue
-            found = channel_mean(buffer, start_ns, end_ns, self._options)
-            if isinstance(found, ChannelMean):
-                used[name] = found
+            mean = channel_mean(buffer, start_ns, end_ns, self._options)
+            if isinstance(mean, ChannelMean):
+                used[name] = mean
             elif channel.required:
-                return found
+                return mean
             else:
-                lost.append(found)
+                lost.append(mean)
         for why in lost:
             self.rejections.add(why.reason, why.detail)
         for name, mean in used.items():
@@ -274,11 +274,11 @@ class SteadyWindowFinder:
             state,
             start_ns,
             end_ns,
-            means={name: found.mean for name, found in used.items()},
-            noise={name: found.noise for name, found in used.items()},
-            to_come={name: found.to_come for name, found in used.items()},
-            bias={name: CHANNELS[name].bias_std(found.mean) for name, found in used.items()},
-            counts={name: found.count for name, found in used.items()},
+            means={name: mean.mean for name, mean in used.items()},
+            noise={name: mean.noise for name, mean in used.items()},
+            to_come={name: mean.to_come for name, mean in used.items()},
+            bias={name: CHANNELS[name].bias_std(mean.mean) for name, mean in used.items()},
+            counts={name: mean.count for name, mean in used.items()},
             tow=self._tow,
             hours=self._hours(0.5 * (start_ns + end_ns)),
             track=ground_track(

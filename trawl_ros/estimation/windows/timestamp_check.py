@@ -93,18 +93,18 @@ class TimestampCheck:
         self._waiting = []
 
     def _wait(self, reading: Reading) -> list[Reading]:
-        if any(reading.stamp == one.stamp for one in self._waiting):
+        if any(reading.stamp == waiting.stamp for waiting in self._waiting):
             self._rejections.add('duplicate stamp', f'{self._where} has a stamp twice')
             return []
         if self._waiting:
-            newest = max(one.stamp for one in self._waiting)
+            newest = max(waiting.stamp for waiting in self._waiting)
             if not newest - self._reorder <= reading.stamp <= newest + self._step:
                 self.give_up()
         self._waiting.append(reading)
         if len(self._waiting) < CONFIRM:
             return []
         waited, self._waiting = self._waiting, []
-        return self._accept(sorted(waited, key=lambda one: one.stamp))
+        return self._accept(sorted(waited, key=lambda waiting: waiting.stamp))
 
     def _accept(self, readings: list[Reading]) -> list[Reading]:
         accepted = []
