@@ -6,63 +6,20 @@ half a bag.
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from itertools import islice
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-
 from trawl_ros.bags.logs.clock import ClockReader
 from trawl_ros.bags.logs.layout import BadRow, LogRow, read_rows
-from trawl_ros.bags.logs.mapping import (
-    ColumnMapping,
-    LogMapping,
-    LogWater,
-    TopicMapping,
-    load_mapping,
-)
+from trawl_ros.bags.logs.mapping import ColumnMapping, LogMapping, TopicMapping, load_mapping
 from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
+from trawl_ros.bags.logs.table_samples import table_sample
+from trawl_ros.bags.logs.writing import Imported, write_samples
 from trawl_ros.bags.possible import impossible, impossible_compass
-from trawl_ros.bags.writer import BagWriter
-from trawl_ros.core.arrays import FloatArray
-from trawl_ros.core.errors import BagError, LogError
-from trawl_ros.core.files import new_folder
-from trawl_ros.core.limits import LOG_READINGS
-from trawl_ros.core.units import UNITS
-from trawl_ros.messages.cdr import serialize
-from trawl_ros.messages.to_messages import sample_message
-from trawl_ros.records.samples import (
-    AttitudeSample,
-    FixSample,
-    HeadingSample,
-    PressureSample,
-    RangeSample,
-    Sample,
-    VelocitySample,
-    WinchSample,
-)
-from trawl_ros.records.topics import RANGES, absolute
-from trawl_ros.records.truth import SIDES
-
-_WINCH_READINGS = ('length', 'speed', 'tension')
-_WHAT = {topic: what for what, topic in RANGES.items()}
+from trawl_ros.records.samples import Sample
 
 NO_READING = 'no reading, or none that is new'
-
-
-@dataclass(frozen=True)
-class Imported:
-    """Result of an import.
-
-    ``rows`` were read, ``counts`` are messages by full topic name, ``left_out`` says how many
-    rows gave none, by reason.
-    """
-
-    rows: int
-    counts: Mapping[str, int]
-    left_out: Mapping[str, int]
 
 
 def import_log(
@@ -119,61 +76,6 @@ def import_log(
     return write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
 
 
-def write_samples(
-    path: Path,
-    samples: Iterable[Sample],
-    bag_path: str | Path,
-    row_counts: Callable[[], tuple[int, Mapping[str, int]]],
-) -> Imported:
-    """Write the samples of a log as a bag, in the order of time.
-
-    Parameters
-    ----------
-    path
-        The log, which the bag's metadata name.
-    samples
-        Readings of the log.
-    bag_path
-        Folder to be made.
-    row_counts
-        Rows read, and those left out by reason; called once all samples are there.
-
-    Raises
-    ------
-    LogError
-        If there is no sample, or more than `LOG_READINGS`.
-    BagError
-        If the bag exists or cannot be written.
-    """
-    new_folder(Path(bag_path), BagError)
-    ordered = list(islice(samples, LOG_READINGS.value + 1))
-    if len(ordered) > LOG_READINGS.value:
-        raise LogError(f'{path}: more than {LOG_READINGS}; expected a log in several files')
-    ordered.sort(key=lambda sample: sample.stamp)
-    rows, left_out = row_counts()
-    if not ordered:
-        why = f' ({listed(left_out)})' if left_out else ''
-        raise LogError(f'{path}: {rows} rows without any reading{why}; expected at least one')
-    counts: Counter[str] = Counter()
-    with BagWriter(bag_path, custom_data={'log': path.name}) as bag:
-        for sample in ordered:
-            topic, message = sample_message(sample)
-            bag.write(absolute(topic), message.__msgtype__, serialize(message), sample.stamp)
-            counts[absolute(topic)] += 1
-    return Imported(rows, counts, left_out)
-
-
-def compass_yaw(compass: float) -> float:
-    """Convert an angle clockwise from north into one counter-clockwise from east, -π to π."""
-    return math.remainder(math.pi / 2 - compass, 2 * math.pi)
-
-
-def course_velocity(speed: float, course: float) -> FloatArray:
-    """Convert a speed and a compass course (rad) into a velocity (3,) in ``map``."""
-    yaw = compass_yaw(course)
-    return speed * np.array([math.cos(yaw), math.sin(yaw), 0.0])
-
-
 class _Reading:
     """Single pass through a log, with counts."""
 
@@ -220,7 +122,7 @@ class _Reading:
             if entry.changes_only and readings == self._last.get(topic):
                 continue
             if stamp is not None and (
-                sample := _sample(topic, stamp, readings, entry, self._mapping.water)
+                sample := table_sample(topic, stamp, readings, entry, self._mapping.water)
             ):
                 self._refuse_impossible(row, topic, entry, sample, readings)
                 self._last[topic] = readings
@@ -291,56 +193,3 @@ def _number(text: str) -> float | None:
         return parse_number(text.replace(',', '.'))
     except ValueError:
         return None
-
-
-def listed(left_out: Mapping[str, int]) -> str:
-    """List in a line the rows left out, and why."""
-    return '; '.join(f'{count}: {reason}' for reason, count in left_out.items())
-
-
-def _sample(
-    topic: str,
-    stamp: int,
-    readings: dict[str, float],
-    entry: TopicMapping,
-    water: LogWater | None,
-) -> Sample | None:
-    """Assemble the sample of a topic; None if there is no reading for it."""
-    missing = [math.isnan(value) for value in readings.values()]
-    std = 0.0 if entry.std is None else entry.std.si()
-    if all(missing) if topic == 'winch/joint_states' else any(missing):
-        return None
-    match topic.split('/'):
-        case ['winch', _]:
-            return WinchSample(stamp, *(_pair(readings, what) for what in _WINCH_READINGS))
-        case [*_, place, 'pressure']:
-            if water and entry.std and UNITS[entry.std.unit].quantity == 'length':
-                std = water.depth_to_difference(std)
-            if water and 'depth' in readings:
-                return PressureSample(stamp, place, water.pressure(readings['depth']), std)
-            return PressureSample(stamp, place, readings['pressure'], std)
-        case ['door', side, 'attitude']:
-            return AttitudeSample(stamp, side, readings['pitch'], readings['roll'], std)
-        case ['vessel', what]:
-            return _vessel_sample(what, stamp, readings, std)
-    limits = [limit.si() for limit in (entry.min_range, entry.max_range) if limit]
-    return RangeSample(stamp, _WHAT[topic], readings['distance'], std, *limits)
-
-
-def _vessel_sample(what: str, stamp: int, readings: dict[str, float], std: float) -> Sample:
-    match what:
-        case 'velocity_water':
-            velocity = np.array([readings['forward'], readings.get('to_port', 0.0), 0.0])
-            return VelocitySample(stamp, 'water', velocity, math.nan)
-        case 'velocity_ground':
-            velocity = course_velocity(readings['speed'], readings['compass_course'])
-            return VelocitySample(stamp, 'ground', velocity, math.nan)
-        case 'heading':
-            return HeadingSample(stamp, compass_yaw(readings['compass_heading']), std)
-    latitude, longitude = (math.degrees(readings[field]) for field in ('latitude', 'longitude'))
-    return FixSample(stamp, latitude, longitude, std)
-
-
-def _pair(readings: dict[str, float], what: str) -> tuple[float, float]:
-    port, starboard = (readings.get(f'{side}_{what}', math.nan) for side in SIDES)
-    return port, starboard

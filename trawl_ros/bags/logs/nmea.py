@@ -13,10 +13,10 @@ from pynmeagps.exceptions import NMEAParseError
 from pynmeagps.nmeahelpers import calc_checksum
 
 from trawl_ros.bags.logs.clock import ClockReader
-from trawl_ros.bags.logs.import_log import Imported, listed, write_samples
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, load_nmea_mapping
 from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, reading
 from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread
+from trawl_ros.bags.logs.writing import Imported, listed, write_samples
 from trawl_ros.bags.possible import impossible
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import open_file

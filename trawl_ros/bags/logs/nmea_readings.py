@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.bags.logs.import_log import compass_yaw, course_velocity
+from trawl_ros.bags.logs.compass import compass_yaw, course_velocity
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, NmeaTopic
 from trawl_ros.bags.possible import impossible_compass
 from trawl_ros.core.units import UNITS
