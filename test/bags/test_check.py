@@ -11,7 +11,7 @@ from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.storage.qos import dump_profiles, project_profile
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
-from trawl_ros.messages.cdr import definition, serialize
+from trawl_ros.messages.cdr import message_definition, serialize
 from trawl_ros.messages.estimates import estimate_message
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.samples import PressureSample, RangeSample
@@ -131,7 +131,9 @@ def write_mcap(path, topic, type_name, entries, qos, **options):
     with path.open('wb') as stream:
         writer = Writer(stream, **options)
         writer.start('ros2', 'test')
-        schema = writer.register_schema(type_name, 'ros2msg', definition(type_name).encode())
+        schema = writer.register_schema(
+            type_name, 'ros2msg', message_definition(type_name).encode()
+        )
         channel = writer.register_channel(topic, 'cdr', schema, {'offered_qos_profiles': qos})
         for stamp, data in entries:
             writer.add_message(channel, stamp, data, stamp)

@@ -13,7 +13,7 @@ from trawl_ros.bags.flattening import MAX_COLUMNS
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.progress import WorkProgress
-from trawl_ros.messages.cdr import definition, serialize
+from trawl_ros.messages.cdr import message_definition, serialize
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.samples import RangeSample, WinchSample
@@ -210,7 +210,7 @@ def test_names_of_topics_cannot_lead_out_of_the_folder_nor_meet(tmp_path):
     with path.open('wb') as stream:
         writer = Writer(stream)
         writer.start('ros2', 'test')
-        schema = writer.register_schema(name, 'ros2msg', definition(name).encode())
+        schema = writer.register_schema(name, 'ros2msg', message_definition(name).encode())
         for topic in ('/../../etc/x', '/etc/x', '/etc.x', '/columns'):
             writer.add_message(writer.register_channel(topic, 'cdr', schema), 0, data, 0)
         writer.finish()

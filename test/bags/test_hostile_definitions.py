@@ -6,7 +6,7 @@ from trawl_ros.bags.storage.decoding import BagTypes
 from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.limits import DEFINITION_BYTES, DEFINITION_FIELDS, MESSAGE_OBJECTS
-from trawl_ros.messages.cdr import STORE, definition
+from trawl_ros.messages.cdr import STORE, message_definition
 
 
 def make(text, name='a/msg/B', encoding='ros2msg'):
@@ -81,4 +81,6 @@ def test_a_message_that_would_be_too_many_objects_is_refused():
 
 def test_a_definition_of_ros_2_that_is_written_otherwise_is_known_still():
     name = 'sensor_msgs/msg/JointState'
-    assert BagTypes().store('/topic', make('# a comment\n' + definition(name), name)) is STORE
+    assert (
+        BagTypes().store('/topic', make('# a comment\n' + message_definition(name), name)) is STORE
+    )

@@ -13,7 +13,7 @@ from rosbags.rosbag2 import Writer as RosbagsWriter
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, MessageError
-from trawl_ros.messages.cdr import STORE, definition, serialize
+from trawl_ros.messages.cdr import STORE, message_definition, serialize
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.samples import PressureSample
@@ -41,7 +41,7 @@ def pressure_bytes(stamp=0, pressure=1e6):
 
 def pressure_channel(entries, topic=PRESSURE):
     name = 'sensor_msgs/msg/FluidPressure'
-    return topic, name, 'ros2msg', definition(name), entries
+    return topic, name, 'ros2msg', message_definition(name), entries
 
 
 def test_a_sound_bag_comes_back_message_for_message(sound_bag, messages, raw):
@@ -117,7 +117,7 @@ def test_bags_that_rosbags_wrote_are_read(tmp_path, storage, version, read):
 
 
 def test_a_range_of_an_older_distribution_is_read_by_the_definition_it_brings(tmp_path, read):
-    newer = definition('sensor_msgs/msg/Range')
+    newer = message_definition('sensor_msgs/msg/Range')
     older = newer.replace('float32 variance\n', '')
     assert older != newer
     stamped = b'\x00\x01\x00\x00' + struct.pack('<iI', 7, 0) + struct.pack('<I', 1) + b'\0\0\0\0'

@@ -10,7 +10,7 @@ from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
-from trawl_ros.messages.cdr import definition, serialize
+from trawl_ros.messages.cdr import message_definition, serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.samples import WinchSample
 from trawl_ros.records.topics import absolute
@@ -133,7 +133,7 @@ def test_channels_that_take_turns_are_sources_and_one_behind_the_other_is_not(
             topic, message = sample_message(sample)
             name = message.__msgtype__
             while len(channels) < 2:
-                schema = mcap.register_schema(name, 'ros2msg', definition(name).encode())
+                schema = mcap.register_schema(name, 'ros2msg', message_definition(name).encode())
                 channels.append(mcap.register_channel(absolute(topic), 'cdr', schema))
             channel = channels[number % 5 == 0 if by_turns else number >= 100]
             mcap.add_message(channel, sample.stamp, serialize(message), sample.stamp)

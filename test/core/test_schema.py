@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.schema import Record, load_yaml, validated
-from trawl_ros.core.validation_messages import unit_of
+from trawl_ros.core.validation_messages import key_unit
 
 
 class Warp(Record):
@@ -233,4 +233,4 @@ def test_a_check_across_keys_is_placed_where_it_belongs(low: float, sentence: st
     ],
 )
 def test_the_end_of_a_key_states_its_unit(key: str, unit: str | None) -> None:
-    assert unit_of(key) == unit
+    assert key_unit(key) == unit

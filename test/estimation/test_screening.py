@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.screening import Screening
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.estimation.windows.unit_errors import unit_of
+from trawl_ros.estimation.windows.unit_errors import plausible_unit
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import CHANNELS, MEASURED
@@ -95,6 +95,6 @@ def test_a_window_that_is_looked_at_is_solved_for_once(known):
 
 def test_degrees_are_told_by_the_range_of_radians_alone():
     roll = CHANNELS['port_roll']
-    assert unit_of(np.array([11.0, 12.0]), roll) == 'degrees'
-    assert unit_of(np.array([11.0, 1000.0]), roll) is None
-    assert unit_of(np.array([700.0]), CHANNELS['door_spread']) is None
+    assert plausible_unit(np.array([11.0, 12.0]), roll) == 'degrees'
+    assert plausible_unit(np.array([11.0, 1000.0]), roll) is None
+    assert plausible_unit(np.array([700.0]), CHANNELS['door_spread']) is None

@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.core.geodesy import Datum, to_latitude_longitude
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument
-from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, pitch_and_roll
+from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, door_tilt
 from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.errors.records import ForceErrors, LengthErrors, SpeedErrors, TurnErrors
 from trawl_ros.instruments.parameters import (
@@ -90,11 +90,11 @@ def test_a_pressure_sensor_out_of_the_water_reads_the_air() -> None:
 def test_pitch_is_nose_down_and_roll_is_top_to_starboard_on_any_heading(heading: float) -> None:
     yawed = turn('z', heading)
     pitched = after(yawed, turn('y', 0.2))
-    assert pitch_and_roll(pitched) == pytest.approx((0.2, 0.0))
+    assert door_tilt(pitched) == pytest.approx((0.2, 0.0))
     leaning = after(yawed, turn('x', 0.3))
-    assert pitch_and_roll(leaning) == pytest.approx((0.0, 0.3))
+    assert door_tilt(leaning) == pytest.approx((0.0, 0.3))
     both = after(pitched, turn('x', 0.3))
-    assert pitch_and_roll(both) == pytest.approx((0.2, 0.3))
+    assert door_tilt(both) == pytest.approx((0.2, 0.3))
     # The claims about nose and top, in the world's own coordinates.
     x, y, z, w = pitched
     assert 2 * (x * z - w * y) < 0  # the nose points down

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages.cdr import STORE, definition, deserialize, serialize, type_hash
+from trawl_ros.messages.cdr import STORE, deserialize, message_definition, serialize, type_hash
 from trawl_ros.messages.stamps import from_time, to_time
 from trawl_ros.records.topics import TOPICS
 
@@ -109,7 +109,7 @@ def test_type_hashes_are_those_of_the_installed_distribution(type_name):
 
 
 def test_definitions_carry_the_nested_types():
-    text = definition('sensor_msgs/msg/Range')
+    text = message_definition('sensor_msgs/msg/Range')
     assert 'float32 variance' in text
     assert 'MSG: std_msgs/Header' in text
     assert 'MSG: builtin_interfaces/Time' in text

@@ -16,7 +16,7 @@ from trawl_ros.bags.storage.stored import Definition  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
 from trawl_ros.core.errors import BagError, TrawlError  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
-from trawl_ros.messages.cdr import STORE, definition, serialize  # noqa: E402
+from trawl_ros.messages.cdr import STORE, message_definition, serialize  # noqa: E402
 from trawl_ros.messages.stamps import from_time, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer, main  # noqa: E402
@@ -233,7 +233,7 @@ def write_strange(bag, topic, type_name, text):
     return path
 
 
-OLDER = definition('sensor_msgs/msg/Range').replace('float32 variance\n', '')
+OLDER = message_definition('sensor_msgs/msg/Range').replace('float32 variance\n', '')
 
 
 @pytest.mark.parametrize(

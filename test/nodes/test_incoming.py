@@ -9,7 +9,7 @@ import pytest
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES
 from trawl_ros.core.time import SECOND
-from trawl_ros.lab.studies.hostile.mutations import hostile
+from trawl_ros.lab.studies.hostile.mutations import hostile_bytes
 from trawl_ros.messages.cdr import STORE, serialize
 from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header
@@ -221,7 +221,9 @@ def test_bytes_that_are_no_message_come_through_the_middleware_and_end_no_node(p
         for topic, message in sound.items():
             # Some the middleware sends for nobody.
             with contextlib.suppress(rclpy_implementation.RCLError):
-                talker.send_bytes(topic, hostile(serialize(message), message.__msgtype__, rng))
+                talker.send_bytes(
+                    topic, hostile_bytes(serialize(message), message.__msgtype__, rng)
+                )
         if number % 10 == 0:
             graph.rest(0.01)
     graph.settle()

@@ -20,7 +20,7 @@ from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.truth_to_messages import truth_messages
 from trawl_ros.model.water import Water
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.records import TowHistory
 from trawl_ros.records.samples import (
     AttitudeSample,
@@ -242,7 +242,7 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope='session')
 def tow(bag: Path) -> TowHistory:
     """The whole tow as it is read."""
-    return read_tow(bag, Water().depth, 'trawl')
+    return read_history(bag, Water().depth, 'trawl')
 
 
 @pytest.fixture(scope='session')

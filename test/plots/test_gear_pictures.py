@@ -10,7 +10,7 @@ from trawl_ros.messages.markers import gear_markers
 from trawl_ros.model.water import Water
 from trawl_ros.plots.gear import extent, gear_figure
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, read_moments
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.records import SCHOOLS
 from trawl_ros.plots.shapes import FROM_MARKERS, FROM_READINGS, FROM_TRUTH, gear_shape
 from trawl_ros.records.topics import DOOR_FRAMES
@@ -23,7 +23,7 @@ def kaifuha():
 
 
 def shape_at(path, time, kaifuha):
-    tow = read_tow(path, Water().depth, 'trawl')
+    tow = read_history(path, Water().depth, 'trawl')
     (moment,) = read_moments(path, tow, [time], 'trawl', [GEAR, MOUTH])
     return gear_shape(moment, tow, kaifuha)
 
@@ -107,7 +107,7 @@ def test_port_is_red_and_starboard_green(readings_only, kaifuha):
 
 
 def test_fish_are_drawn_where_they_are_and_do_not_widen_the_views(bag, known, kaifuha):
-    tow = read_tow(bag, Water().depth, 'trawl')
+    tow = read_history(bag, Water().depth, 'trawl')
     (moment,) = read_moments(bag, tow, [60.0], 'trawl', [GEAR, MOUTH])
     without = extent([gear_shape(moment, tow, kaifuha)])
     truth = known.truth_at(60.0)

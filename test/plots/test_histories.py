@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 
 from trawl_ros.model.water import Water
 from trawl_ros.plots.histories import PANELS, history_figure, left_out, silences
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.records import Series
 from trawl_ros.report import style
 
@@ -96,7 +96,7 @@ def test_headings_are_those_of_a_compass(tow):
 
 def test_what_is_missing_is_said(tow, readings_only):
     assert left_out(tow) == []
-    bare = read_tow(readings_only, Water().depth, 'trawl')
+    bare = read_history(readings_only, Water().depth, 'trawl')
     assert left_out(bare) == [
         'Not in the bag, so not drawn: opening.',
         'The bag holds no truth, only what was measured.',

@@ -6,7 +6,7 @@ import pytest
 from trawl_ros.core.errors import BagError
 from trawl_ros.model.water import Water
 from trawl_ros.plots import reading
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 
 
 def test_flawless_readings_lie_on_truth(tow):
@@ -22,7 +22,7 @@ def test_flawless_readings_lie_on_truth(tow):
 
 def test_depths_are_those_of_the_water(bag, tow, known):
     assert tow.measured['port_door_depth'].at(60.0) == pytest.approx(66.0, abs=1e-3)
-    heavy = read_tow(bag, Water(density=1060.0).depth, 'trawl')
+    heavy = read_history(bag, Water(density=1060.0).depth, 'trawl')
     assert heavy.measured['port_door_depth'].at(60.0) == pytest.approx(66.0 * 1025 / 1060, abs=1e-2)
 
 
@@ -38,14 +38,14 @@ def test_the_heading_has_no_jump_where_it_passes_west(tow):
 
 
 def test_what_is_not_in_the_bag_is_not_there(readings_only):
-    tow = read_tow(readings_only, Water().depth, 'trawl')
+    tow = read_history(readings_only, Water().depth, 'trawl')
     assert not tow.truth
     assert 'opening_height' not in tow.measured
 
 
 def test_a_long_series_is_thinned_evenly_and_said(bag, monkeypatch):
     monkeypatch.setattr(reading, 'MOST_POINTS', 50)
-    tow = read_tow(bag, Water().depth, 'trawl')
+    tow = read_history(bag, Water().depth, 'trawl')
     times = tow.measured['door_spread'].times
     assert len(times) <= 50
     np.testing.assert_allclose(np.diff(times), 4.0)
@@ -55,11 +55,11 @@ def test_a_long_series_is_thinned_evenly_and_said(bag, monkeypatch):
 
 def test_a_bag_logged_late_keeps_the_times_of_its_stamps(known, tmp_path):
     late = known.write(tmp_path / 'late', log_lag_s=3.0)
-    tow = read_tow(late, Water().depth, 'trawl')
+    tow = read_history(late, Water().depth, 'trawl')
     assert tow.log_lag == 3_000_000_000
     assert tow.start == known.START
 
 
 def test_a_bag_with_nothing_to_draw_says_what_is_missing(bag):
     with pytest.raises(BagError, match='none of the topics that can be drawn'):
-        read_tow(bag, Water().depth, 'elsewhere')
+        read_history(bag, Water().depth, 'elsewhere')

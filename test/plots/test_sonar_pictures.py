@@ -7,7 +7,7 @@ from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.water import Water
 from trawl_ros.plots.moments import IMAGE, MOST_AWAY_S, SCAN, Moment
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.sonar import seen, sonar_figure
 from trawl_ros.plots.sweeps import read_sweeps, sweep_of
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
@@ -92,7 +92,7 @@ def test_echoes_of_the_mouth_lie_on_truth_and_the_reading_between_them(bag, tow,
 
 def test_the_mouths_corners_stand_in_where_no_section_is_known(known, tmp_path):
     path = known.write(tmp_path / 'bag', ['truth', 'sonar'], section=False)
-    tow = read_tow(path, Water().depth, 'trawl')
+    tow = read_history(path, Water().depth, 'trawl')
     (picture,), _ = read_sweeps(path, tow, [33.0], 'trawl')
     assert picture.closed
     around = known.MOUTH[[1, 0, 5, 4, 3, 2]]
@@ -102,7 +102,7 @@ def test_the_mouths_corners_stand_in_where_no_section_is_known(known, tmp_path):
 def test_truth_is_that_of_the_middle_of_the_sweep(known, tmp_path):
     # The mouth grows by 0.1 m/s here, and a sweep takes 4 s.
     path = known.write(tmp_path / 'bag', ['truth', 'sonar'], growing=0.1)
-    tow = read_tow(path, Water().depth, 'trawl')
+    tow = read_history(path, Water().depth, 'trawl')
     for time, begun in ((31.0, 30.0), (69.0, 70.0)):
         (picture,), _ = read_sweeps(path, tow, [time], 'trawl')
         assert picture.time == begun
@@ -122,7 +122,7 @@ def test_without_a_scan_nobody_knows_where_the_beams_look(tow, known):
 
 def test_sweeps_that_are_far_away_are_not_shown(known, tmp_path, monkeypatch):
     path = known.write(tmp_path / 'bag', ['sonar'])
-    tow = read_tow(path, Water().depth, 'trawl')
+    tow = read_history(path, Water().depth, 'trawl')
     monkeypatch.setitem(MOST_AWAY_S, IMAGE, 3.0)
     pictures, problems = read_sweeps(path, tow, [20.0, 25.0, 31.0], 'trawl')
     assert [picture and picture.time for picture in pictures] == [20.0, None, 30.0]

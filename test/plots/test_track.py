@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.water import Water
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.track import current, fixes_on_map, track_figure
 
 
@@ -35,7 +35,7 @@ def test_the_figure_names_the_current(tow, tmp_path):
 
 
 def test_fixes_alone_start_at_the_origin(readings_only):
-    tow = read_tow(readings_only, Water().depth, 'trawl')
+    tow = read_history(readings_only, Water().depth, 'trawl')
     _, east, north = fixes_on_map(tow)
     assert (east[0], north[0]) == (0.0, 0.0)
     assert track_figure(tow) is not None

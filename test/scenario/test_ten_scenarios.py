@@ -16,7 +16,7 @@ from trawl_ros.cli.main import trawl
 from trawl_ros.core.resources import share_path
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.scenario.recording import recorded
+from trawl_ros.scenario.recording import recorded_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 
@@ -85,7 +85,7 @@ def test_it_runs_to_its_end_with_every_instrument_on(name):
     scenario = shortened(load(name), SECONDS)
     trial = Trial(scenario, model=build_model(scenario.plant))
     counts: Counter[str] = Counter()
-    for _, messages in recorded(trial):
+    for _, messages in recorded_messages(trial):
         for topic, message in messages:
             assert serialize(message)
             counts[topic] += 1

@@ -13,7 +13,7 @@ from trawl_ros.messages.cdr import serialize
 from trawl_ros.records.samples import Sample
 from trawl_ros.records.topics import NAMESPACE, absolute
 from trawl_ros.records.truth import Truth
-from trawl_ros.scenario.recording import recorded
+from trawl_ros.scenario.recording import recorded_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario
 
@@ -127,7 +127,7 @@ def tow(
     trial = Trial(loaded)
     interrupted = False
     with BagWriter(out) as bag:
-        for stamp, messages in recorded(trial):
+        for stamp, messages in recorded_messages(trial):
             for topic, message in messages:
                 bag.write(absolute(topic), message.__msgtype__, serialize(message), stamp)
             step = loaded.step_at(trial.time_s).name

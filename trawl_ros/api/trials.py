@@ -13,7 +13,7 @@ from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.estimation.bag_windows import read_tows
 from trawl_ros.estimation.from_gear import estimator_options, identification_for
 from trawl_ros.estimation.planning.plan import TrialPlan
-from trawl_ros.estimation.planning.plan import plan_trial as plan_for
+from trawl_ros.estimation.planning.plan import plan_for as plan_for
 from trawl_ros.estimation.planning.states import Limits
 from trawl_ros.estimation.planning.writing import write_plan
 from trawl_ros.estimation.report.page import write_report

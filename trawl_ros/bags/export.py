@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from trawl_ros.bags.csv_output import CsvOutput
-from trawl_ros.bags.field_units import unit_of
+from trawl_ros.bags.field_units import field_unit
 from trawl_ros.bags.flattening import FlatColumn, FlatLayout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
@@ -223,5 +223,5 @@ def _write_dictionary(bag: Bag, folder: Path, tables: Mapping[str, _Table], name
             for column, unit in zip(LOG_COLUMNS, ('s', 'ns'), strict=True):
                 writer.row([table.file_name, column, unit, topic, type_name])
             for entry in table.columns:
-                unit = unit_of(contract, type_name, entry.path)
+                unit = field_unit(contract, type_name, entry.path)
                 writer.row([table.file_name, entry.name, unit, topic, type_name])

@@ -60,7 +60,7 @@ _BY_TYPE: Mapping[str, Mapping[str, str]] = {
 }
 
 
-def unit_of(topic: str, type_name: str, path: str) -> str:
+def field_unit(topic: str, type_name: str, path: str) -> str:
     """Give the unit of a field, '' where it has none or none is known.
 
     Parameters

@@ -21,7 +21,7 @@ from trawl_ros.core.time import SECOND
 UNKNOWN = 'unknown'
 
 
-def headline(path: Path, count: int, start: int | None, end: int | None) -> str:
+def summary_line(path: Path, count: int, start: int | None, end: int | None) -> str:
     """Summarise the content of a bag and its time span in a line."""
     if start is None or end is None:
         return f'{path}: no messages'
@@ -45,7 +45,8 @@ def kind(facts: BagFacts) -> str:
 def print_info(bag: Bag, summary: BagSummary, console: Console) -> None:
     """Print the content of a bag."""
     console.print(
-        escape(headline(summary.path, summary.count, summary.start, summary.end)), soft_wrap=True
+        escape(summary_line(summary.path, summary.count, summary.start, summary.end)),
+        soft_wrap=True,
     )
     console.print(escape(kind(summary.facts)), soft_wrap=True)
     for key, text in bag.custom_data.items():
@@ -92,7 +93,9 @@ def info_as_json(bag: Bag, summary: BagSummary) -> str:
 
 def print_check(check: BagCheck, console: Console) -> None:
     """Print the check of a bag, findings last."""
-    console.print(escape(headline(check.path, check.count, check.start, check.end)), soft_wrap=True)
+    console.print(
+        escape(summary_line(check.path, check.count, check.start, check.end)), soft_wrap=True
+    )
     console.print(escape(kind(check.facts)), soft_wrap=True)
     numbers = ('messages', 'Hz', 'usual Hz', 'longest gap s', 'back', 'same', 'log − stamp s')
     table = plain_table('topic', 'group', *numbers, 'QoS offered', right=numbers)

@@ -45,7 +45,7 @@ KEY_UNITS = {
 """Units by the last words of a key."""
 
 
-def unit_of(key: str) -> str | None:
+def key_unit(key: str) -> str | None:
     """Name the unit that the end of a key states: ``'length_m'`` gives ``'metres'``."""
     words = key.split('_')
     for start in range(1, len(words)):
@@ -106,7 +106,7 @@ def validation_messages(
             lines.append(_join(key, message) if own else f'{key}: {message}')
         elif not _other_branch(detail, errors):
             found = 'missing' if kind == 'missing' else f'found {shown(detail["input"])}'
-            unit = unit_of(next((s for s in reversed(loc) if isinstance(s, str)), ''))
+            unit = key_unit(next((s for s in reversed(loc) if isinstance(s, str)), ''))
             entry = wanted.setdefault(key, (found, [], f' ({unit})' if unit else ''))
             entry[1].append(_expected(detail, _annotation(cls, loc)))
     for key, (found, expected, hint) in wanted.items():
@@ -137,7 +137,7 @@ def _unknown_key(
     if closest is None:
         return f'{key}: unknown key, expected {_any_of(known)}', ''
     meant = key.removesuffix(unknown) + closest
-    unit = unit_of(closest)
+    unit = key_unit(closest)
     return f'{key}: unknown key; did you mean {meant}{f" ({unit})" if unit else ""}?', meant
 
 
@@ -247,7 +247,7 @@ def _expected(detail: ErrorDetails, annotation: object) -> str:
 def _closest(unknown: str, known: list[str]) -> str | None:
     """Find the key that was meant: same quantity in another unit first, then a misspelling."""
     stems = {unknown, _without_unit(unknown), unknown.rsplit('_', 1)[0]}
-    same = [name for name in known if unit_of(name) and _without_unit(name) in stems]
+    same = [name for name in known if key_unit(name) and _without_unit(name) in stems]
     close = same or difflib.get_close_matches(unknown, known, n=1, cutoff=0.6)
     return close[0] if close else None
 

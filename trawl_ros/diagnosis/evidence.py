@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import chdtrc, ndtri
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, spread
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, TowErrors, in_all_channels
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance, triangular
 
@@ -123,7 +123,7 @@ def evidence(
     jacobian = np.zeros((*fit.residual.shape, board + number))
     jacobian[:, :, boards] = fit.jacobian[:, :, boards]
     for row, (linear, own) in enumerate(zip(fit.windows, columns, strict=True)):
-        jacobian[row, :, board:] = spread(linear, own * units)
+        jacobian[row, :, board:] = in_all_channels(linear, own * units)
     scales = np.array(fit.scales)[GROUP_OF]
     information = eliminate_nuisance(
         fit.errors if tows is None else tows,

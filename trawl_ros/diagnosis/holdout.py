@@ -120,7 +120,7 @@ def errors(
     return [_gathered([row[place] for row in rows]) for place in range(len(fits))]
 
 
-def compare(
+def holdout_comparison(
     predictor: Predictor,
     base: Refit,
     best: Refit | None,

@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.empirical import empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
-from trawl_ros.diagnosis.holdout import compare, split
+from trawl_ros.diagnosis.holdout import holdout_comparison, split
 from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
@@ -93,7 +93,7 @@ def diagnose_windows(
             known,
             verdict='NO_DISCREPANCY',
             reason='nothing in the readings is beyond what boards and errors explain',
-            holdout=compare(predictor, base, None, None, kept_back),
+            holdout=holdout_comparison(predictor, base, None, None, kept_back),
         )
     named = name(predictor, base, test, on_progress)
     if named.lost:
@@ -122,7 +122,7 @@ def diagnose_windows(
     on_progress(_step('predicting what was kept back'))
     if best is not None and placebo is None:
         placebo = _placebo(predictor, base, test, named)
-    comparison = compare(predictor, base, best, placebo, kept_back)
+    comparison = holdout_comparison(predictor, base, best, placebo, kept_back)
     on_progress(_step('looking for the next tow'))
     checks, proposals = _advice(predictor, test, named)
     return replace(

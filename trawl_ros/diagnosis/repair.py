@@ -49,10 +49,10 @@ def repaired(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> GearRecord |
     best = diagnosis.repair
     if best is None:
         return None
-    return with_effects(diagnosis.gear, best.refit, _provenance(best, sources))
+    return with_refitted_effects(diagnosis.gear, best.refit, _provenance(best, sources))
 
 
-def with_effects(gear: GearRecord, refit: Refit, origin: ProvenanceRecord) -> GearRecord:
+def with_refitted_effects(gear: GearRecord, refit: Refit, origin: ProvenanceRecord) -> GearRecord:
     """Gear with the boards and effects of a refit."""
     board = refit.fit.prior.unpacked(refit.estimate.values, 'coefficients')
     taken = set(refit.names)

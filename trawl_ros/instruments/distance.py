@@ -7,7 +7,7 @@ from trawl_ros.instruments.parameters import RangeParameters
 from trawl_ros.records.samples import RangeSample
 
 
-def within(distance: float, low: float, high: float) -> float:
+def within_limits(distance: float, low: float, high: float) -> float:
     """Return a distance (m), or ±infinity where it is out of the sensor's limits (REP-117)."""
     if distance > high:
         return math.inf
@@ -24,5 +24,5 @@ class RangeInstrument(Instrument[float, RangeSample]):
 
     def _read(self, part: float, stamp: int) -> RangeSample:
         low, high = self._limits
-        distance = within(self._measure('distance', part, stamp), low, high)
+        distance = within_limits(self._measure('distance', part, stamp), low, high)
         return RangeSample(stamp, self._what, distance, self._stated_std('distance'), low, high)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.instruments.distance import within
+from trawl_ros.instruments.distance import within_limits
 from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import AttitudeParameters, DoorParameters, SpreadParameters
@@ -20,7 +20,7 @@ _OUTWARD = (1.0, -1.0)
 """The way (along y of the door frame) in which each door's outer face looks, port first."""
 
 
-def pitch_and_roll(orientation: FloatArray) -> tuple[float, float]:
+def door_tilt(orientation: FloatArray) -> tuple[float, float]:
     """Read pitch (nose down positive) and roll (top to starboard positive) off a pose, rad.
 
     ``orientation`` is the quaternion (x, y, z, w) of a frame x forward, y port, z up. The
@@ -55,7 +55,7 @@ class DoorAttitude(Instrument[FloatArray, AttitudeSample]):
         self._side = side
 
     def _read(self, part: FloatArray, stamp: int) -> AttitudeSample:
-        pitch, roll = pitch_and_roll(part)
+        pitch, roll = door_tilt(part)
         return AttitudeSample(
             stamp,
             self._side,
@@ -92,7 +92,7 @@ class DoorSpread(Instrument[Doors, RangeSample]):
         if self._half_angle < math.pi and off_axis(part) > self._half_angle:
             return None
         low, high = self._limits
-        reading = within(distance, low, high)
+        reading = within_limits(distance, low, high)
         return RangeSample(stamp, 'spread', reading, self._stated_std('distance'), low, high)
 
 

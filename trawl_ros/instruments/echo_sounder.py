@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.instruments.distance import within
+from trawl_ros.instruments.distance import within_limits
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
 from trawl_ros.instruments.sonar.schools import inside
@@ -76,7 +76,7 @@ class _Sounding(Instrument[Below, RangeSample]):
             mean = self._surroundings.mean_sound_speed(keel, keel + distance)
             distance *= self._assumed / mean
         low, high = self._limits
-        reading = within(self._measure('distance', distance, stamp), low, high)
+        reading = within_limits(self._measure('distance', distance, stamp), low, high)
         return RangeSample(stamp, self._what, reading, self._stated_std('distance'), low, high)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import ByteArray, FloatArray
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.distance import RangeInstrument, within
+from trawl_ros.instruments.distance import RangeInstrument, within_limits
 from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.errors.random_streams import generator
@@ -170,7 +170,7 @@ class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
             return None
         seen, opening = part
         low, high = self._limits
-        distance = within(self._measure('distance', opening, seen), low, high)
+        distance = within_limits(self._measure('distance', opening, seen), low, high)
         return RangeSample(seen, self._what, distance, self._stated_std('distance'), low, high)
 
 

@@ -51,7 +51,7 @@ def type_hash(type_name: str) -> str:
     return STORE.hash_rihs01(type_name)
 
 
-def definition(type_name: str) -> str:
+def message_definition(type_name: str) -> str:
     """Return the definition with those of all nested types, as bags carry it (ros2msg)."""
     text, _ = STORE.generate_msgdef(type_name, ros_version=2)
     return text

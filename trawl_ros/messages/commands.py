@@ -7,8 +7,7 @@ import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages.from_messages import joint_column
-from trawl_ros.messages.pieces import TopicMessage
+from trawl_ros.messages.pieces import TopicMessage, joint_column
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 

@@ -9,8 +9,7 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages.from_messages import joint_column
-from trawl_ros.messages.pieces import TopicMessage
+from trawl_ros.messages.pieces import TopicMessage, joint_column
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.coefficients import COEFFICIENTS
 

@@ -1,15 +1,18 @@
-"""Parts shared by messages of truth and of samples: headers, vectors, poses, covariances.
+"""Parts of messages of truth and samples, written and read: vectors, poses, covariances, winches.
 
 Covariances carry the *stated* noise. `UNKNOWN_VARIANCE` marks a part of an orientation or
 position that the sensor does not measure, `ABSENT` a whole quantity it does not have.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.messages.rotations import to_quaternion
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import MessageError
+from trawl_ros.messages.rotations import to_angles, to_quaternion
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 
@@ -83,3 +86,68 @@ def imu(
         linear_acceleration=vector((0.0, 0.0, 0.0)),
         linear_acceleration_covariance=absent.copy(),
     )
+
+
+def joint_column(topic: str, joint_state: Any, field: str) -> dict[str, float]:
+    """Read one field of a JointState by joint name; an empty field is a missing one (NaN).
+
+    Raises
+    ------
+    MessageError
+        If names repeat, or the field has neither as many entries as there are names nor none.
+    """
+    names, values = list(joint_state.name), getattr(joint_state, field)
+    if len(set(names)) != len(names):
+        raise MessageError(f'{topic}: names {names} repeat; expected each joint once')
+    if len(values) not in (0, len(names)):
+        raise MessageError(
+            f'{topic}: {field} has {len(values)} entries for {len(names)} names; '
+            'expected as many as names, or none'
+        )
+    if len(values) == 0:
+        return dict.fromkeys(names, math.nan)
+    return {name: float(value) for name, value in zip(names, values, strict=True)}
+
+
+def winch_columns(topic: str, message: Any) -> list[tuple[float, float]]:
+    """Read lengths, speeds and tensions, each of port and starboard, from a JointState."""
+    missing = [name for name in WINCH_NAMES if name not in message.name]
+    if missing:
+        raise MessageError(
+            f'{topic}: no {" and no ".join(missing)} among names {list(message.name)}; '
+            f'expected {" and ".join(WINCH_NAMES)}'
+        )
+    port, starboard = WINCH_NAMES
+    columns = (joint_column(topic, message, field) for field in ('position', 'velocity', 'effort'))
+    return [(column[port], column[starboard]) for column in columns]
+
+
+def read_vector(message: Any) -> FloatArray:
+    """Read a Vector3 or Point as an array (3,)."""
+    return np.array([message.x, message.y, message.z], dtype=float)
+
+
+def read_orientation(topic: str, message: Any) -> FloatArray:
+    """Read a Quaternion as an array (x, y, z, w).
+
+    Raises
+    ------
+    MessageError
+        If it is no rotation.
+    """
+    read_angles(topic, message)
+    return np.array([message.x, message.y, message.z, message.w], dtype=float)
+
+
+def read_angles(topic: str, message: Any) -> tuple[float, float, float]:
+    """Read a Quaternion as roll, pitch and yaw (rad).
+
+    Raises
+    ------
+    MessageError
+        If it is no rotation.
+    """
+    try:
+        return to_angles((message.x, message.y, message.z, message.w))
+    except ValueError as error:
+        raise MessageError(f'{topic}: {error}') from error

@@ -21,7 +21,7 @@ from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
-from trawl_ros.nodes.runtime.qos import recorded
+from trawl_ros.nodes.runtime.qos import recorder_profile
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.runtime.stamping import header_stamp
 from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, TRUTH, absolute
@@ -102,7 +102,7 @@ class BagRecorder(TrawlNode):
         for name, topic in project.items():
             if name in self._choice:
                 # Of latched topics, too, all that comes is wanted, and not the last alone.
-                profile = recorded(topic.type)
+                profile = recorder_profile(topic.type)
                 self._record(name, topic.type, matching((), profile) if topic.latched else profile)
         self.every(FLUSH_S, self._look_after)
 
@@ -207,7 +207,7 @@ class BagRecorder(TrawlNode):
             try:
                 if len(types) != 1 or types[0] not in STORE.types:
                     raise TrawlError(f'{topic}: types {", ".join(types)}')
-                self._record(topic, types[0], matching(publishers, recorded(types[0])))
+                self._record(topic, types[0], matching(publishers, recorder_profile(types[0])))
             except TrawlError:
                 self._unknown.add(topic)
             else:
@@ -216,7 +216,7 @@ class BagRecorder(TrawlNode):
     def _match(self, topic: str, publishers: Sequence[TopicEndpointInfo]) -> None:
         """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
         asked = self._profiles[topic]
-        heard = matching(publishers, recorded(self._types[topic]))
+        heard = matching(publishers, recorder_profile(self._types[topic]))
         reliable = asked.reliability == ReliabilityPolicy.RELIABLE
         latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
         if (reliable and heard.reliability != asked.reliability) or (

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from trawl_ros.instruments.doors import DoorInstruments
 from trawl_ros.instruments.errors.faults import Faulty
-from trawl_ros.messages.from_messages import door_truth
+from trawl_ros.messages.truth_from_messages import door_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.partial_truth import partial_truth
 from trawl_ros.nodes.runtime.run import run

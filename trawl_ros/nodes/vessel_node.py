@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.vessel import VesselInstruments
-from trawl_ros.messages.from_messages import schools_truth, seabed_truth, vessel_truth
+from trawl_ros.messages.truth_from_messages import schools_truth, seabed_truth, vessel_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.parameters import Number, Parameters
 from trawl_ros.nodes.runtime.partial_truth import partial_truth

@@ -17,7 +17,7 @@ from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure, left_out
 from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.records import SonarPicture, TowHistory
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.plots.sonar import sonar_figure
@@ -118,7 +118,7 @@ def plot(
     empty_folder(out, force=force)
     record = load_gear(gear)
     on_progress(WorkProgress('reading'))
-    tow = read_tow(bag, build_water(record).depth, namespace)
+    tow = read_history(bag, build_water(record).depth, namespace)
     chosen = _chosen(times, tow)
     made_folder(out)
     album = Album(bag, out, tow, record, namespace)

@@ -81,12 +81,14 @@ def write_film(path: Path, name: str, frames: Sequence[Frame], go_on: Callable[[
 
 def _draw(views: gear.Views, frame: Frame, *, with_sonar: bool) -> list[Artist]:
     drawn = [
-        *gear.draw(frame.shape, views.top, gear.ABOVE),
-        *gear.draw(frame.shape, views.side, gear.BESIDE),
+        *gear.draw_gear(frame.shape, views.top, gear.ABOVE),
+        *gear.draw_gear(frame.shape, views.side, gear.BESIDE),
     ]
     if not with_sonar:
-        drawn += gear.draw(frame.shape, views.right, gear.BEHIND)
+        drawn += gear.draw_gear(frame.shape, views.right, gear.BEHIND)
     elif frame.picture is not None:
         # At this size the marks of truth would hide the echoes.
-        drawn += sonar.draw(views.right, replace(frame.picture, mouth=frame.picture.mouth[:0]))
+        drawn += sonar.draw_sonar(
+            views.right, replace(frame.picture, mouth=frame.picture.mouth[:0])
+        )
     return drawn

@@ -50,7 +50,7 @@ def gear_figure(shape: GearShape, name: str) -> Figure:
     views = lay_out(extent([shape]), width=8.4, right=3.7)
     prepare_rear(views.right, extent([shape], rear=True))
     for axes, plane in ((views.top, ABOVE), (views.side, BESIDE), (views.right, BEHIND)):
-        draw(shape, axes, plane)
+        draw_gear(shape, axes, plane)
     title = f'{name} at {style.clock(shape.time)}: {shape.source}'
     views.figure.suptitle(title, parse_math=False)
     if shape.by_tension:
@@ -124,7 +124,7 @@ def _depth(height: float, _: float) -> str:
     return f'{0.0 - height:g}'
 
 
-def draw(shape: GearShape, axes: Axes, plane: tuple[int, int]) -> list[Artist]:
+def draw_gear(shape: GearShape, axes: Axes, plane: tuple[int, int]) -> list[Artist]:
     """Draw all strands into one view, with a dot in port's or starboard's colour on each door."""
     drawn: list[Artist] = []
     for strand in shape.strands:

@@ -87,7 +87,7 @@ PANELS = (
 )
 
 
-def drawn(tow: TowHistory) -> list[Panel]:
+def present_panels(tow: TowHistory) -> list[Panel]:
     """Panels for which the bag holds anything."""
     return [
         panel
@@ -99,7 +99,7 @@ def drawn(tow: TowHistory) -> list[Panel]:
 def left_out(tow: TowHistory) -> list[str]:
     """Sentence on all that is missing in the histories, none where nothing is."""
     sentences = []
-    shown = drawn(tow)
+    shown = present_panels(tow)
     if missing := [_plain(panel) for panel in PANELS if panel not in shown]:
         sentences.append(f'Not in the bag, so not drawn: {", ".join(missing)}.')
     for kind, there in (('Not measured', tow.measured), ('Truth is missing', tow.truth)):
@@ -122,7 +122,7 @@ def _plain(panel: Panel) -> str:
 
 def history_figure(tow: TowHistory) -> Figure:
     """Draw all panels of which the bag holds anything, over the same minutes."""
-    panels = drawn(tow)
+    panels = present_panels(tow)
     rows = (len(panels) + 1) // 2
     figure = Figure(figsize=(12.0, 0.9 + 2.0 * rows), layout='constrained')
     grid = figure.subplots(rows, 2, sharex=True, squeeze=False)

@@ -12,9 +12,10 @@ from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.time import SECOND
-from trawl_ros.messages.from_messages import to_sample, winch_truth
+from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.rotations import about_z, to_angles
 from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.messages.truth_from_messages import winch_truth
 from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.records.samples import (
     AttitudeSample,
@@ -173,7 +174,7 @@ class _Rows:
                 del rows[1::2]
 
 
-def read_tow(path: Path, depth_at: Callable[[float], float], namespace: str) -> TowHistory:
+def read_history(path: Path, depth_at: Callable[[float], float], namespace: str) -> TowHistory:
     """Read the series for the figures of a bag.
 
     Parameters

@@ -21,7 +21,7 @@ def sonar_figure(picture: SonarPicture, name: str) -> Figure:
     figure = Figure(figsize=(7.4, 7.4), layout='constrained')
     axes = figure.subplots()
     prepare(axes, picture)
-    draw(axes, picture)
+    draw_sonar(axes, picture)
     axes.set_title(f'{name}, sweep from {style.clock(picture.time)} on', parse_math=False)
     handles, labels = axes.get_legend_handles_labels()
     if handles:
@@ -49,7 +49,7 @@ def prepare(axes: Axes, picture: SonarPicture) -> None:
         )
 
 
-def draw(axes: Axes, picture: SonarPicture) -> list[Artist]:
+def draw_sonar(axes: Axes, picture: SonarPicture) -> list[Artist]:
     """Draw echoes, reading and truth."""
     reach = picture.scan.max_range
     drawn: list[Artist] = [

@@ -12,7 +12,7 @@ from trawl_ros.records.topics import PICTURES
 from trawl_ros.scenario.run import Trial
 
 
-def recorded(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
+def recorded_messages(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
     """Tow a trial to its end; give each stamp (ns) with all messages its scenario records."""
     scenario = trial.scenario
     suite = InstrumentSuite(

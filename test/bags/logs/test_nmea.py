@@ -8,7 +8,7 @@ import pytest
 from pynmeagps.nmeahelpers import calc_checksum
 
 from trawl_ros.bags.logs.nmea import import_nmea
-from trawl_ros.bags.logs.nmea_times import spread
+from trawl_ros.bags.logs.nmea_times import spread_stamps
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import LogError
 from trawl_ros.messages.from_messages import to_sample
@@ -220,7 +220,7 @@ def test_headings_between_two_times_are_spread_over_the_interval(run):
 
 def test_a_pause_of_the_clock_does_not_spread_readings_over_it():
     moments = [0, SECOND, 2 * SECOND, 600 * SECOND]
-    assert spread(moments, [(2, 'HE'), (2, 'HE')]) == [2 * SECOND, 2 * SECOND + SECOND // 2]
+    assert spread_stamps(moments, [(2, 'HE'), (2, 'HE')]) == [2 * SECOND, 2 * SECOND + SECOND // 2]
 
 
 def test_of_two_talkers_the_busier_one_is_heard_or_who_the_mapping_names(run, tmp_path):

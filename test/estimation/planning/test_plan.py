@@ -25,7 +25,7 @@ from trawl_ros.estimation.planning.information import (
     information_of,
 )
 from trawl_ros.estimation.planning.limits import limits_of
-from trawl_ros.estimation.planning.plan import TrialPlan, plan_trial
+from trawl_ros.estimation.planning.plan import TrialPlan, plan_for
 from trawl_ros.estimation.planning.search import MOST_VISITS, Designer, shortfall
 from trawl_ros.estimation.planning.states import Explorer, Limits, Manoeuvre
 from trawl_ros.estimation.planning.windows import imagined_windows
@@ -47,7 +47,7 @@ def record(coarse_gear):
 
 @pytest.fixture(scope='module')
 def plan(record) -> TrialPlan:
-    return plan_trial(record, hours=1.2, limits=FEW)
+    return plan_for(record, hours=1.2, limits=FEW)
 
 
 def test_the_time_is_used_and_not_overdrawn(plan):
@@ -131,9 +131,9 @@ def test_tension_and_seabed_keep_manoeuvres_away(plan, record):
 
 def test_too_little_time_and_nothing_to_tow_are_said(record):
     with pytest.raises(TrawlError, match=r'0.1 h are time for 0 of at least 2 legs'):
-        plan_trial(record, hours=0.1, limits=Limits((200.0,), (2.5,), ()))
+        plan_for(record, hours=0.1, limits=Limits((200.0,), (2.5,), ()))
     with pytest.raises(TrawlError, match=r'none of 1 manoeuvres, 30 to 30 m .* expected one'):
-        plan_trial(record, limits=Limits((30.0,), (2.1,), ()))
+        plan_for(record, limits=Limits((30.0,), (2.1,), ()))
 
 
 def test_windows_of_one_state_share_what_stays_wrong(plan):

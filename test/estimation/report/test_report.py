@@ -13,9 +13,9 @@ from rich.console import Console
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.report.figures import drawings
 from trawl_ros.estimation.report.holdout import hold_out
-from trawl_ros.estimation.report.page import page, write_report
+from trawl_ros.estimation.report.page import report_page, write_report
 from trawl_ros.estimation.report.report import report
-from trawl_ros.estimation.report.residuals import residuals, solve
+from trawl_ros.estimation.report.residuals import residuals, solve_windows
 from trawl_ros.estimation.report.result import result
 from trawl_ros.estimation.report.spectrum import spectrum
 from trawl_ros.estimation.report.table import (
@@ -122,7 +122,7 @@ def test_residuals_are_measured_less_modelled(sea, model, prior, windows):
     exact = sea.trial_windows(model, np.random.default_rng(0), noise=0.0)
     for window in exact:
         window.means['vertical_opening'] += 3.0
-    parts = solve(fitted(sea, model, prior, exact).estimator, sea.TRUTH)
+    parts = solve_windows(fitted(sea, model, prior, exact).estimator, sea.TRUTH)
     found = {row.channel: row for row in residuals(parts)}
     opening, spread = found['vertical_opening'], found['door_spread']
     assert opening.mean == pytest.approx(3.0)
@@ -143,7 +143,7 @@ def test_a_state_without_steady_state_is_tried_once(sea, model, windows):
     repeated = [*windows[:2], *(replace(window, index=9 + window.index) for window in windows[:2])]
     fit = SimpleNamespace(windows=repeated, predictor=model, observables=sea.OBSERVABLES)
     model.stops_at, model.calls = sea.TRUTH[0] - 1.0, 0
-    assert solve(fit, sea.TRUTH) == [None] * 4
+    assert solve_windows(fit, sea.TRUTH) == [None] * 4
     # With unequal warps for one, and with equal ones, as a counter may be wrong.
     assert model.calls <= 2 * 2
 
@@ -160,7 +160,7 @@ def test_errors_as_stated_make_a_test_ratio_of_a_ninth(sea, model, windows):
             means = {name: means[name] + window.std(name) * rng.normal() for name in means}
             noisy.append(replace(window, means=means))
     fit = SimpleNamespace(windows=noisy, predictor=model, observables=sea.OBSERVABLES)
-    ratios = [row.test_ratio for row in residuals(solve(fit, sea.TRUTH))]
+    ratios = [row.test_ratio for row in residuals(solve_windows(fit, sea.TRUTH))]
     np.testing.assert_allclose(ratios, 1.0 / 9.0, rtol=0.25)
 
 
@@ -246,9 +246,9 @@ def test_the_page_needs_nothing_beside_it_and_begins_with_the_verdict(sea, tows,
     assert body.index(verdict(found).fit) < body.index('<h2>')
     assert body.index('900 m at 2.0 m/s') > body.index('What to tow next')
     assert REASONS['outlier'] in text
-    assert 'What to tow next' not in page(found, [])
+    assert 'What to tow next' not in report_page(found, [])
     named = replace(found, found={'outlier': '<script>'})
-    hostile = page(named, [], ['<script>'])
+    hostile = report_page(named, [], ['<script>'])
     assert '<script' not in hostile
     assert hostile.count('&lt;script&gt;') == 2
 

@@ -19,7 +19,7 @@ from trawl_ros.lab.studies.chaos.plan import REPERTOIRE, Plan, faults_of
 from trawl_ros.lab.studies.chaos.report import write_chaos
 from trawl_ros.lab.studies.chaos.rows import chaos_sections
 from trawl_ros.lab.studies.chaos.study import Chaos, run_chaos
-from trawl_ros.lab.studies.chaos.tow import Tow
+from trawl_ros.lab.studies.chaos.tow import DisturbedTow
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 NODES = ('sim_node', 'bag_recorder', 'winch_node', 'door_sensor_node', 'trawl_sonar_node',
@@ -37,7 +37,7 @@ def tow(value=1.0, **kwargs):
     memory = dict.fromkeys(NODES, 200.0)
     seen = Glance(3599.0, 80.0, memory, memory, {})
     bags = [Recording(Path('bag0'), 'killed', 9.0, 0.4, 100), Recording(Path('bag1'), messages=5)]
-    made = Tow(glances=[seen], recordings=bags, towed_s=3599.5, estimate=estimate(value))
+    made = DisturbedTow(glances=[seen], recordings=bags, towed_s=3599.5, estimate=estimate(value))
     return replace(made, **kwargs)
 
 

@@ -9,8 +9,8 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from trawl_ros.core.errors import MessageError  # noqa: E402
 from trawl_ros.lab.studies.hostile.attack import RANGE, unsound  # noqa: E402
-from trawl_ros.lab.studies.hostile.mutations import hostile  # noqa: E402
-from trawl_ros.lab.studies.hostile.report import rows_of  # noqa: E402
+from trawl_ros.lab.studies.hostile.mutations import hostile_bytes  # noqa: E402
+from trawl_ros.lab.studies.hostile.report import measured_rows  # noqa: E402
 from trawl_ros.lab.studies.hostile.study import STEPS, run_hostile  # noqa: E402
 from trawl_ros.messages.cdr import deserialize, serialize  # noqa: E402
 from trawl_ros.messages.commands import winch_command  # noqa: E402
@@ -28,7 +28,7 @@ def test_hostile_messages_are_of_many_kinds():
     unread, stamps, nonsense = 0, set(), 0
     for _ in range(500):
         try:
-            message = deserialize(hostile(sound, JOINTS, rng), JOINTS)
+            message = deserialize(hostile_bytes(sound, JOINTS, rng), JOINTS)
         except MessageError:
             unread += 1
             continue
@@ -53,6 +53,6 @@ def test_no_node_ends_and_nothing_moves_silently():
     steps = []
     found = run_hostile(2000, 7, steps.append, minutes=3.0)
     assert [step.done for step in steps] == list(range(STEPS + 1))
-    missed = [row for row in rows_of(found)[1:] if not row.ok]
+    missed = [row for row in measured_rows(found)[1:] if not row.ok]
     assert not missed
     assert found.moved.windows[0] > 0

@@ -14,8 +14,8 @@ from pynmeagps.nmeahelpers import calc_checksum
 
 from trawl_ros.bags.logs.clock import ClockReader
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, load_nmea_mapping
-from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, reading
-from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread
+from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, sample_of
+from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread_stamps
 from trawl_ros.bags.logs.writing import Imported, listed, write_samples
 from trawl_ros.bags.possible import impossible
 from trawl_ros.core.errors import LogError
@@ -176,7 +176,7 @@ class _Listening:
         for topic in self._takers[kind]:
             entry = self._mapping.topics[topic]
             try:
-                sample = reading(topic, sentence, entry, self._mapping)
+                sample = sample_of(topic, sentence, entry, self._mapping)
                 if why := impossible(sample(0)):
                     raise NoReading(why)
             except (NoReading, AttributeError) as reason:
@@ -202,5 +202,5 @@ class _Listening:
                 listened = ' and '.join(sorted(wanted))
                 self.left[f'{kind} of {one.talker} for {topic}, which {listened} tells'] += 1
         bare = [one for one in kept if one.stamp is None]
-        given = iter(spread(self._times.moments, [(one.moment, one.talker) for one in bare]))
+        given = iter(spread_stamps(self._times.moments, [(one.moment, one.talker) for one in bare]))
         return [one.sample(next(given) if one.stamp is None else one.stamp) for one in kept]

@@ -23,7 +23,7 @@ class NoReading(ValueError):
     """Sentence without a valid reading, by its status or by empty fields."""
 
 
-def reading(topic: str, sentence: Any, entry: NmeaTopic, mapping: NmeaMapping) -> SampleAt:
+def sample_of(topic: str, sentence: Any, entry: NmeaTopic, mapping: NmeaMapping) -> SampleAt:
     """Convert a parsed sentence into the sample of a topic.
 
     Parameters

@@ -72,7 +72,7 @@ class SentenceTimes:
         return min((datetime.combine(day, of_day) for day in days), key=lambda t: abs(t - now))
 
 
-def spread(moments: list[int], heard: list[tuple[int, Any]]) -> list[int]:
+def spread_stamps(moments: list[int], heard: list[tuple[int, Any]]) -> list[int]:
     """Assign stamps to sentences without a time.
 
     Parameters

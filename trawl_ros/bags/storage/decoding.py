@@ -18,7 +18,7 @@ from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.foreign import one_line, short
 from trawl_ros.core.limits import BAG_FIELDS, MESSAGE_OBJECTS
 from trawl_ros.messages.cdr import DECODING_ERRORS, STORE
-from trawl_ros.messages.cdr import definition as known_text
+from trawl_ros.messages.cdr import message_definition as known_text
 
 Decoder = Callable[[bytes], Any]
 """Turns bytes into a message, or raises `MessageError`."""

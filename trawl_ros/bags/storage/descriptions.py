@@ -53,7 +53,7 @@ class Descriptions:
         channel = self._channels.get(number)
         if number not in self._made and channel:
             schema = self._schemas.get(channel.schema_id)
-            self._made[number] = channel.topic, definition(channel, schema)
+            self._made[number] = channel.topic, channel_definition(channel, schema)
         return self._made.get(number)
 
     def lacking(self, numbers: Collection[int]) -> list[int]:
@@ -75,7 +75,7 @@ class Descriptions:
         return channel is not None and channel.schema_id in (0, *self._schemas)
 
 
-def definition(channel: Channel, schema: Schema | None) -> Definition:
+def channel_definition(channel: Channel, schema: Schema | None) -> Definition:
     """Definition of a channel, in the form common to all storages."""
     return Definition(
         type=schema.name if schema else '',

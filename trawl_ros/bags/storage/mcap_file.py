@@ -30,7 +30,7 @@ from trawl_ros.bags.storage.copies import find_copies
 from trawl_ros.bags.storage.descriptions import Descriptions, read_remains
 from trawl_ros.bags.storage.log_order import in_log_order
 from trawl_ros.bags.storage.mcap_output import LIBRARY
-from trawl_ros.bags.storage.mcap_scan import RECORD_START, walk
+from trawl_ros.bags.storage.mcap_scan import RECORD_START, scan_records
 from trawl_ros.bags.storage.recovery import recover, sample_messages
 from trawl_ros.bags.storage.stored import Definition, StatedTopics, Stored
 from trawl_ros.core.errors import BagError
@@ -266,7 +266,7 @@ class McapFile:
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Yield opcode, offset and length of each record before the end of data."""
-        for found in walk(stream, self._size, self._step_over):
+        for found in scan_records(stream, self._size, self._step_over):
             if found[0] != Opcode.DATA_END:
                 yield found
             elif not self.complete:

@@ -28,7 +28,7 @@ _BEFORE_COMPRESSION = 28
 _INDEX_HEAD = struct.Struct('<HI')
 
 
-def walk(
+def scan_records(
     stream: BinaryIO, size: int, report: Callable[[str, int], None]
 ) -> Iterator[tuple[int, int, int]]:
     """Give opcode, offset and length of each record, up to and with the end of data.

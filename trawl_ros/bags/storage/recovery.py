@@ -13,7 +13,7 @@ from typing import Any
 from mcap.records import Channel, Message, Schema
 
 from trawl_ros.bags.storage.decoding import BagTypes
-from trawl_ros.bags.storage.descriptions import Description, definition
+from trawl_ros.bags.storage.descriptions import Description, channel_definition
 from trawl_ros.bags.storage.stored import Definition, StatedTopics, describe
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.limits import RECOVERED_CHANNELS
@@ -157,7 +157,7 @@ class _Recovery:
             else:
                 said, witness = self._claimed(channel), 'nothing'
             if said and self._decode(number, said):
-                qos = said.qos or definition(channel, None).qos
+                qos = said.qos or channel_definition(channel, None).qos
                 why = f'as damaged parts of the file say and {witness} confirms'
                 fitting[topic] = replace(said, qos=qos), why
         if len(fitting) == 1:
@@ -224,7 +224,7 @@ class _Recovery:
 
     def _claimed(self, channel: Channel) -> Definition | None:
         """Give a strange topic's definition, if there is one and its hash is right."""
-        found = (definition(channel, schema) for schema in self._schemas[channel.schema_id])
+        found = (channel_definition(channel, schema) for schema in self._schemas[channel.schema_id])
         return next(filter(self._has_right_hash, found), None)
 
     def _has_right_hash(self, said: Definition) -> bool:

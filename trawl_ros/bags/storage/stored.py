@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from mcap.records import Message
 
 from trawl_ros.core.errors import BagError
-from trawl_ros.messages.cdr import STORE, definition, type_hash
+from trawl_ros.messages.cdr import STORE, message_definition, type_hash
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def describe(type_name: str, qos: str) -> Definition:
         type=type_name,
         message_encoding='cdr',
         schema_encoding='ros2msg',
-        text=definition(type_name).encode(),
+        text=message_definition(type_name).encode(),
         qos=qos,
         type_hash=type_hash(type_name),
     )

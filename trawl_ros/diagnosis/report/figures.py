@@ -65,7 +65,7 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
                 'The coefficients of the boards with and without '
                 f'{diagnosis.added_as}, in standard deviations of the prior: what moves had been '
                 'bent to hide it.',
-                coefficients_figure(diagnosis), GAP,
+                coefficient_shifts_figure(diagnosis), GAP,
             )
         )  # fmt: skip
     return made
@@ -167,7 +167,7 @@ def gap_figure(holdout: HoldoutComparison, added: str) -> Figure:
     return figure
 
 
-def coefficients_figure(diagnosis: Diagnosis) -> Figure:
+def coefficient_shifts_figure(diagnosis: Diagnosis) -> Figure:
     """Coefficients of the boards with and without the effect."""
     base, added = diagnosis.base, diagnosis.added
     assert base is not None

@@ -172,7 +172,7 @@ class TowErrors:
     model: FloatArray
 
 
-def spread(linear: Linearised, values: FloatArray) -> FloatArray:
+def in_all_channels(linear: Linearised, values: FloatArray) -> FloatArray:
     """Rows of a window's channels scattered among all channels, 0 for those it has not.
 
     Parameters
@@ -217,7 +217,7 @@ def _of_one_tow(
     scheme: Scheme,
 ) -> TowErrors:
     present = np.array([[name in linear.channels for name in MEASURED] for linear in linearised])
-    by_inputs = np.array([spread(linear, linear.by_inputs) for linear in linearised])
+    by_inputs = np.array([in_all_channels(linear, linear.by_inputs) for linear in linearised])
     own = np.array(
         [
             [_own_std(linear, name, in_state, usual, scheme) for name in MEASURED]
@@ -278,12 +278,12 @@ def _unsettled(linear: Linearised, in_state: Mapping[int, int], scheme: Scheme) 
     depth = linear.window.means.get('net_depth', 0.0)
     # The windows of one state come to rest together.
     size = scheme.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
-    return spread(linear, size * linear.slow)
+    return in_all_channels(linear, size * linear.slow)
 
 
 def _calibration(linear: Linearised, scheme: Scheme) -> FloatArray:
     # An input read too large makes the prediction differ, not the reading.
-    columns = -spread(linear, linear.by_inputs) @ _of_inputs(linear, scheme)
+    columns = -in_all_channels(linear, linear.by_inputs) @ _of_inputs(linear, scheme)
     for column, term in enumerate(TERMS):
         if term.channel in linear.channels:
             columns[MEASURED.index(term.channel), column] = _size(linear, term, scheme)
@@ -317,4 +317,4 @@ def _model(linear: Linearised, scheme: Scheme) -> FloatArray:
         columns = np.hstack((columns, scheme.model_trend * longer * columns))
     if not scheme.net_std.any():
         return columns
-    return np.hstack((columns, spread(linear, linear.by_net) * scheme.net_std))
+    return np.hstack((columns, in_all_channels(linear, linear.by_net) * scheme.net_std))

@@ -12,7 +12,7 @@ from trawl_ros.estimation.fit.error_terms import (
     GROUPS,
     Scheme,
     TowErrors,
-    spread,
+    in_all_channels,
     tow_errors,
 )
 from trawl_ros.estimation.fit.estimate import Posterior, posterior_of
@@ -89,7 +89,7 @@ class Fit:
     def residual(self) -> FloatArray:
         """Residuals (windows, k), measured minus predicted, to first order; 0 where unmeasured."""
         rows = [
-            spread(linear, linear.measured - linear.predicted(self.coefficients))
+            in_all_channels(linear, linear.measured - linear.predicted(self.coefficients))
             for linear in self.windows
         ]
         return np.array(rows).reshape(-1, len(GROUP_OF))
@@ -109,7 +109,8 @@ class Fit:
     @cached_property
     def jacobian(self) -> FloatArray:
         """Sensitivities (windows, k, 12) per prior std."""
-        rows = [spread(linear, linear.by_coefficients * self.prior.std) for linear in self.windows]
+        std = self.prior.std
+        rows = [in_all_channels(linear, linear.by_coefficients * std) for linear in self.windows]
         return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior))
 
     @cached_property

@@ -94,7 +94,7 @@ class TrialPlan:
     sweeps: tuple[SweepTrial, ...]
 
 
-def plan_trial(
+def plan_for(
     gear: GearRecord,
     *,
     hours: float = 6.0,

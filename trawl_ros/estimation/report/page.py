@@ -41,10 +41,10 @@ def write_report(report: Report, folder: Path, advice: Sequence[str] = ()) -> No
     made_folder(folder)
     write_json(folder / 'identification.json', result(report), indent=2)
     pictures = embedded(folder, draw(folder, drawings(report)))
-    write_text(folder / PAGE, page(report, pictures, advice))
+    write_text(folder / PAGE, report_page(report, pictures, advice))
 
 
-def page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()) -> str:
+def report_page(report: Report, pictures: Iterable[Picture], advice: Sequence[str] = ()) -> str:
     """Render the page as HTML.
 
     Parameters

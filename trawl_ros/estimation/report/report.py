@@ -22,7 +22,12 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, objective, 
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
 from trawl_ros.estimation.report.holdout import HeldOut, hold_out
-from trawl_ros.estimation.report.residuals import ChannelResiduals, innovations, residuals, solve
+from trawl_ros.estimation.report.residuals import (
+    ChannelResiduals,
+    innovations,
+    residuals,
+    solve_windows,
+)
 from trawl_ros.estimation.report.spectrum import Spectrum, spectrum
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
@@ -205,7 +210,7 @@ def report(
         raise TrawlError(identification.why_not() or 'nothing is estimated')
     windows, weight = estimator.windows, estimator.options.prior_weight
     number = 1 + max(window.tow for window in windows)
-    at_end = solve(estimator, estimate.values, estimator.fit.net)
+    at_end = solve_windows(estimator, estimate.values, estimator.fit.net)
     return Report(
         estimate=estimate,
         prior=estimator.prior,
@@ -216,10 +221,10 @@ def report(
         windows=windows,
         tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
         measured=stack([paper_values(window.means) for window in windows]),
-        at_start=_values(solve(estimator, estimator.prior.start)),
+        at_start=_values(solve_windows(estimator, estimator.prior.start)),
         at_end=_values(at_end),
         held_out=hold_out(estimator, folds, on_progress=on_progress),
-        at_truth=None if truth is None else _values(solve(estimator, np.asarray(truth))),
+        at_truth=None if truth is None else _values(solve_windows(estimator, np.asarray(truth))),
         residuals=residuals(at_end),
         innovations=innovations(identification.course),
         course=tuple(identification.course),

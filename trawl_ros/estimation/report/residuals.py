@@ -68,7 +68,7 @@ class ChannelResiduals:
         return ljung_box([self.scaled[self.tows == tow] for tow in np.unique(self.tows)])
 
 
-def solve(
+def solve_windows(
     estimator: Estimator, coefficients: FloatArray, net: FloatArray | None = None
 ) -> list[Linearised | None]:
     """Solve the model at the inputs of each window, from the nearest one already solved.
@@ -117,7 +117,7 @@ def residuals(linearised: Sequence[Linearised | None]) -> tuple[ChannelResiduals
     Parameters
     ----------
     linearised
-        From `solve`, at the estimate.
+        From `solve_windows`, at the estimate.
     """
     rows: dict[str, list[tuple[int, int, float, float]]] = {}
     for i, linear in enumerate(linearised):

@@ -10,7 +10,7 @@ from trawl_ros.estimation.windows.buffers import ChannelBuffer
 from trawl_ros.estimation.windows.operation import Unheld
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.estimation.windows.statistics import error_of_mean, longest_run, outliers, trend
-from trawl_ros.estimation.windows.unit_errors import unit_of
+from trawl_ros.estimation.windows.unit_errors import plausible_unit
 from trawl_ros.estimation.windows.watermark import NANO
 from trawl_ros.records.channels import Channel
 
@@ -71,7 +71,7 @@ def channel_mean(
 
 
 def _outside(where: str, channel: Channel, outside: FloatArray) -> Unheld:
-    unit, reads = unit_of(outside, channel), float(np.median(outside))
+    unit, reads = plausible_unit(outside, channel), float(np.median(outside))
     if unit is not None:
         return Unheld(
             'wrong unit',

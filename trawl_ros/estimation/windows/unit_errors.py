@@ -81,7 +81,7 @@ def towable(means: Mapping[str, float]) -> bool:
     return TOWING[0] <= means['speed'] <= TOWING[1]
 
 
-def unit_of(outside: FloatArray, channel: Channel) -> str | None:
+def plausible_unit(outside: FloatArray, channel: Channel) -> str | None:
     """Name the unit in which values (n,), all outside a channel's range, would be plausible."""
     if np.any((outside >= channel.low) & (outside <= channel.high)):
         return None

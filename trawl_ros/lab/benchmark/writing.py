@@ -24,7 +24,7 @@ class MeasuredModule:
     seconds: float
 
 
-def write_report(
+def write_benchmark(
     folder: Path, measured: Sequence[MeasuredModule], *, small: bool
 ) -> list[MeasuredValue]:
     """Write ``benchmark.json``, ``.md``, ``.html`` and figures into a folder; return the rows."""

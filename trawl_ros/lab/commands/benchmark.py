@@ -9,7 +9,7 @@ from trawl_ros.cli.options import FORCE_OPTION, REPORT_OPTION
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.lab.benchmark.modules import NAMES, TITLES, check_names, measure
-from trawl_ros.lab.benchmark.writing import NAME, MeasuredModule, write_report
+from trawl_ros.lab.benchmark.writing import NAME, MeasuredModule, write_benchmark
 from trawl_ros.lab.commands.outcome import print_missed, print_reached, stoppable
 
 
@@ -39,4 +39,4 @@ def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None
                 wanted = f', asked for {row.wanted}' if row.target is not None else ''
                 console.print(f'{name}: {row.what}: {row.figure}{wanted}', markup=False)
             print_missed(findings.rows, console)
-    print_reached(write_report(out, measured, small=small), out / f'{NAME}.md')
+    print_reached(write_benchmark(out, measured, small=small), out / f'{NAME}.md')

@@ -26,7 +26,7 @@ from trawl_ros.model.water import build_water
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure
 from trawl_ros.plots.moments import GEAR, read_moments
-from trawl_ros.plots.reading import read_tow
+from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -204,7 +204,7 @@ def _gear_file(scenario: Scenario) -> str:
 
 
 def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
-    read = read_tow(folder.bag, build_water(scenario.plant).depth, NAMESPACE)
+    read = read_history(folder.bag, build_water(scenario.plant).depth, NAMESPACE)
     tow = replace(read, name=scenario.path.stem)
     write_figure(folder.path / 'history.png', history_figure(tow), DPI)
     (end,) = read_moments(folder.bag, tow, [tow.duration_s], NAMESPACE, [GEAR])

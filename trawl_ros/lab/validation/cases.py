@@ -58,7 +58,7 @@ class ValidationCase:
 NAMES: tuple[str, ...] = tuple(name for names in SECTIONS.values() for name in names)
 
 
-def section_of(name: str) -> str:
+def report_section(name: str) -> str:
     """The section a case belongs to.
 
     Raises
@@ -74,7 +74,7 @@ def section_of(name: str) -> str:
 
 def load_case(name: str) -> ValidationCase:
     """Import one case."""
-    module = import_module(f'trawl_ros.lab.validation.{section_of(name)}.{name}')
+    module = import_module(f'trawl_ros.lab.validation.{report_section(name)}.{name}')
     case = module.CASE
     assert isinstance(case, ValidationCase)
     return case

@@ -13,7 +13,7 @@ from trawl_ros.core.files import empty_folder, finite
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, Page, Section, write_page
-from trawl_ros.lab.validation.cases import NAMES, TITLES, load_case, section_of
+from trawl_ros.lab.validation.cases import NAMES, TITLES, load_case, report_section
 from trawl_ros.report.pictures import draw
 
 PROCESS = multiprocessing.get_context('spawn')
@@ -76,7 +76,7 @@ def validate(
     """
     folder, names = Path(out), tuple(dict.fromkeys(cases)) or NAMES
     for name in names:
-        section_of(name)
+        report_section(name)
     empty_folder(folder, force=force)
     finished: list[Section] = []
     for case in run_cases(names, folder, small=small, workers=workers):
@@ -151,7 +151,7 @@ def _section(name: str, findings: Findings, seconds: float, folder: Path = Path(
         draw(folder, findings.drawings, f'figures/{name}_'),
         findings.tables,
         findings.text,
-        TITLES[section_of(name)],
+        TITLES[report_section(name)],
         name,
         f'{COMMAND} {name}',
         seconds,

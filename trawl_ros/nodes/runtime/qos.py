@@ -33,7 +33,7 @@ LARGE_DEPTH = 60
 is held in memory."""
 
 
-def recorded(type_name: str) -> QoSProfile:
+def recorder_profile(type_name: str) -> QoSProfile:
     """Return the profile of a recorder of messages of a type."""
     if type_name in LARGE_TYPES:
         return _profile(LARGE_DEPTH, DurabilityPolicy.VOLATILE)

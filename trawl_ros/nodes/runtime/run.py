@@ -40,7 +40,7 @@ REFUSAL_WIDTH = 400
 """Signs of what ROS 2 says, which may hold the path of a file."""
 
 
-class _Stop:
+class _StopSignals:
     """Counter of SIGINT and SIGTERM while entered."""
 
     def __init__(self) -> None:
@@ -49,7 +49,7 @@ class _Stop:
     def _note(self, number: int, frame: FrameType | None) -> None:
         self.wishes += 1
 
-    def __enter__(self) -> '_Stop':
+    def __enter__(self) -> '_StopSignals':
         self._before = {
             number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)
         }
@@ -78,7 +78,7 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
     """
     arguments = list(sys.argv if args is None else args)
     program = Path(arguments[0]).name if arguments else 'trawl_ros'
-    with _Stop() as stop:
+    with _StopSignals() as stop:
         try:
             _open_ros(arguments)
             unknown = remove_ros_args(arguments)[1:]
@@ -126,7 +126,7 @@ def _refusals() -> Iterator[None]:
         ) from reason
 
 
-def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
+def _spin(make: Callable[[], TrawlNode], stop: _StopSignals) -> int:
     with _refusals():
         node = make()
     node.introduce()
@@ -144,7 +144,7 @@ def _spin(make: Callable[[], TrawlNode], stop: _Stop) -> int:
     return node.exit_code or 0
 
 
-def _drain(executor: Executor, node: TrawlNode, stop: _Stop) -> None:
+def _drain(executor: Executor, node: TrawlNode, stop: _StopSignals) -> None:
     """Process messages on their way, until none come or patience ends, or by a second signal."""
     wishes = stop.wishes
     end = time.monotonic() + LONGEST_DRAIN_S

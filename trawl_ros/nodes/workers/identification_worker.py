@@ -34,7 +34,7 @@ class _Reset:
 
 
 @dataclass(frozen=True)
-class _Stop:
+class _StopRequest:
     """Request to end the thread."""
 
 
@@ -56,7 +56,7 @@ class Finish:
             yield
 
 
-Work = Sample | Finish | _Look | _Reset | _Stop
+Work = Sample | Finish | _Look | _Reset | _StopRequest
 
 
 class IdentificationWorker(Thread):
@@ -132,7 +132,7 @@ class IdentificationWorker(Thread):
 
     def stop(self) -> None:
         """End the thread after its queued work, and wait for it."""
-        self._queue.put(_Stop())
+        self._queue.put(_StopRequest())
         self.join()
 
     def run(self) -> None:
@@ -143,7 +143,7 @@ class IdentificationWorker(Thread):
             except Empty:
                 self._grant()
                 continue
-            if isinstance(work, _Stop):
+            if isinstance(work, _StopRequest):
                 if self._wishes:
                     self._grant()
                 return
@@ -160,7 +160,7 @@ class IdentificationWorker(Thread):
                 self._tell()
             case _Look():
                 self._look()
-            case _Stop():
+            case _StopRequest():
                 pass
             case _:
                 self._attempt('estimating', lambda: self._use(work))

@@ -21,7 +21,7 @@ from trawl_ros.bags.reader import summarise
 from trawl_ros.bags.repair import repair_bag
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.messages.cdr import definition
+from trawl_ros.messages.cdr import message_definition
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS
 from trawl_ros.records.topics import absolute, find_topic
 
@@ -41,7 +41,7 @@ CONSTANTS = ('1', '((((1))))', '1 << 30000000000', '-1', '9' * 5000, '1/0', 'X',
 @cache
 def texts(name: str) -> SearchStrategy[tuple[str, bytes]]:
     """Encodings with definitions of a type: its own, damaged, made of hostile fields, or IDL."""
-    own = definition(name).encode()
+    own = message_definition(name).encode()
     lines = st.lists(st.sampled_from(FIELDS), max_size=6).map('\n'.join).map(str.encode)
     idl = st.tuples(st.sampled_from(CONSTANTS), st.sampled_from(('B', 'T', 'dataclass'))).map(
         lambda made: (

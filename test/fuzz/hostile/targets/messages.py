@@ -16,7 +16,7 @@ from hostile.targets.bag_files import texts
 from trawl_ros.bags.storage.decoding import BagTypes
 from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages import commands, diagnostics, estimates, from_messages
+from trawl_ros.messages import commands, diagnostics, estimates, from_messages, truth_from_messages
 from trawl_ros.messages.cdr import STORE, deserialize, serialize
 from trawl_ros.messages.fields import not_finite
 from trawl_ros.records.topics import TOPICS, WINCH_NAMES
@@ -103,9 +103,9 @@ def _readers(topic: str) -> list[Any]:
     found: list[Any] = [lambda message: from_messages.to_sample(topic, message)]
     match kind:
         case 'nav_msgs/msg/Odometry':
-            found.append(lambda message: from_messages.door_truth(topic, message))
+            found.append(lambda message: truth_from_messages.door_truth(topic, message))
         case 'sensor_msgs/msg/JointState':
-            found.append(lambda message: from_messages.winch_truth(topic, message))
+            found.append(lambda message: truth_from_messages.winch_truth(topic, message))
             found += [commands.read_winch_command, estimates.read_innovations]
         case 'geometry_msgs/msg/TwistStamped':
             found.append(commands.read_vessel_command)
@@ -116,9 +116,9 @@ def _readers(topic: str) -> list[Any]:
         case 'std_msgs/msg/Float64MultiArray':
             found += [estimates.read_estimate, estimates.read_covariance]
         case 'sensor_msgs/msg/PointCloud2':
-            found.append(from_messages.schools_truth)
+            found.append(truth_from_messages.schools_truth)
         case 'geometry_msgs/msg/Vector3Stamped':
-            found.append(from_messages.seabed_truth)
+            found.append(truth_from_messages.seabed_truth)
     return found
 
 

@@ -10,7 +10,7 @@ from trawl_ros.lab.studies.discrepancy.diagnosing import _of_bags
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import classes
-from trawl_ros.lab.studies.discrepancy.trials.course import quasi_steady, settling
+from trawl_ros.lab.studies.discrepancy.trials.course import quasi_steady, settling_time
 from trawl_ros.lab.studies.discrepancy.trials.following import proposed, tow_on
 from trawl_ros.lab.studies.discrepancy.trials.making import likelihood_of, make
 from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, BlindStudyPlan
@@ -45,7 +45,7 @@ def test_states_follow_each_other_and_are_held_until_they_are_steady(plant):
     assert np.all(np.diff(course.times) > 0.0)
     assert course.heading == pytest.approx(np.pi)
     for moment, look in zip(course.moments, looks, strict=True):
-        for time in (moment - settling(*look.state), moment, moment + 60.0):
+        for time in (moment - settling_time(*look.state), moment, moment + 60.0):
             inputs, values = course.at(np.array([time]))
             np.testing.assert_allclose(inputs[0], look.inputs)
             np.testing.assert_allclose(values[0], look.values)

@@ -10,7 +10,7 @@ import pytest
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.studies.robustness.changed_values import changed, numbers, verdict
+from trawl_ros.lab.studies.robustness.changed_values import changed, numbers, tow_outcome
 from trawl_ros.lab.studies.robustness.random_commands import commanded_hour
 from trawl_ros.lab.studies.robustness.report import write_robustness
 from trawl_ros.lab.studies.robustness.study import RobustnessPlan, kept, run_robustness
@@ -31,7 +31,7 @@ def test_numbers_of_a_gear_are_changed_one_at_a_time(gear: GearRecord) -> None:
 
 
 def test_a_number_no_gear_may_have_is_no_failure(gear: GearRecord) -> None:
-    outcome, sentence = verdict(gear, 'netting.wing_edge_hanging', 1.2, 500.0)
+    outcome, sentence = tow_outcome(gear, 'netting.wing_edge_hanging', 1.2, 500.0)
     assert outcome == 'impossible'
     assert 'wing_edge_hanging' in sentence
 

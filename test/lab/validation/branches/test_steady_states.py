@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.validation.branches.collapsed_starts import attitudes, collapsed_shapes, tally
-from trawl_ros.lab.validation.branches.continuation import Place, Search, judged, walk
+from trawl_ros.lab.validation.branches.collapsed_starts import (
+    collapsed_shapes,
+    tally,
+    turned_boards,
+)
+from trawl_ros.lab.validation.branches.continuation import Place, Search, continue_branches, judged
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.lab.validation.branches.lattices import Lattice, speed_lattice
 from trawl_ros.lab.validation.branches.steady_states import CASE
@@ -56,7 +60,7 @@ def test_a_place_no_neighbour_leads_to_is_searched_cold(model: GearModel) -> Non
         (0, 0): Place(model, OperatingPoint(500.0, 500.0, 2.1)),
         (0, 2): Place(model, OperatingPoint(500.0, 500.0, 2.2)),
     }
-    answers = walk(places, (0, 0), also_cold=())
+    answers = continue_branches(places, (0, 0), also_cold=())
     assert [answer.verdict for answer in answers.values()] == ['usable', 'usable']
 
 
@@ -95,7 +99,7 @@ def test_a_jump_to_another_branch_is_noticed(lattice: Lattice) -> None:
 
 
 def test_boards_are_turned_as_named(good: Equilibrium) -> None:
-    both = attitudes((-5.0, 0.0))
+    both = turned_boards((-5.0, 0.0))
     # The port board's leading edge points inward, to starboard, and starboard's mirrors it.
     assert both[0][:, 0] == pytest.approx([np.cos(np.radians(5)), -np.sin(np.radians(5)), 0.0])
     assert both[1][:, 0] == pytest.approx([np.cos(np.radians(5)), np.sin(np.radians(5)), 0.0])

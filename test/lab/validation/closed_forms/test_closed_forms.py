@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_line, lying
 from trawl_ros.lab.validation.cases import SECTIONS, load_case
-from trawl_ros.lab.validation.closed_forms.board_law import compare
+from trawl_ros.lab.validation.closed_forms.board_law import compare_laws
 from trawl_ros.lab.validation.closed_forms.catenary import END, START, elastic_catenary
 from trawl_ros.lab.validation.closed_forms.energy_budget import WireHaul
 from trawl_ros.lab.validation.closed_forms.power import WORKS, Ledger, strain_energy
@@ -37,7 +37,7 @@ def test_a_coefficient_that_is_off_by_a_millionth_is_seen(key: str) -> None:
     board = right.board.model_copy(update={'coefficients': wrong})
     off = right.model_copy(update={'board': board})
     for gear, least, most in ((right, 0.0, 1e-10), (off, 1e-8, 1e-4)):
-        found = compare(gear, np.random.default_rng(1), within=True, paper=right)
+        found = compare_laws(gear, np.random.default_rng(1), within=True, paper=right)
         assert least <= max(found.force, found.moment) < most
 
 

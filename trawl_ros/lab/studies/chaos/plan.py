@@ -70,7 +70,7 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Fault:
+class InjectedFault:
     """Fault that happens ``at_s`` of the tow to a node or topic, for some wall time (s)."""
 
     at_s: float
@@ -82,7 +82,7 @@ class Fault:
         return f'{self.kind}, {self.target}'
 
 
-def faults_of(plan: Plan) -> list[Fault]:
+def faults_of(plan: Plan) -> list[InjectedFault]:
     """Return the faults on a tow, in order."""
     chance = np.random.default_rng(plan.seed)
     number = max(1, round(plan.hours * len(REPERTOIRE)))
@@ -95,7 +95,7 @@ def faults_of(plan: Plan) -> list[Fault]:
     for at_s, index in zip(times, order, strict=False):
         kind, target = REPERTOIRE[index]
         span = STOPPED_S if kind == 'stopped' else RUN_S
-        faults.append(Fault(at_s, kind, target, float(chance.uniform(*span))))
+        faults.append(InjectedFault(at_s, kind, target, float(chance.uniform(*span))))
     return faults
 
 

@@ -11,7 +11,7 @@ from trawl_ros.lab.studies.chaos.crew import Recording
 from trawl_ros.lab.studies.chaos.kills import Kills
 from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION
 from trawl_ros.lab.studies.chaos.study import Chaos
-from trawl_ros.lab.studies.chaos.tow import Tow
+from trawl_ros.lab.studies.chaos.tow import DisturbedTow
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 MOST_LOST_S = 1.0
@@ -91,7 +91,7 @@ def _lost(cut: Sequence[Recording], what: str) -> list[MeasuredValue]:
     ]
 
 
-def _estimate(calm: Tow, wild: Tow) -> list[MeasuredValue]:
+def _estimate(calm: DisturbedTow, wild: DisturbedTow) -> list[MeasuredValue]:
     windows = [
         MeasuredValue(
             f'windows of the {title} tow',
@@ -130,7 +130,7 @@ def _estimate(calm: Tow, wild: Tow) -> list[MeasuredValue]:
     ]
 
 
-def _memory(calm: Tow, wild: Tow) -> list[MeasuredValue]:
+def _memory(calm: DisturbedTow, wild: DisturbedTow) -> list[MeasuredValue]:
     if not calm.glances or not wild.glances:
         return []
     rows = []

@@ -8,7 +8,7 @@ from trawl_ros.core.files import made_folder
 from trawl_ros.core.progress import OnProgress
 from trawl_ros.lab.studies.chaos.kills import Kills, run_kills
 from trawl_ros.lab.studies.chaos.plan import Plan, faults_of
-from trawl_ros.lab.studies.chaos.tow import Tow, run_tow
+from trawl_ros.lab.studies.chaos.tow import DisturbedTow, run_tow
 
 
 @dataclass(frozen=True)
@@ -16,8 +16,8 @@ class Chaos:
     """Results of the tow without faults and with them, and of the killed recorders."""
 
     plan: Plan
-    calm: Tow
-    wild: Tow
+    calm: DisturbedTow
+    wild: DisturbedTow
     kills: Kills
 
 
@@ -42,6 +42,10 @@ def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
     """
     made_folder(folder)
     calm = run_tow(plan, [], 'undisturbed', folder, on_progress, stop)
-    wild = Tow() if stop() else run_tow(plan, faults_of(plan), 'chaos', folder, on_progress, stop)
+    wild = (
+        DisturbedTow()
+        if stop()
+        else run_tow(plan, faults_of(plan), 'chaos', folder, on_progress, stop)
+    )
     kills = Kills((), 0.0) if stop() else run_kills(plan, folder, on_progress, stop)
     return Chaos(plan, calm, wild, kills)

@@ -14,7 +14,13 @@ from trawl_ros.lab.running.chain import Glance, glance, watched_of
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 from trawl_ros.lab.studies.chaos.crew import Crew, Recording, looked_into
-from trawl_ros.lab.studies.chaos.plan import IDENTIFICATION, RECORDER, Fault, Plan, write_tow
+from trawl_ros.lab.studies.chaos.plan import (
+    IDENTIFICATION,
+    RECORDER,
+    InjectedFault,
+    Plan,
+    write_tow,
+)
 from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, write_coarse_gear
 
 if TYPE_CHECKING:
@@ -35,7 +41,7 @@ DISK_S = 15.0
 
 
 @dataclass
-class Tow:
+class DisturbedTow:
     """Result of a tow.
 
     ``done`` are the faults that happened; ``died`` has the last words of nodes that ended by
@@ -45,7 +51,7 @@ class Tow:
     """
 
     glances: list[Glance] = field(default_factory=list)
-    done: list[Fault] = field(default_factory=list)
+    done: list[InjectedFault] = field(default_factory=list)
     died: list[tuple[float, str]] = field(default_factory=list)
     mute: list[str] = field(default_factory=list)
     recordings: list[Recording] = field(default_factory=list)
@@ -57,12 +63,12 @@ class Tow:
 
 def run_tow(
     plan: Plan,
-    faults: list[Fault],
+    faults: list[InjectedFault],
     title: str,
     folder: Path,
     on_progress: OnProgress,
     stop: Callable[[], bool],
-) -> Tow:
+) -> DisturbedTow:
     """Tow for the hours of a plan, with its faults.
 
     Parameters
@@ -145,7 +151,11 @@ class _Turmoil:
     """Faults that are active at present."""
 
     def __init__(
-        self, crew: Crew, processes: Processes, environment: Mapping[str, str], faults: list[Fault]
+        self,
+        crew: Crew,
+        processes: Processes,
+        environment: Mapping[str, str],
+        faults: list[InjectedFault],
     ) -> None:
         self._crew = crew
         self._processes = processes
@@ -153,7 +163,7 @@ class _Turmoil:
         self._faults = faults
         self._over: tuple[float, ExitStack] | None = None
         self._full: float | None = None
-        self.tow = Tow()
+        self.tow = DisturbedTow()
         self.state = ''
 
     def look(self, data_s: float, now: float) -> None:
@@ -177,7 +187,7 @@ class _Turmoil:
             self._over[1].close()
             self._over = None
 
-    def _begin(self, fault: Fault, now: float) -> None:
+    def _begin(self, fault: InjectedFault, now: float) -> None:
         self.state = str(fault)
         self.tow.done.append(fault)
         stack = ExitStack()

@@ -11,7 +11,7 @@ from rclpy.executors import Executor
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
-from trawl_ros.lab.studies.hostile.mutations import hostile
+from trawl_ros.lab.studies.hostile.mutations import hostile_bytes
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.fields import not_finite
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
@@ -32,7 +32,7 @@ on without them after 10 s."""
 
 
 @dataclass
-class Tally:
+class AttackTally:
     """Tally of an attack on a node.
 
     ``sent`` hostile messages by topic; ``refused`` of them were counted; ``ended`` says why the
@@ -67,7 +67,7 @@ class Attack:
     """
 
     def __init__(self, node: TrawlNode, executor: Executor, stream: Stream, seed: int) -> None:
-        self.tally = Tally(node.get_name())
+        self.tally = AttackTally(node.get_name())
         self._node = node
         self._executor = executor
         self._rng = np.random.default_rng(seed)
@@ -112,7 +112,7 @@ class Attack:
         for number, index in enumerate(order):
             topic = self.topics[index]
             type_name, sound = examples[topic]
-            data = hostile(sound[int(self._rng.integers(len(sound)))], type_name, self._rng)
+            data = hostile_bytes(sound[int(self._rng.integers(len(sound)))], type_name, self._rng)
             self.tally.sent[topic] = self.tally.sent.get(topic, 0) + 1
             self._give(topic, data)
             if number % SPIN_EVERY == 0:
@@ -132,7 +132,7 @@ class Attack:
                 )
                 other, type_name, sound = self._stream[near]
                 self.tally.sent[other] = self.tally.sent.get(other, 0) + 1
-                self._give(other, hostile(sound, type_name, self._rng))
+                self._give(other, hostile_bytes(sound, type_name, self._rng))
             if number % SPIN_EVERY == 0:
                 self._spin()
 

@@ -21,7 +21,7 @@ LENGTHS = (0, 1, 2**16, 2**31 - 1, 2**32 - 1)
 MOST_ENTRIES = 2000
 
 
-def hostile(data: bytes, type_name: str, rng: Generator) -> bytes:
+def hostile_bytes(data: bytes, type_name: str, rng: Generator) -> bytes:
     """Make a hostile message of a sound one, as a draw has it."""
     kinds = (_flip, _cut, _append, _overwrite_length, _other_values, _other_stamp, _same)
     kind: Callable[[bytes, str, Generator], bytes] = kinds[

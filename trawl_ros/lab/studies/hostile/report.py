@@ -5,12 +5,12 @@ from pathlib import Path
 
 from trawl_ros.core.files import made_folder, write_json
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
-from trawl_ros.lab.studies.hostile.study import MOST_MOVED, Found
+from trawl_ros.lab.studies.hostile.study import MOST_MOVED, AttackResults
 
 REPORT = 'hostile_messages.json'
 
 
-def rows_of(found: Found) -> list[MeasuredValue]:
+def measured_rows(found: AttackResults) -> list[MeasuredValue]:
     """Give the figures, and what was asked of them."""
     tallies, moved = found.tallies, found.moved
     sent = sum(sum(tally.sent.values()) for tally in tallies) + moved.sent
@@ -61,9 +61,9 @@ def rows_of(found: Found) -> list[MeasuredValue]:
     ]
 
 
-def write_hostile(folder: Path, found: Found, seed: int) -> list[MeasuredValue]:
+def write_hostile(folder: Path, found: AttackResults, seed: int) -> list[MeasuredValue]:
     """Write ``hostile_messages.json`` into a folder; give its rows."""
-    rows = rows_of(found)
+    rows = measured_rows(found)
     nodes = {
         tally.node: {
             'sent': sum(tally.sent.values()),

@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter
 
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.estimation.fit.estimate import Estimate
-from trawl_ros.lab.studies.hostile.attack import Attack, Stream, Tally, examples_of
+from trawl_ros.lab.studies.hostile.attack import Attack, AttackTally, Stream, examples_of
 from trawl_ros.lab.studies.soak.long_tow import write_coarse_gear, write_long_tow
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.commands import fault_command, vessel_command, winch_command
@@ -45,7 +45,7 @@ from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
 from trawl_ros.nodes.vessel_node import VesselNode
 from trawl_ros.nodes.winch_node import WinchNode
 from trawl_ros.records.topics import absolute
-from trawl_ros.scenario.recording import recorded
+from trawl_ros.scenario.recording import recorded_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario
 
@@ -84,16 +84,16 @@ class Moved:
 
 
 @dataclass(frozen=True)
-class Found:
+class AttackResults:
     """Result of all attacks."""
 
-    tallies: tuple[Tally, ...]
+    tallies: tuple[AttackTally, ...]
     moved: Moved
 
 
 def run_hostile(
     count: int, seed: int, on_progress: OnProgress = ignore, minutes: float = MINUTES
-) -> Found:
+) -> AttackResults:
     """Attack each node with its part of a number of messages.
 
     Parameters
@@ -126,14 +126,14 @@ def run_hostile(
             step()
         moved = _moved(context, gear, stream, seed)
         step()
-    return Found(tuple(tallies), moved)
+    return AttackResults(tuple(tallies), moved)
 
 
 def sound_stream(folder: Path, gear: str, minutes: float) -> Stream:
     """Tow for a while; give all messages as they would be sent, with clock and commands."""
     scenario = load_scenario(write_long_tow(folder, gear, minutes / 60.0))
     found: list[tuple[str, str, bytes]] = []
-    for stamp, messages in recorded(Trial(scenario)):
+    for stamp, messages in recorded_messages(Trial(scenario)):
         others = [
             clock_message(stamp),
             winch_command(stamp, 380.0, 380.0),

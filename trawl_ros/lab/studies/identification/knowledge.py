@@ -5,7 +5,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
 from trawl_ros.estimation.fit.laws import QUANTITIES
-from trawl_ros.estimation.planning.plan import plan_trial
+from trawl_ros.estimation.planning.plan import plan_for
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least
@@ -28,7 +28,7 @@ LOOKED_AT: tuple[State, ...] = (
 
 def planning_rows(gear: str) -> list[MeasuredValue]:
     """Number of law quantities that a six-hour trial makes well known."""
-    plan = plan_trial(load_gear(gear), hours=HOURS)
+    plan = plan_for(load_gear(gear), hours=HOURS)
     limits = '; '.join(f'{name}: {what}' for name, what in plan.limits.items())
     rows = [
         MeasuredValue(

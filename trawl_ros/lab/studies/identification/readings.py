@@ -101,7 +101,7 @@ def wrong_by(part: float, chance: np.random.Generator) -> Sensors:
     return Sensors({name: 1.0 + part * chance.choice((-1.0, 1.0)) for name in KINDS})
 
 
-def tow_errors(
+def drawn_errors(
     sensors: Sensors, chance: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Draw offsets and errors of scale of all channels for a tow."""
@@ -142,7 +142,7 @@ def steady_windows(
     windows = []
     length_ns = round(WindowOptions.window_s * SECOND)
     for tow, looks in enumerate(tows, first_tow):
-        offset, scale = tow_errors(sensors, chance)
+        offset, scale = drawn_errors(sensors, chance)
         for look in looks:
             means, noise, counts = {}, {}, {}
             for name in NAMES:

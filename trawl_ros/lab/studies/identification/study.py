@@ -96,7 +96,7 @@ class EstimationStudyPlan:
 
 
 @dataclass(frozen=True)
-class Found:
+class StudyResult:
     """Result: all rows by section, and a figure of the trials."""
 
     sections: tuple[Section, ...]
@@ -111,7 +111,7 @@ def run_study(
     scheduler: str | None = None,
     force: bool = False,
     small: bool = False,
-) -> Found:
+) -> StudyResult:
     """Run the study, or the trials it lacks.
 
     Parameters
@@ -153,7 +153,7 @@ def run_study(
         if plan.live_s > 0.0:
             costs += live_rows(live(plan.live_s, folder / 'log', on_progress))
         sections.append(Section('Cost', costs))
-    return Found(tuple(sections), trials_figure(coverage, bound, prior))
+    return StudyResult(tuple(sections), trials_figure(coverage, bound, prior))
 
 
 def run_trials(

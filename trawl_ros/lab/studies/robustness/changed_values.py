@@ -61,7 +61,7 @@ def _scaled(value: object, way: list[str], factor: float) -> object:
     return {**value, way[0]: _scaled(value[way[0]], way[1:], factor)}
 
 
-def verdict(gear: GearRecord, key: str, factor: float, length: float) -> tuple[str, str]:
+def tow_outcome(gear: GearRecord, key: str, factor: float, length: float) -> tuple[str, str]:
     """Give the outcome of a tow of the changed gear, in a word and in a sentence."""
     try:
         steady_state(build_model(changed(gear, key, factor)), length, SPEED)

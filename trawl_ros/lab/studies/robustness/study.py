@@ -12,7 +12,7 @@ from trawl_ros.core.files import appending, made_folder, write_text
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.studies.robustness.changed_values import numbers, verdict
+from trawl_ros.lab.studies.robustness.changed_values import numbers, tow_outcome
 from trawl_ros.lab.studies.robustness.random_commands import commanded_hour
 from trawl_ros.model.gear_model import build_model
 
@@ -73,7 +73,7 @@ def run_robustness(
     names = [name for k, name in enumerate(_names(plan, gear)) if k % plan.shards == plan.shard - 1]
     if set(names) - done:
         # Compiling at first use is no time of a trial.
-        verdict(gear, next(numbers(gear)), 1.0, LENGTHS[0])
+        tow_outcome(gear, next(numbers(gear)), 1.0, LENGTHS[0])
     began = time.monotonic()
     file = folder / f'trials_{plan.shard}_of_{plan.shards}.jsonl'
     if file.is_file() and not (text := file.read_text(encoding='utf-8')).endswith('\n'):
@@ -131,6 +131,6 @@ def _trial(plan: RobustnessPlan, gear: GearRecord, name: str) -> RobustnessTrial
             hour.fallen_at_end,
         )
     key, _, factor, _, length = name.split()
-    outcome, sentence = verdict(gear, key, float(factor), float(length))
+    outcome, sentence = tow_outcome(gear, key, float(factor), float(length))
     seconds = time.process_time() - began
     return RobustnessTrial('values', name, plan.around, outcome, sentence, seconds)

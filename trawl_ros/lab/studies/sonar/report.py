@@ -13,7 +13,7 @@ from trawl_ros.core.files import finite
 from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.studies.sonar.study import SHOWN, STATES, SonarMeasurement, figures
 from trawl_ros.plots.records import SonarPicture
-from trawl_ros.plots.sonar import BACKGROUND, ECHOES, draw, prepare
+from trawl_ros.plots.sonar import BACKGROUND, ECHOES, draw_sonar, prepare
 from trawl_ros.report.pictures import Drawing
 
 REPORT = 'sonar.md'
@@ -39,7 +39,7 @@ def write_sonar(folder: Path, measured: Sequence[SonarMeasurement], sweeps: int)
         folder,
         page,
         [Section('The cases', tables=[_table(rows)])],
-        [Drawing('sonar', CAPTION, sonar_figure(measured))],
+        [Drawing('sonar', CAPTION, images_figure(measured))],
         record={'sweeps': sweeps, 'cases': rows},
     )
 
@@ -84,7 +84,7 @@ def _table(rows: Sequence[Mapping[str, Any]]) -> TextTable:
     )
 
 
-def sonar_figure(measured: Sequence[SonarMeasurement]) -> Figure:
+def images_figure(measured: Sequence[SonarMeasurement]) -> Figure:
     """Draw the image of the clear 500 m case as it is in the message, and those with company."""
     by_case = {m.case: m for m in measured}
     clear, dense, seabed = (by_case[case] for case in SHOWN)
@@ -97,7 +97,7 @@ def sonar_figure(measured: Sequence[SonarMeasurement]) -> Figure:
     ):
         picture = _picture(case, with_truth=with_truth)
         prepare(place, picture)
-        draw(place, picture)
+        draw_sonar(place, picture)
         place.set_ylim(-picture.scan.max_range, 20.0)
         place.set_title(title)
     scan, image = clear.scan, clear.image.image

@@ -35,7 +35,7 @@ SWING = 0.01
 
 
 @dataclass(frozen=True)
-class Sweep:
+class ParameterSweep:
     """A parameter to follow: its name and unit, start, scale and bounds."""
 
     name: str
@@ -48,10 +48,10 @@ class Sweep:
 
 
 @dataclass(frozen=True)
-class Curve:
+class BranchCurve:
     """A branch: its points, attack angle and inclination (°), growth (1/s) and eigenvalue."""
 
-    sweep: Sweep
+    sweep: ParameterSweep
     points: list[BranchPoint]
     attack: FloatArray
     inclination: FloatArray
@@ -64,7 +64,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Limit:
+class BranchLimit:
     """Limit on a branch: a fold, or a loss of stability and the part that moves in it."""
 
     kind: str
@@ -75,10 +75,10 @@ class Limit:
     inclination: float
 
 
-def sweeps(model: GearModel, lengths: Sequence[float], angles: bool) -> Iterator[Sweep]:
+def sweeps(model: GearModel, lengths: Sequence[float], angles: bool) -> Iterator[ParameterSweep]:
     """The branches to follow: over speed, warp length, and installation angles both ways."""
     for length in lengths:
-        yield Sweep(
+        yield ParameterSweep(
             f'speed at {length:g} m',
             'm/s',
             partial(_place, model, length),
@@ -90,7 +90,7 @@ def sweeps(model: GearModel, lengths: Sequence[float], angles: bool) -> Iterator
     if not angles:
         return
     for sign in (-1.0, 1.0):
-        yield Sweep(
+        yield ParameterSweep(
             f'warp length {"hauled" if sign < 0 else "veered"}',
             'm',
             partial(_hauled, model),
@@ -101,7 +101,7 @@ def sweeps(model: GearModel, lengths: Sequence[float], angles: bool) -> Iterator
         )
     for index, name in enumerate(ANGLES):
         for sign in (-1.0, 1.0):
-            yield Sweep(
+            yield ParameterSweep(
                 f'{name} {"<" if sign < 0 else ">"} 0',
                 '°',
                 partial(_turned, model, index),
@@ -127,7 +127,7 @@ def _turned(model: GearModel, index: int, degrees: float) -> tuple[GearModel, To
     return _place(turned, MIDDLE, SPEED)
 
 
-def followed(sweep: Sweep, most: int) -> Curve:
+def followed_branch(sweep: ParameterSweep, most: int) -> BranchCurve:
     """Follow a branch to its bounds, to where a board lies flat, or for ``most`` points."""
     model, tow = sweep.family(sweep.start)
     port, starboard = tow.lengths
@@ -144,7 +144,7 @@ def followed(sweep: Sweep, most: int) -> Curve:
     for here in points:
         values = stability(here.model, here.state, here.tow).eigenvalues
         worst.append(values[np.argmax(values.real)])
-    return Curve(
+    return BranchCurve(
         sweep,
         points,
         np.degrees([one.port_attack for one in seen]),
@@ -153,7 +153,7 @@ def followed(sweep: Sweep, most: int) -> Curve:
     )
 
 
-def limits(curve: Curve) -> Iterator[Limit]:
+def limits(curve: BranchCurve) -> Iterator[BranchLimit]:
     """Folds and changes of stability along a branch."""
     values, growth = curve.values, curve.worst.real
     for k in range(1, len(values)):
@@ -171,11 +171,13 @@ def limits(curve: Curve) -> Iterator[Limit]:
             yield _limit(curve, k, share, f'{way}, {kind}', rate, mode)
 
 
-def _limit(curve: Curve, k: int, share: float, kind: str, eigenvalue: complex, mode: str) -> Limit:
+def _limit(
+    curve: BranchCurve, k: int, share: float, kind: str, eigenvalue: complex, mode: str
+) -> BranchLimit:
     def between(values: FloatArray) -> float:
         return float(values[k - 1] + share * (values[k] - values[k - 1]))
 
-    return Limit(
+    return BranchLimit(
         kind,
         between(curve.values),
         eigenvalue,
@@ -188,7 +190,9 @@ def _limit(curve: Curve, k: int, share: float, kind: str, eigenvalue: complex, m
 def limit_findings(model: GearModel, *, small: bool) -> Findings:
     """Follow all branches of a gear and list what ends them; ``small`` takes one, on less of it."""
     lengths = (MIDDLE,) if small else (300.0, MIDDLE, 700.0)
-    curves = [followed(sweep, 20 if small else 60) for sweep in sweeps(model, lengths, not small)]
+    curves = [
+        followed_branch(sweep, 20 if small else 60) for sweep in sweeps(model, lengths, not small)
+    ]
     found = [(curve, list(limits(curve))) for curve in curves]
     return Findings(
         rows=tuple(_rows(found)),
@@ -209,7 +213,7 @@ def limit_findings(model: GearModel, *, small: bool) -> Findings:
     )
 
 
-def _rows(found: list[tuple[Curve, list[Limit]]]) -> Iterator[MeasuredValue]:
+def _rows(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Iterator[MeasuredValue]:
     """Speeds at which the branches over speed turn unstable."""
     for curve, ends in found:
         if curve.sweep.unit != 'm/s':
@@ -226,7 +230,7 @@ def _rows(found: list[tuple[Curve, list[Limit]]]) -> Iterator[MeasuredValue]:
         )
 
 
-def _table(found: list[tuple[Curve, list[Limit]]]) -> TextTable:
+def _table(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> TextTable:
     rows = []
     for curve, ends in found:
         values, unit = curve.values, curve.sweep.unit
@@ -250,7 +254,7 @@ def _table(found: list[tuple[Curve, list[Limit]]]) -> TextTable:
     return TextTable('Limits of the branches', head, tuple(rows))
 
 
-def _figure(found: list[tuple[Curve, list[Limit]]]) -> Figure:
+def _figure(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Figure:
     units = list(dict.fromkeys(curve.sweep.unit for curve, _ in found))
     figure = Figure(figsize=(4.6 * len(units) + 1.0, 4.6), layout='constrained')
     panels = figure.subplots(1, len(units), squeeze=False)[0]

@@ -8,7 +8,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.validation.branches.continuation import SAME, distance
+from trawl_ros.lab.validation.branches.continuation import SAME, largest_distance
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State
@@ -32,7 +32,7 @@ FOLDED = 0.05
 
 
 @dataclass(frozen=True)
-class Tally:
+class OutcomeTally:
     """Tally of searches from collapsed shapes by outcome; ``refused`` by reason."""
 
     good: int
@@ -45,7 +45,7 @@ class Tally:
         return self.good + self.refused.total() + self.other
 
 
-def attitudes(turn: tuple[float, float]) -> FloatArray:
+def turned_boards(turn: tuple[float, float]) -> FloatArray:
     """Rotations (2, 3, 3) of both boards at an attitude of `TURNS`."""
     yaw, lean = np.radians(turn)
     port = about_axis(2, yaw) @ about_axis(0, lean)
@@ -57,7 +57,7 @@ def collapsed_shapes(shape: State) -> list[State]:
     """A shape with both boards or one of them collapsed, and the whole gear folded."""
     shapes = []
     for turn in TURNS.values():
-        both = attitudes(turn)
+        both = turned_boards(turn)
         for rotations in (both, np.stack([both[0], shape.board_rotations[1]])):
             shapes.append(replace(shape, board_rotations=rotations))
     narrow = np.array([1.0, FOLDED, 1.0])
@@ -65,7 +65,7 @@ def collapsed_shapes(shape: State) -> list[State]:
         shape,
         nodes=shape.nodes * narrow,
         board_positions=shape.board_positions * narrow,
-        board_rotations=attitudes(TURNS['flat, face down']),
+        board_rotations=turned_boards(TURNS['flat, face down']),
     )
     return [*shapes, folded]
 
@@ -75,18 +75,18 @@ def tally(
     point: OperatingPoint,
     shapes: Sequence[State],
     good: Equilibrium | None,
-) -> Tally:
+) -> OutcomeTally:
     """Search at a point from collapsed shapes; ``good`` is its steady state, None for none."""
     same, other = 0, 0
     refused: Counter[str] = Counter()
     for shape in shapes:
         try:
             found = find_equilibrium(model, point, near=shape)
-            if good is not None and distance(found, good) <= SAME:
+            if good is not None and largest_distance(found, good) <= SAME:
                 same += 1
             else:
                 require_usable(model, found)
                 other += 1
         except NoSteadyState as error:
             refused[error.reason] += 1
-    return Tally(same, refused, other)
+    return OutcomeTally(same, refused, other)

@@ -79,7 +79,7 @@ def search(place: Place, start: Equilibrium | None) -> Search:
     return Search(found, refusal, time.process_time() - began)
 
 
-def distance(one: Equilibrium, other: Equilibrium) -> float:
+def largest_distance(one: Equilibrium, other: Equilibrium) -> float:
     """Largest distance (m), along an axis, of a node or board in two roots."""
     return float(
         max(
@@ -97,7 +97,7 @@ def neighbours(spot: Spot, places: Mapping[Spot, Place]) -> Iterator[Spot]:
             yield other
 
 
-def walk(
+def continue_branches(
     places: Mapping[Spot, Place], first: Spot, also_cold: Collection[Spot]
 ) -> dict[Spot, Answer]:
     """Continue from one place outward to every other.
@@ -135,7 +135,7 @@ def judged(place: Place, searches: list[Search]) -> Answer:
     roots: list[Equilibrium] = []
     apart = 0.0
     for found in (tried.found for tried in searches if tried.found is not None):
-        distances = [distance(found, root) for root in roots]
+        distances = [largest_distance(found, root) for root in roots]
         apart = max([apart, *distances])
         if all(one > SAME for one in distances):
             roots.append(found)

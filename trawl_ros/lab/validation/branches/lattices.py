@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from trawl_ros.lab.validation.branches.continuation import Answer, Place, Spot, walk
+from trawl_ros.lab.validation.branches.continuation import Answer, Place, Spot, continue_branches
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.operating_point import OperatingPoint
 
@@ -68,4 +68,4 @@ def _walked(
     """Continue from the middle length at the usual speed or angle; every third place also cold."""
     first = len(lengths) // 2, int(np.abs(np.array(columns) - usual).argmin())
     cold = [(i, j) for i, j in places if (i + j) % 3 == 0]
-    return Lattice(across, lengths, columns, walk(places, first, cold))
+    return Lattice(across, lengths, columns, continue_branches(places, first, cold))

@@ -11,7 +11,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.branches.branch_limits import limit_findings
-from trawl_ros.lab.validation.branches.collapsed_starts import Tally, collapsed_shapes, tally
+from trawl_ros.lab.validation.branches.collapsed_starts import OutcomeTally, collapsed_shapes, tally
 from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.lab.validation.branches.lattices import (
@@ -144,7 +144,7 @@ def _working(key: str, what: str, lattices: Sequence[Lattice]) -> MeasuredValue:
 def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue], TextTable]:
     """Search from collapsed shapes, with and without a steady state at hand."""
     rows = []
-    tallies: list[Tally] = []
+    tallies: list[OutcomeTally] = []
     goods: list[Equilibrium] = []
     for length, speed in size.collapses:
         good = find_equilibrium(model, OperatingPoint(length, length, speed))
@@ -170,7 +170,7 @@ def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue],
     return checks, TextTable('Searches from collapsed shapes', head, tuple(rows))
 
 
-def _row(length: float, speed: float, counted: Tally) -> tuple[str, ...]:
+def _row(length: float, speed: float, counted: OutcomeTally) -> tuple[str, ...]:
     refused = ', '.join(f'{number} {reason}' for reason, number in counted.refused.items())
     return (
         f'{length:g}',

@@ -107,7 +107,7 @@ def on_paper(gear: GearRecord, model: GearModel, state: State) -> list[PaperBoar
     ]
 
 
-def compare(
+def compare_laws(
     gear: GearRecord,
     random: np.random.Generator,
     *,
@@ -145,7 +145,7 @@ def run(small: bool) -> Findings:
         board = default.board.model_copy(update={'force_axes': axes})
         gear = default.model_copy(update={'board': board})
         for within in (True, False):
-            found = compare(gear, random, within=within)
+            found = compare_laws(gear, random, within=within)
             where = 'within' if within else 'anywhere'
             what = (
                 f'at {ATTITUDES} random attitudes on each side, {where} '

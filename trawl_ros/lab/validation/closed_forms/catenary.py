@@ -12,7 +12,7 @@ from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, 
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
-from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
+from trawl_ros.lab.validation.closed_forms.refinement import order, refinement_figure
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.bar import SLACK_WIDTH
 from trawl_ros.report.pictures import Drawing
@@ -144,7 +144,7 @@ def run(small: bool) -> Findings:
                 'convergence',
                 'Relative errors of the sagging wire against the elastic catenary; the shape is '
                 'the largest distance of a node from its place, over the length.',
-                drawn(counts, errors, 'Sagging wire, 480 m between points 402 m apart'),
+                refinement_figure(counts, errors, 'Sagging wire, 480 m between points 402 m apart'),
             ),
             Drawing('shape', 'The sagging wire.', _shape(models[CLAIMED])),
         ),

@@ -11,7 +11,9 @@ def order(segments: Sequence[int], errors: Sequence[float]) -> float:
     return -float(np.polyfit(np.log(segments), np.log(errors), 1)[0])
 
 
-def drawn(segments: Sequence[int], errors: Mapping[str, Sequence[float]], title: str) -> Figure:
+def refinement_figure(
+    segments: Sequence[int], errors: Mapping[str, Sequence[float]], title: str
+) -> Figure:
     """Relative errors over segments, both logarithmic, beside a line of second order."""
     figure = Figure(figsize=(6.4, 4.6), layout='constrained')
     axes = figure.add_subplot()

@@ -11,7 +11,7 @@ from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, 
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
-from trawl_ros.lab.validation.closed_forms.refinement import drawn, order
+from trawl_ros.lab.validation.closed_forms.refinement import order, refinement_figure
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.report.pictures import Drawing
 
@@ -160,7 +160,7 @@ def run(small: bool) -> Findings:
                 'convergence',
                 'Relative errors of the towed wire against the integrated equation; the shape is '
                 'the largest distance of a node from its place, over the length.',
-                drawn(counts, orders, 'Towed wire, 600 m at 2 m/s'),
+                refinement_figure(counts, orders, 'Towed wire, 600 m at 2 m/s'),
             ),
             Drawing('shape', 'The wire as modelled and as integrated.', _shape(claimed)),
         ),

@@ -8,7 +8,7 @@ from trawl_ros.lab.validation.paper.installation import SYMBOLS
 from trawl_ros.lab.validation.paper.sweeps import INSTALLATION, TURN, Sighting
 
 
-def percent(after: Sighting, before: Sighting, quantity: str) -> float:
+def percent_change(after: Sighting, before: Sighting, quantity: str) -> float:
     """Relative change of an observable, %."""
     change: float = 100.0 * (getattr(after.seen, quantity) / getattr(before.seen, quantity) - 1.0)
     return change
@@ -38,7 +38,7 @@ class Changes:
 
     def percent(self, quantity: str, name: str, turn: float) -> float:
         """Change of an observable, %."""
-        return percent(self.found[name][turn], self.base, quantity)
+        return percent_change(self.found[name][turn], self.base, quantity)
 
     def board(self, quantity: str, name: str, turn: float) -> float:
         """Change of a quantity of the port board, %."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
-from trawl_ros.lab.validation.paper.changes import Changes, label, percent
+from trawl_ros.lab.validation.paper.changes import Changes, label, percent_change
 from trawl_ros.lab.validation.paper.claim import Claim, claim
 from trawl_ros.lab.validation.paper.sweeps import TURN
 
@@ -63,7 +63,7 @@ def _spread(changes: Changes) -> Claim:
 
 def _opening(changes: Changes) -> Claim:
     faster, base = changes.faster, changes.base
-    by_speed = {name: percent(faster, base, name) for name in RESULTS}
+    by_speed = {name: percent_change(faster, base, name) for name in RESULTS}
     by_turn = {name: changes.percent(name, 'epsilon', TURN) for name in RESULTS}
     exponent = np.log1p(by_speed['vertical_opening'] / 100.0) / np.log1p(
         by_speed['warp_tension'] / 100.0

@@ -86,10 +86,10 @@ class PaperRefit:
 @cache
 def refit_trial(small: bool) -> PaperRefit:
     """Fit the gear of the paper to the sample trial; in a process once."""
-    return refit(gear(small), trial_windows(small))
+    return refit_paper_trial(gear(small), trial_windows(small))
 
 
-def refit(record: GearRecord, windows: Sequence[SteadyWindow]) -> PaperRefit:
+def refit_paper_trial(record: GearRecord, windows: Sequence[SteadyWindow]) -> PaperRefit:
     """Fit a gear to steady windows, all together from the first iteration on.
 
     `trawl identify` takes windows one by one, as they come; an objective that gains terms on the

@@ -10,14 +10,14 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
     chosen,
-    effects_of,
+    hidden_names,
     named_right,
     names_of,
     one_named,
     reported,
     right,
     said_of,
-    verdict,
+    verdict_word,
 )
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 from trawl_ros.report import style
@@ -49,20 +49,20 @@ BARS = (
 
 def kind_of(trial: Scored, classes: Classes) -> str:
     """One of `KINDS`."""
-    answer = verdict(trial)
+    answer = verdict_word(trial)
     if answer in ('UNKNOWN', 'NOT_TESTABLE'):
         return answer
     if answer == 'NAMED':
-        if both_named(trial, classes) or (effects_of(trial) and named_right(trial, classes)):
+        if both_named(trial, classes) or (hidden_names(trial) and named_right(trial, classes)):
             return 'right name'
         if one_named(trial, classes):
             return 'one of two'
-        if effects_of(trial) and right(trial, names_of(trial), classes):
+        if hidden_names(trial) and right(trial, names_of(trial), classes):
             return 'right name and another beside it'
-        among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
+        among = bool(hidden_names(trial)) and right(trial, reported(trial), classes)
         return 'several names, the right one among them' if among else 'wrong name'
     if answer == 'AMBIGUOUS':
-        among = bool(effects_of(trial)) and right(trial, reported(trial), classes)
+        among = bool(hidden_names(trial)) and right(trial, reported(trial), classes)
         return 'several names, ' + ('the right one among them' if among else 'all wrong')
     return 'no discrepancy seen'
 
@@ -103,15 +103,15 @@ def _draw_verdicts(axes: Axes, trials: Sequence[Scored], classes: Classes) -> No
 def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
     """Hidden effect by what was said of it, in per cent of its trials at 3 and 6 times."""
     own = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
-    hidden = sorted({effects_of(trial)[0] for trial in own})
+    hidden = sorted({hidden_names(trial)[0] for trial in own})
     if not hidden:
         axes.set_axis_off()
         return
     answers = [*hidden, 'several names', 'UNKNOWN', 'nothing seen']
     counts = np.zeros((len(hidden), len(answers)))
     for trial in own:
-        row = hidden.index(effects_of(trial)[0])
-        found = verdict(trial)
+        row = hidden.index(hidden_names(trial)[0])
+        found = verdict_word(trial)
         if found == 'NAMED':
             first = said_of(trial)['effects'][0]['name']
             name = hidden[row] if right(trial, names_of(trial), classes) else first

@@ -14,7 +14,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
     chosen,
-    effects_of,
+    hidden_names,
     named_right,
     names_of,
     one_named,
@@ -22,7 +22,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     reported,
     right,
     same_said,
-    verdict,
+    verdict_word,
 )
 from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
@@ -47,9 +47,9 @@ def clean_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
     """Rate of false alarms."""
     clean = chosen(trials, 'clean')
     return [
-        rate('clean trials with an alarm', [verdict(t) != 'NO_DISCREPANCY' for t in clean],
+        rate('clean trials with an alarm', [verdict_word(t) != 'NO_DISCREPANCY' for t in clean],
               most=2.0),
-        rate('clean trials with a single name', [verdict(t) == 'NAMED' for t in clean],
+        rate('clean trials with a single name', [verdict_word(t) == 'NAMED' for t in clean],
               most=0.5),
     ]  # fmt: skip
 
@@ -57,7 +57,7 @@ def clean_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
 def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Detection and naming of effects in the catalogue."""
     inside = chosen(trials, 'inside')
-    decided = [trial for trial in inside if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
+    decided = [trial for trial in inside if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')]
     third = chosen(trials, 'inside', 3.0)
     sizes = [
         1
@@ -65,9 +65,9 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
             reported(trial) - {name for own in names_of(trial) for name in classes.get(own, (own,))}
         )
         for trial in third
-        if verdict(trial) in ('NAMED', 'AMBIGUOUS')
+        if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')
     ]
-    testable = {effects_of(trial)[0] for trial in third}
+    testable = {hidden_names(trial)[0] for trial in third}
     rows = [
         MeasuredValue(
             'effects that can be tested at 3 times the smallest detectable size',
@@ -79,7 +79,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
             rate(
                 f'detected at {strength:g} times',
                 [
-                    verdict(t) not in ('NO_DISCREPANCY', 'NOT_TESTABLE')
+                    verdict_word(t) not in ('NO_DISCREPANCY', 'NOT_TESTABLE')
                     for t in chosen(trials, 'inside', strength)
                 ],
                 least=95.0 if strength < 2.0 else None,
@@ -108,13 +108,13 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         ),
         rate(
             'wrong single name',
-            [verdict(t) == 'NAMED' and not right(t, names_of(t), classes) for t in inside],
+            [verdict_word(t) == 'NAMED' and not right(t, names_of(t), classes) for t in inside],
             most=2.0,
         ),
         *(
             rate(
                 f'UNKNOWN at {strength:g} times',
-                [verdict(t) == 'UNKNOWN' for t in chosen(trials, 'inside', strength)],
+                [verdict_word(t) == 'UNKNOWN' for t in chosen(trials, 'inside', strength)],
             )
             for strength in (3.0, 6.0)
         ),
@@ -129,7 +129,7 @@ def _one_class(names: set[str], classes: Classes) -> set[str]:
 def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
     """Verdicts on effects outside the catalogue."""
     outside = chosen(trials, 'outside')
-    kinds = {effects_of(trial)[0] for trial in outside}
+    kinds = {hidden_names(trial)[0] for trial in outside}
     return [
         MeasuredValue(
             'kinds of effects outside the catalogue',
@@ -140,13 +140,13 @@ def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
         *(
             rate(
                 f'UNKNOWN at {strength:g} times',
-                [verdict(t) == 'UNKNOWN' for t in chosen(trials, 'outside', strength)],
+                [verdict_word(t) == 'UNKNOWN' for t in chosen(trials, 'outside', strength)],
                 least=least,
             )
             for strength, least in ((6.0, 80.0), (10.0, 95.0))
         ),
-        rate('wrong name', [verdict(t) == 'NAMED' for t in outside], most=10.0),
-        rate('several names', [verdict(t) == 'AMBIGUOUS' for t in outside]),
+        rate('wrong name', [verdict_word(t) == 'NAMED' for t in outside], most=10.0),
+        rate('several names', [verdict_word(t) == 'AMBIGUOUS' for t in outside]),
     ]
 
 
@@ -166,8 +166,10 @@ def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]
 def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Tows so much alike that effects are too, and the proposed next tow."""
     poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
-    alone = [trial for trial in poor if verdict(trial) == 'NAMED' and len(reported(trial)) == 1]
-    decided = [trial for trial in poor if verdict(trial) in ('NAMED', 'AMBIGUOUS')]
+    alone = [
+        trial for trial in poor if verdict_word(trial) == 'NAMED' and len(reported(trial)) == 1
+    ]
+    decided = [trial for trial in poor if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')]
     return [
         rate('too poor a trial: a single name, and a wrong one',
              [trial in alone and not right(trial, names_of(trial), classes) for trial in poor]),
@@ -196,7 +198,8 @@ def bag_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
             if (like := trial.key['spec']['like']) in by_number
         ]
         listed = ', '.join(
-            f'{"+".join(effects_of(trial)) or "clean"} {verdict(other)} {verdict(trial)}'
+            f'{"+".join(hidden_names(trial)) or "clean"} {verdict_word(other)} '
+            f'{verdict_word(trial)}'
             for trial, other in pairs
             if not same_said(trial, other)
         )
@@ -214,14 +217,14 @@ def bag_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
 def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Right names of each effect at 3 and 6 times together."""
     rows = []
-    for name in sorted({effects_of(trial)[0] for trial in chosen(trials, 'inside')}):
+    for name in sorted({hidden_names(trial)[0] for trial in chosen(trials, 'inside')}):
         own = [
             trial
             for trial in chosen(trials, 'inside')
-            if effects_of(trial)[0] == name and trial.key['spec']['strength'] >= 3.0
+            if hidden_names(trial)[0] == name and trial.key['spec']['strength'] >= 3.0
         ]
         if own:
-            verdicts = [verdict(trial) for trial in own]
+            verdicts = [verdict_word(trial) for trial in own]
             counted = ', '.join(
                 f'{kind} {verdicts.count(kind)}' for kind in dict.fromkeys(verdicts)
             )
@@ -246,7 +249,7 @@ def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredVa
         Scored(inside[other].key, trial.diagnosis)
         for trial, other in zip(inside, order, strict=True)
     ]
-    kinds = len({effects_of(trial)[0] for trial in inside})
+    kinds = len({hidden_names(trial)[0] for trial in inside})
     return [
         rate('right single name at 3 and 6 times, keys shuffled',
               [named_right(trial, classes) for trial in mixed],

@@ -28,7 +28,7 @@ def reported(trial: Scored) -> set[str]:
     return names_of(trial) | alike | set(said_of(trial)['ambiguous_with'])
 
 
-def effects_of(trial: Scored) -> tuple[str, ...]:
+def hidden_names(trial: Scored) -> tuple[str, ...]:
     """Hidden effects."""
     return tuple(trial.key['spec']['effects'])
 
@@ -45,33 +45,38 @@ def chosen(trials: Iterable[Scored], series: str, strength: float | None = None)
     ]
 
 
-def verdict(trial: Scored) -> str:
+def verdict_word(trial: Scored) -> str:
     """The first word of a diagnosis."""
     return str(said_of(trial)['verdict'])
 
 
 def right(trial: Scored, names: set[str], classes: Classes) -> bool:
     """True if all hidden effects are among names, by their own or that of their class."""
-    return all(names & {name, *classes.get(name, ())} for name in effects_of(trial))
+    return all(names & {name, *classes.get(name, ())} for name in hidden_names(trial))
 
 
 def named_right(trial: Scored, classes: Classes) -> bool:
     """True if there is one name, and the right one."""
     alone = len(said_of(trial)['effects']) == 1
-    return verdict(trial) == 'NAMED' and alone and right(trial, names_of(trial), classes)
+    return verdict_word(trial) == 'NAMED' and alone and right(trial, names_of(trial), classes)
 
 
 def both_named(trial: Scored, classes: Classes) -> bool:
     """True if two effects are hidden and both are named."""
     pair = trial.key['spec']['series'] == 'pair'
-    return pair and verdict(trial) == 'NAMED' and right(trial, names_of(trial), classes)
+    return pair and verdict_word(trial) == 'NAMED' and right(trial, names_of(trial), classes)
 
 
 def one_named(trial: Scored, classes: Classes) -> bool:
     """True if two effects are hidden and one of them is named, without any that is not there."""
     names = names_of(trial)
     pair = trial.key['spec']['series'] == 'pair' and not both_named(trial, classes)
-    return pair and verdict(trial) == 'NAMED' and bool(names) and names <= set(effects_of(trial))
+    return (
+        pair
+        and verdict_word(trial) == 'NAMED'
+        and bool(names)
+        and names <= set(hidden_names(trial))
+    )
 
 
 def said_of(trial: Scored) -> dict[str, Any]:
@@ -82,12 +87,12 @@ def said_of(trial: Scored) -> dict[str, Any]:
 
 def same_said(trial: Scored, other: Scored) -> bool:
     """True if verdict and names are the same."""
-    return verdict(trial) == verdict(other) and names_of(trial) == names_of(other)
+    return verdict_word(trial) == verdict_word(other) and names_of(trial) == names_of(other)
 
 
 def parted(trial: Scored) -> bool:
     """True if one effect alone is left, and the right one."""
-    return verdict(trial) == 'NAMED' and reported(trial) == set(effects_of(trial))
+    return verdict_word(trial) == 'NAMED' and reported(trial) == set(hidden_names(trial))
 
 
 def classes(likely: Likelihood) -> Mapping[str, tuple[str, ...]]:

@@ -10,7 +10,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.rates import median, rate
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     chosen,
-    effects_of,
+    hidden_names,
     named_right,
     said_of,
 )
@@ -118,7 +118,7 @@ def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | Non
 
 def _best_covered(trial: Scored) -> list[bool]:
     """Coverage of the best fit to readings without errors by each interval."""
-    name = effects_of(trial)[0]
+    name = hidden_names(trial)[0]
     own = [effect for effect in said_of(trial)['effects'] if effect['name'] == name]
     return [
         bool(interval['low'] <= _quiet(trial)['parameters'][parameter] <= interval['high'])
@@ -129,7 +129,7 @@ def _best_covered(trial: Scored) -> list[bool]:
 
 def _hidden_covered(trial: Scored) -> bool | None:
     """True if the interval of an effect of one parameter covers the hidden size."""
-    effects, name = said_of(trial)['effects'], effects_of(trial)[0]
+    effects, name = said_of(trial)['effects'], hidden_names(trial)[0]
     if len(effects) != 1 or effects[0]['name'] != name or len(effects[0]['parameters']) != 1:
         return None
     ((_, parameter),) = effects[0]['parameters'].items()

@@ -55,7 +55,7 @@ class Course:
         return inputs, values
 
 
-def settling(length: float, speed: float) -> float:
+def settling_time(length: float, speed: float) -> float:
     """Settling time (s) before a state counts as steady."""
     options = WindowOptions()
     passages = options.settle_passages * (length + options.net_length) / speed
@@ -70,7 +70,7 @@ def quasi_steady(tow: PlannedTow, looks: Sequence[Look]) -> Course:
     for place, look in enumerate(looks):
         moment = 3600.0 * tow.moment(place).hours
         moments.append(moment)
-        reached = moment - EARLY_S - settling(*look.state)
+        reached = moment - EARLY_S - settling_time(*look.state)
         times += [max(reached, times[-1]), moment + HOLD_S]
         rows += [look, look]
     return Course(

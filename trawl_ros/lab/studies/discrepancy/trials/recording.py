@@ -10,7 +10,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.lab.studies.discrepancy.trials.course import Course
-from trawl_ros.lab.studies.identification.readings import KINDS, NAMES, Sensors, tow_errors
+from trawl_ros.lab.studies.identification.readings import KINDS, NAMES, Sensors, drawn_errors
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.water import Water
@@ -84,7 +84,7 @@ def record_tows(
 def _readings(
     course: Course, sensors: Sensors, dropouts: float, chance: np.random.Generator
 ) -> dict[str, Readings]:
-    offset, scale = tow_errors(sensors, chance)
+    offset, scale = drawn_errors(sensors, chance)
     found = {}
     for name in NAMES:
         kind = KINDS[group_of(name)]

@@ -9,7 +9,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
-from trawl_ros.lab.studies.discrepancy.trials.course import EARLY_S, HOLD_S, Course, settling
+from trawl_ros.lab.studies.discrepancy.trials.course import EARLY_S, HOLD_S, Course, settling_time
 from trawl_ros.lab.studies.discrepancy.trials.tows import PlannedTow
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
@@ -105,7 +105,7 @@ def towed_in_time(
 
     for length, speed in tow.states:
         tow_on(Command(length, length, HAULING_SPEED), None)
-        tow_on(Command(length, length, speed), EARLY_S + settling(length, speed))
+        tow_on(Command(length, length, speed), EARLY_S + settling_time(length, speed))
         moments.append(times[-1])
         tow_on(Command(length, length, speed), HOLD_S)
     return Course(np.array(times), np.array(inputs), np.array(values), heading, tuple(moments))
