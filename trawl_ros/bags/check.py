@@ -97,23 +97,25 @@ def check_bag(
         for topic, record in sorted(records.items())
     ]
     findings = _whole(bag, topics)
-    for seen in topics:
-        known = find_topic(seen.topic, namespace)
+    for checked in topics:
+        known = find_topic(checked.topic, namespace)
         if known is not None:
-            findings += _against_contract(seen, known, offered[seen.topic], records[seen.topic])
+            findings += _against_contract(
+                checked, known, offered[checked.topic], records[checked.topic]
+            )
     findings += [
         Finding('source', topic, f'has two sources, for {source.why}; expected one')
         for topic, source in sources.items()
         if source.why
     ]
-    there = {seen.topic for seen in topics if seen.count}
+    there = {checked.topic for checked in topics if checked.count}
     for name in sorted(wanted - there):
         findings.append(Finding('missing', name, 'is required, and has no message'))
     times = [time for record in records.values() for time in record.span()]
     return BagCheck(
         path=bag.path,
         facts=bag.facts,
-        count=sum(seen.count for seen in topics),
+        count=sum(checked.count for checked in topics),
         start=min(times, default=None),
         end=max(times, default=None),
         damaged_chunks=bag.damaged_chunks,
@@ -218,58 +220,65 @@ def _topic_check(
 
 
 def _whole(bag: Bag, topics: list[TopicCheck]) -> list[Finding]:
-    found = [Finding('content', '', problem) for problem in bag.problems]
-    found += [
+    findings = [Finding('content', '', problem) for problem in bag.problems]
+    findings += [
         Finding('index', '', f'{path.name} has no index that can be used; `trawl bag repair` '
                 'makes one')
         for path in bag.files_without_index
     ]  # fmt: skip
     if bag.damaged_chunks:
         text = f'{bag.damaged_chunks} chunks fail their checksum or make no sense'
-        found.append(Finding('crc', '', text))
-    if not any(seen.count for seen in topics):
-        found.append(Finding('content', '', f'{bag.path}: holds no message'))
-    return found
+        findings.append(Finding('crc', '', text))
+    if not any(checked.count for checked in topics):
+        findings.append(Finding('content', '', f'{bag.path}: holds no message'))
+    return findings
 
 
 def _against_contract(
-    seen: TopicCheck, known: Topic, offered: tuple[Qos, ...], record: _Record
+    checked: TopicCheck, known: Topic, offered: tuple[Qos, ...], record: _Record
 ) -> list[Finding]:
-    found = []
+    findings = []
 
     def add(kind: str, text: str) -> None:
-        found.append(Finding(kind, seen.topic, text))
+        findings.append(Finding(kind, checked.topic, text))
 
-    if seen.type != known.type:
-        add('type', f'has type {seen.type or "unknown"}; expected {known.type}')
+    if checked.type != known.type:
+        add('type', f'has type {checked.type or "unknown"}; expected {known.type}')
     if any(profile.reliability is QosReliability.BEST_EFFORT for profile in offered):
         add('qos', 'was offered best effort, so messages may be missing; expected reliable')
     if known.latched and any(p.durability is QosDurability.VOLATILE for p in offered):
         add('qos', 'was offered volatile, so who came late got none; expected transient local')
-    if seen.group not in ('truth', 'instruments'):
-        return found
-    if seen.rate and known.rate and not 1 / RATE_FACTOR < seen.rate / known.rate < RATE_FACTOR:
-        add('rate', f'comes at {seen.rate:.3g} Hz; expected about {known.rate:g} Hz')
+    if checked.group not in ('truth', 'instruments'):
+        return findings
+    if (
+        checked.rate
+        and known.rate
+        and not 1 / RATE_FACTOR < checked.rate / known.rate < RATE_FACTOR
+    ):
+        add('rate', f'comes at {checked.rate:.3g} Hz; expected about {known.rate:g} Hz')
     if known.rate and (gaps := _gaps(record.intervals())):
         add(
             'gap',
             f'pauses {len(gaps)} times for more than {GAP_FACTOR:g} median intervals, longest '
             f'{max(gaps) / SECOND:.4g} s',
         )
-    if seen.backward:
-        add('order', f'has {seen.backward} stamps before the one before; expected none')
-    if seen.duplicates:
-        add('order', f'has {seen.duplicates} stamps equal to the one before; expected none')
+    if checked.backward:
+        add('order', f'has {checked.backward} stamps before the one before; expected none')
+    if checked.duplicates:
+        add('order', f'has {checked.duplicates} stamps equal to the one before; expected none')
     # A sweep, which comes at no rate of its own, is stamped at its first ping.
     sweep = record.median_interval() / SECOND if known.rate is None else 0.0
-    if seen.lag_s and not -LAG_BOUND_S <= seen.lag_s[0] <= seen.lag_s[1] <= LAG_BOUND_S + sweep:
-        least, greatest = seen.lag_s
+    if (
+        checked.lag_s
+        and not -LAG_BOUND_S <= checked.lag_s[0] <= checked.lag_s[1] <= LAG_BOUND_S + sweep
+    ):
+        least, greatest = checked.lag_s
         add(
             'stamp',
             f'was logged {least:.4g} to {greatest:.4g} s after its stamps; expected up to '
             f'{LAG_BOUND_S + sweep:g} s',
         )
-    return found
+    return findings
 
 
 def _gaps(intervals: list[int]) -> list[int]:

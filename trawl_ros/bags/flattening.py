@@ -38,15 +38,15 @@ class FlatColumn:
 
     def value(self, message: Any) -> Any:
         """Give the value in a message; None where an array of it is shorter."""
-        found = message
+        value = message
         try:
             for step in self.steps:
-                found = found[step] if isinstance(step, int) else getattr(found, step)
+                value = value[step] if isinstance(step, int) else getattr(value, step)
         except IndexError:
             return None
-        if getattr(found, '__msgtype__', '') not in _TIMES:
-            return found
-        stamp = int(found.sec) * SECOND + int(found.nanosec)
+        if getattr(value, '__msgtype__', '') not in _TIMES:
+            return value
+        stamp = int(value.sec) * SECOND + int(value.nanosec)
         return as_seconds(stamp) if self.name.endswith('_s') else stamp
 
 
@@ -99,15 +99,15 @@ class FlatLayout:
             yield FlatColumn((*place, 0), f'{name}_s', f'{path}_s', steps)
             yield FlatColumn((*place, 1), f'{name}_ns', f'{path}_ns', steps)
         elif is_dataclass(value):
-            for number, part in enumerate(fields(value)):
+            for number, field in enumerate(fields(value)):
                 # Constants stand among the fields; of those, ROS wants small letters.
-                if part.name.startswith('_') or part.name.isupper():
+                if field.name.startswith('_') or field.name.isupper():
                     continue
-                inner = f'{name}.{part.name}' if name else part.name
-                below = f'{path}.{part.name}' if path else part.name
-                deeper = (*steps, part.name)
+                inner = f'{name}.{field.name}' if name else field.name
+                below = f'{path}.{field.name}' if path else field.name
+                deeper = (*steps, field.name)
                 yield from self._walk(
-                    getattr(value, part.name), (*place, number), inner, below, deeper
+                    getattr(value, field.name), (*place, number), inner, below, deeper
                 )
         elif isinstance(value, list | np.ndarray):
             if reason := self._refusal(value):

@@ -92,20 +92,20 @@ class SourceWatch:
         readings = list(self._readings)
         channels, stamps, values = zip(*readings[-BLOCK:], strict=True)
         pairs = list(zip(stamps, stamps[1:], values, values[1:], strict=False))
-        seen: set[int] = set()
+        met: set[int] = set()
         returns = 0
         for before, channel in zip((None, *channels), channels, strict=False):
-            returns += channel != before and channel in seen
-            seen.add(channel)
+            returns += channel != before and channel in met
+            met.add(channel)
         if returns >= RETURNS:
-            return f'it comes by turns from {len(seen)} channels'
-        twice = sum(one == two and this != that for one, two, this, that in pairs)
+            return f'it comes by turns from {len(met)} channels'
+        twice = sum(first == second and this != that for first, second, this, that in pairs)
         if twice >= SHARE * BLOCK:
             return f'{twice} of {len(stamps)} stamps come twice, with two readings'
-        back = sum(two < one for one, two, _, _ in pairs)
+        back = sum(second < first for first, second, _, _ in pairs)
         if back >= SHARE * BLOCK:
             return f'{back} of {len(stamps)} stamps go back in time'
-        near = median(two - one for one, two, _, _ in pairs) <= LONGEST_STEP
+        near = median(second - first for first, second, _, _ in pairs) <= LONGEST_STEP
         if near and len(stamps) == BLOCK and any(map(_alternates, zip(*values, strict=True))):
             return f'{len(stamps)} readings jump to and fro between two courses'
         if visits := _visits(readings):
@@ -115,7 +115,7 @@ class SourceWatch:
 
 def _alternates(values: tuple[float, ...]) -> bool:
     steps = [after - before for before, after in pairwise(values)]
-    turns = sum(one * two < 0 for one, two in pairwise(steps))
+    turns = sum(first * second < 0 for first, second in pairwise(steps))
     if turns < ALTERNATING * (len(steps) - 1):
         return False
     beyond = [abs(after - before) for before, after in zip(values, values[2:], strict=False)]

@@ -26,9 +26,9 @@ def impossible(sample: Sample) -> str | None:
 
     NaN stands for no reading, and passes.
     """
-    for what, value, low, high, unit in _bounded(sample):
+    for quantity, value, low, high, unit in _bounded(sample):
         if value < low or value > high:
-            return f'{what} beyond {low:g} to {high:g} {unit}'
+            return f'{quantity} beyond {low:g} to {high:g} {unit}'
     return None
 
 
@@ -45,15 +45,15 @@ def _bounded(sample: Sample) -> Iterator[tuple[str, float, float, float, str]]:
             yield 'longitude', sample.longitude, -180.0, 180.0, 'degrees'
         case VelocitySample():
             # One by one: a norm with an unknown part is unknown, whatever the others are.
-            for part in sample.velocity:
-                yield 'speed', abs(float(part)), 0.0, FASTEST_M_S, 'm/s'
+            for component in sample.velocity:
+                yield 'speed', abs(float(component)), 0.0, FASTEST_M_S, 'm/s'
         case RangeSample():
             yield 'distance', sample.distance, -DEEPEST_M, DEEPEST_M, 'm'
         case PressureSample():
             yield 'pressure', sample.pressure, -MOST_PA, MOST_PA, 'Pa'
         case AttitudeSample():
-            for what, value in (('pitch', sample.pitch), ('roll', sample.roll)):
-                yield what, math.degrees(value), -360.0, 360.0, 'degrees'
+            for quantity, value in (('pitch', sample.pitch), ('roll', sample.roll)):
+                yield quantity, math.degrees(value), -360.0, 360.0, 'degrees'
         case WinchSample():
             for length in sample.lengths:
                 yield 'warp length', length, -DEEPEST_M, DEEPEST_M, 'm'

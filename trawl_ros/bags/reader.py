@@ -120,14 +120,14 @@ class Bag:
 
         Profiles that cannot be understood are said in `problems` and count as unknown.
         """
-        found: dict[str, tuple[Qos, ...]] = {}
+        by_topic: dict[str, tuple[Qos, ...]] = {}
         for topic, definition in self.definitions().items():
             try:
-                found[topic] = parse_profiles(topic, definition.qos)
+                by_topic[topic] = parse_profiles(topic, definition.qos)
             except BagError as reason:
                 self._report(f'{self.path}: {reason}')
-                found[topic] = ()
-        return found
+                by_topic[topic] = ()
+        return by_topic
 
     def raw(self, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
         """Give messages undecoded, of all topics or of those named in full.
@@ -249,12 +249,12 @@ class Bag:
         return decoders
 
     def _check_types(self, topics: Collection[str] | None) -> None:
-        for topic, found in sorted(self._source.types()):
+        for topic, types in sorted(self._source.types()):
             known = find_topic(topic, self._namespace)
             wanted = topics is None or topic in topics
-            if known and wanted and found != known.type:
+            if known and wanted and types != known.type:
                 sentence = (
-                    f'{self.path}: {topic} has type {found or "unknown"}; expected {known.type}'
+                    f'{self.path}: {topic} has type {types or "unknown"}; expected {known.type}'
                 )
                 if not self._lenient:
                     raise BagError(sentence)

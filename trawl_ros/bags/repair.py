@@ -275,5 +275,5 @@ class _Damaged:
 
 def _place(path: Path) -> tuple[str, int]:
     """Stem and number of a file, by which trial_10 comes after trial_9."""
-    found = _NUMBERED.fullmatch(path.stem)
-    return (found['stem'], int(found['number'])) if found else (path.stem, 0)
+    numbered = _NUMBERED.fullmatch(path.stem)
+    return (numbered['stem'], int(numbered['number'])) if numbered else (path.stem, 0)

@@ -118,15 +118,15 @@ class BagSource:
     @property
     def definitions(self) -> dict[str, Definition]:
         """Definition of each topic's messages."""
-        found: dict[str, Definition] = {}
+        by_topic: dict[str, Definition] = {}
         for file in self.files:
             for topic, definition in file.definitions.items():
-                found.setdefault(topic, definition)
+                by_topic.setdefault(topic, definition)
         stated = self._metadata.offered() if self._metadata else {}
-        for topic, definition in found.items():
+        for topic, definition in by_topic.items():
             if not definition.qos and topic in stated:
-                found[topic] = replace(definition, qos=stated[topic])
-        return found
+                by_topic[topic] = replace(definition, qos=stated[topic])
+        return by_topic
 
     @property
     def stated_count(self) -> int | None:

@@ -41,11 +41,11 @@ class BagSummary:
 
 def count_topics(messages: Iterable[tuple[str, str, int, int]]) -> tuple[TopicSummary, ...]:
     """Count messages, each given as topic, type, log time (ns) and size (bytes)."""
-    found: dict[tuple[str, str], TopicSummary] = {}
+    summaries: dict[tuple[str, str], TopicSummary] = {}
     for topic, type_name, time, size in messages:
         key = topic, type_name
-        past = found.get(key) or TopicSummary(*key, 0, 0, time, time)
-        found[key] = TopicSummary(
+        past = summaries.get(key) or TopicSummary(*key, 0, 0, time, time)
+        summaries[key] = TopicSummary(
             *key, past.count + 1, past.bytes + size, min(past.start, time), max(past.end, time)
         )
-    return tuple(found[key] for key in sorted(found))
+    return tuple(summaries[key] for key in sorted(summaries))

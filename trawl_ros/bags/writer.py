@@ -88,7 +88,7 @@ class BagWriter:
         """True if the definition of a topic is fixed."""
         return topic in self._topics
 
-    def declare(self, topic: str, said: Definition) -> None:
+    def declare(self, topic: str, definition: Definition) -> None:
         """Fix the definition of a topic, before its first message.
 
         Raises
@@ -96,14 +96,14 @@ class BagWriter:
         BagError
             If something else was said of it before.
         """
-        known = self._topics.setdefault(topic, said)
-        if known != said:
-            was, found = (
-                (known.type, said.type)
-                if known.type != said.type
+        known = self._topics.setdefault(topic, definition)
+        if known != definition:
+            was, wanted = (
+                (known.type, definition.type)
+                if known.type != definition.type
                 else ('one definition', 'another')
             )
-            raise BagError(f'{self.path}: {topic} has {was} so far; found {found}')
+            raise BagError(f'{self.path}: {topic} has {was} so far; found {wanted}')
         self._counts.setdefault(topic, 0)
 
     def write(
@@ -135,14 +135,16 @@ class BagWriter:
         """
         if not 0 <= log_time < 2**63:
             raise BagError(f'{self.path}: {topic} at {log_time} ns; expected 0 to 2^63 ns')
-        said = self._topics.get(topic) or self._described(topic, type_name)
-        if said.type != type_name:
-            raise BagError(f'{self.path}: {topic} has type {said.type} so far; found {type_name}')
+        definition = self._topics.get(topic) or self._described(topic, type_name)
+        if definition.type != type_name:
+            raise BagError(
+                f'{self.path}: {topic} has type {definition.type} so far; found {type_name}'
+            )
         if self._is_full(log_time):
             self.split()
         sent = log_time if publish_time is None else publish_time
         try:
-            self._file.write(topic, said, data, log_time, sent)
+            self._file.write(topic, definition, data, log_time, sent)
         except OSError as reason:
             raise self._refused(reason) from reason
         self._counts[topic] += 1
@@ -203,11 +205,11 @@ class BagWriter:
         known = find_topic(topic, self._namespace)
         latched = known is not None and known.latched
         try:
-            said = describe(type_name, dump_profiles([project_profile(latched)]))
+            definition = describe(type_name, dump_profiles([project_profile(latched)]))
         except BagError as reason:
             raise BagError(f'{self.path}: {topic} has {reason}') from None
-        self.declare(topic, said)
-        return said
+        self.declare(topic, definition)
+        return definition
 
     def _next_file(self) -> McapOutput:
         name = f'{self.path.resolve().name}_{len(self._finished)}.mcap'

@@ -78,14 +78,15 @@ class DiscrepancyNode(TrawlNode):
 
     def statuses(self) -> list[Status]:
         """Return the status of the diagnosis."""
-        found, trouble = self._outcome.diagnosis, self._outcome.trouble
+        diagnosis, trouble = self._outcome.diagnosis, self._outcome.trouble
         values = {'windows': str(len(self._windows))}
         if trouble:
             return [Status('discrepancy', ERROR, trouble, values)]
-        if found is None:
+        if diagnosis is None:
             return [Status('discrepancy', OK, 'waiting for a steady window', values)]
-        level = OK if found.verdict in CALM else WARN
-        return [Status('discrepancy', level, headline(found), values | {'verdict': found.verdict})]
+        level = OK if diagnosis.verdict in CALM else WARN
+        values |= {'verdict': diagnosis.verdict}
+        return [Status('discrepancy', level, headline(diagnosis), values)]
 
     def finish_work(self) -> None:
         """Decide the remaining windows, diagnose, and write the report."""
@@ -133,15 +134,15 @@ class DiscrepancyNode(TrawlNode):
 
     def _write(self) -> tuple[str, bool]:
         """Write the report; return the closing sentence, and True if all windows count."""
-        found, trouble = self._outcome.diagnosis, self._outcome.trouble
-        if found is None:
-            found = unread(self._gear, (), trouble or 'no steady window has been heard')
-        sentence = f'{found.verdict}: {headline(found)}'
+        diagnosis, trouble = self._outcome.diagnosis, self._outcome.trouble
+        if diagnosis is None:
+            diagnosis = unread(self._gear, (), trouble or 'no steady window has been heard')
+        sentence = f'{diagnosis.verdict}: {headline(diagnosis)}'
         if self._folder is not None:
             # Figures bring matplotlib, which the node needs at its end only.
             from trawl_ros.diagnosis.report.writing import write_diagnosis
 
-            write_diagnosis(found, (), self._folder)
+            write_diagnosis(diagnosis, (), self._folder)
             sentence = f'{self._folder}: {sentence}'
         if trouble:
             sentence = (

@@ -130,11 +130,11 @@ class IdentificationNode(TrawlNode):
         )
         if self._state is None or not self._state.exists():
             return fresh
-        found = load_checkpoint(self._state, fresh, self._gear)
+        resumed = load_checkpoint(self._state, fresh, self._gear)
         self.get_logger().info(
-            f'{self._state}: goes on after {len(found.estimator.windows)} windows'
+            f'{self._state}: goes on after {len(resumed.estimator.windows)} windows'
         )
-        return found
+        return resumed
 
     def statuses(self) -> list[Status]:
         """Return the status of the estimate, or the reason why there is none."""
@@ -201,16 +201,16 @@ class IdentificationNode(TrawlNode):
             save_checkpoint(self._state, identification, self._gear)
 
     def _report(self, identification: Identification) -> str:
-        found = identification.estimate
-        if found is None:
+        estimate = identification.estimate
+        if estimate is None:
             raise TrawlError(identification.why_not() or 'nothing is estimated')
         if self._folder is None:
-            return f'{found.windows} windows used; {found.reason}'
+            return f'{estimate.windows} windows used; {estimate.reason}'
         # Figures bring matplotlib, which the node needs at its end only.
         from trawl_ros.estimation.report.page import write_report
 
         write_report(report(identification, self._truth, gear=self._gear), self._folder)
-        return f'{self._folder}: identification.json of {found.windows} windows'
+        return f'{self._folder}: identification.json of {estimate.windows} windows'
 
     def _publish(self, outcome: EstimatorOutcome) -> None:
         estimate = outcome.estimate

@@ -117,8 +117,8 @@ class InstrumentNode(TrawlNode, ABC):
         """Return an objection to a live parameter's value; None without one."""
         if name == 'faults':
             try:
-                for where, what in _faults(value).items():
-                    self._panel.check(where, what)
+                for where, fault in _faults(value).items():
+                    self._panel.check(where, fault)
             except InstrumentError as reason:
                 return str(reason)
         return None
@@ -129,18 +129,18 @@ class InstrumentNode(TrawlNode, ABC):
             self._take_parameter()
 
     def _take_parameter(self) -> None:
-        for where, what in self._by_parameter.items():
-            self._panel.switch_off(where, what)
+        for where, fault in self._by_parameter.items():
+            self._panel.switch_off(where, fault)
         self._by_parameter = _faults(self.parameters['faults'])
-        for where, what in self._by_parameter.items():
-            self._panel.switch(where, what)
+        for where, fault in self._by_parameter.items():
+            self._panel.switch(where, fault)
 
     def _command_fault(self, message: Any) -> None:
-        where, what = read_fault_command(message)
+        where, fault = read_fault_command(message)
         if self._is_of_others(where):
             return
         try:
-            self._panel.switch(where, what)
+            self._panel.switch(where, fault)
         except InstrumentError as reason:
             raise MessageError(f'{FAULT_COMMAND}: {reason}') from reason
 
@@ -201,10 +201,10 @@ class InstrumentNode(TrawlNode, ABC):
 
 def _faults(texts: Sequence[str]) -> dict[str, str]:
     """Parse faults by place, from texts such as 'door/spread: offset 3'."""
-    found = {}
+    faults = {}
     for text in texts:
-        where, colon, what = text.partition(':')
+        where, colon, fault = text.partition(':')
         if not colon:
             raise InstrumentError(f"parameter faults: found '{text}', expected 'PLACE: FAULT'")
-        found[where.strip()] = what.strip()
-    return found
+        faults[where.strip()] = fault.strip()
+    return faults

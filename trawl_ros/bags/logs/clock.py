@@ -181,25 +181,25 @@ class ClockReader:
         return int(number * size)
 
     def _elapsed(self, text: str) -> int:
-        found = _CLOCK_FACE.fullmatch(text)
-        if found is None:
+        match = _CLOCK_FACE.fullmatch(text)
+        if match is None:
             raise ValueError('a time as 12:34:56')
-        hours, minutes, seconds, fraction = found.groups()
+        hours, minutes, seconds, fraction = match.groups()
         whole = int(hours) * 3600 + int(minutes) * 60 + int(seconds)
         return whole * SECOND + int((fraction or '').ljust(9, '0') or 0)
 
     def _iso(self, text: str) -> int:
-        found = _ISO.fullmatch(text)
-        if found is None:
+        match = _ISO.fullmatch(text)
+        if match is None:
             raise ValueError('a time as 2026-08-01T10:38:51Z')
-        day = found['day'].replace('-', '')
+        day = match['day'].replace('-', '')
         try:
-            time = datetime.strptime(f'{day}{found["h"]}{found["m"]}{found["s"] or "00"}',
+            time = datetime.strptime(f'{day}{match["h"]}{match["m"]}{match["s"] or "00"}',
                                      '%Y%m%d%H%M%S')  # fmt: skip
         except ValueError:
             raise ValueError('a time as 2026-08-01T10:38:51Z') from None
-        stamp = _nanoseconds(time) + int((found['fraction'] or '').ljust(9, '0'))
-        zone = found['zone']
+        stamp = _nanoseconds(time) + int((match['fraction'] or '').ljust(9, '0'))
+        zone = match['zone']
         if zone is None:
             return self._to_utc(stamp)
         if zone == 'Z':

@@ -113,7 +113,7 @@ class _Reading:
                 self.left[f'column {column!r} is not {" or ".join(texts)}'] += 1
                 return []
         stamps = [self._stamp(row, number) for number in range(len(self._clocks))]
-        found = []
+        samples = []
         own = 0
         for topic, entry in self._mapping.topics.items():
             own += entry.clock is not None
@@ -126,10 +126,10 @@ class _Reading:
             ):
                 self._refuse_impossible(row, topic, entry, sample, readings)
                 self._last[topic] = readings
-                found.append(sample)
-        if not found:
+                samples.append(sample)
+        if not samples:
             self.left[NO_READING] += 1
-        return found
+        return samples
 
     def _refuse_impossible(
         self,

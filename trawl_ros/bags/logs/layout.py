@@ -220,7 +220,7 @@ def _joined(
     keys: Sequence[str],
 ) -> Iterator[LogRow | BadRow]:
     """Join the readings of one instant, which follow each other, into one row."""
-    seen: set[str] = set()
+    columns: set[str] = set()
     instant: dict[str, str] = {}
     cells: dict[str, str] = {}
     line = 0
@@ -235,13 +235,13 @@ def _joined(
             cells = {}
         if not cells:
             instant, line = now, row.line
-        seen.add(name)
+        columns.add(name)
         cells[name] = row.text(long.value)
     if cells:
         yield LogRow(path, line, {**instant, **cells})
     for column, where in needed.items():
-        if column not in seen and where not in OF_THE_ROW:
+        if column not in columns and where not in OF_THE_ROW:
             raise LogError(
                 f'{path}: no row with {column!r} in column {long.name!r} (wanted by {where}); '
-                f'there are {one_line(", ".join(sorted(seen)), 500)}'
+                f'there are {one_line(", ".join(sorted(columns)), 500)}'
             )

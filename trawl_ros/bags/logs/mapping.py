@@ -242,9 +242,9 @@ def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
 
 
 def _check_unit(key: str, unit: str, quantity: str) -> None:
-    found = UNITS.get(unit)
-    if found is None or found[0] != quantity:
-        is_one = f' of {found[0]}' if found else ''
+    known = UNITS.get(unit)
+    if known is None or known[0] != quantity:
+        is_one = f' of {known[0]}' if known else ''
         raise ValueError(
             f'{key}: found {unit!r}{is_one}, expected a unit of {quantity}: '
             f'{", ".join(units_of(quantity))}'

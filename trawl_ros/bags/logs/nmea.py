@@ -118,7 +118,11 @@ class _Listening:
                 f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date{why}; '
                 'expected one, or key date in the mapping, or time: recorder'
             )
-        return [sample for topic, found in heard.items() for sample in self._chosen(topic, found)]
+        return [
+            sample
+            for topic, sentences in heard.items()
+            for sample in self._chosen(topic, sentences)
+        ]
 
     def _lines(self) -> Iterator[tuple[str, bytes]]:
         """Yield the text in front of each sentence, and the sentence."""
@@ -187,20 +191,24 @@ class _Listening:
             moment = len(self._times.moments) - 1
             heard[topic].append(_Heard(talker, kind, stamp, moment, sample))
 
-    def _chosen(self, topic: str, found: list[_Heard]) -> list[Sample]:
+    def _chosen(self, topic: str, sentences: list[_Heard]) -> list[Sample]:
         """Select one kind of sentence from one talker, and give each its time."""
         entry = self._mapping.topics[topic]
-        there = {one.kind for one in found}
+        there = {heard.kind for heard in sentences}
         kind = next(name for name in entry.sentences if name in there)
-        talkers = Counter(one.talker for one in found if one.kind == kind)
+        talkers = Counter(heard.talker for heard in sentences if heard.kind == kind)
         wanted = set(entry.talkers or [talkers.most_common(1)[0][0]])
-        kept = [one for one in found if one.kind == kind and one.talker in wanted]
-        for one in found:
-            if one.kind != kind:
-                self.left[f'{one.kind} for {topic}, which {kind} tells'] += 1
-            elif one.talker not in wanted:
+        chosen = [heard for heard in sentences if heard.kind == kind and heard.talker in wanted]
+        for heard in sentences:
+            if heard.kind != kind:
+                self.left[f'{heard.kind} for {topic}, which {kind} tells'] += 1
+            elif heard.talker not in wanted:
                 listened = ' and '.join(sorted(wanted))
-                self.left[f'{kind} of {one.talker} for {topic}, which {listened} tells'] += 1
-        bare = [one for one in kept if one.stamp is None]
-        given = iter(spread_stamps(self._times.moments, [(one.moment, one.talker) for one in bare]))
-        return [one.sample(next(given) if one.stamp is None else one.stamp) for one in kept]
+                self.left[f'{kind} of {heard.talker} for {topic}, which {listened} tells'] += 1
+        bare = [heard for heard in chosen if heard.stamp is None]
+        given = iter(
+            spread_stamps(self._times.moments, [(heard.moment, heard.talker) for heard in bare])
+        )
+        return [
+            heard.sample(next(given) if heard.stamp is None else heard.stamp) for heard in chosen
+        ]

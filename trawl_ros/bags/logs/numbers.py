@@ -49,9 +49,9 @@ def parse_degrees(text: str, decimal: Literal['.', ','] = '.') -> float:
     bare = bare.strip()
     if bare.startswith('-'):
         sign, bare = -sign, bare[1:]
-    parts = [part for part in _DEGREES.split(bare.lower()) if part]
+    texts = [piece for piece in _DEGREES.split(bare.lower()) if piece]
     try:
-        numbers = [parse_number(part, decimal) for part in parts]
+        numbers = [parse_number(piece, decimal) for piece in texts]
     except ValueError:
         raise expected from None
     if len(numbers) == 1:

@@ -21,7 +21,7 @@ from trawl_ros.records.topics import RANGES
 from trawl_ros.records.truth import SIDES
 
 _WINCH_READINGS = ('length', 'speed', 'tension')
-_QUANTITIES = {topic: what for what, topic in RANGES.items()}
+_QUANTITIES = {topic: quantity for quantity, topic in RANGES.items()}
 
 
 def table_sample(
@@ -38,7 +38,7 @@ def table_sample(
         return None
     match topic.split('/'):
         case ['winch', _]:
-            return WinchSample(stamp, *(_pair(readings, what) for what in _WINCH_READINGS))
+            return WinchSample(stamp, *(_pair(readings, quantity) for quantity in _WINCH_READINGS))
         case [*_, place, 'pressure']:
             if water and entry.std and UNITS[entry.std.unit].quantity == 'length':
                 std = water.depth_to_difference(std)
@@ -47,14 +47,14 @@ def table_sample(
             return PressureSample(stamp, place, readings['pressure'], std)
         case ['door', side, 'attitude']:
             return AttitudeSample(stamp, side, readings['pitch'], readings['roll'], std)
-        case ['vessel', what]:
-            return _vessel_sample(what, stamp, readings, std)
+        case ['vessel', quantity]:
+            return _vessel_sample(quantity, stamp, readings, std)
     limits = [limit.si() for limit in (entry.min_range, entry.max_range) if limit]
     return RangeSample(stamp, _QUANTITIES[topic], readings['distance'], std, *limits)
 
 
-def _vessel_sample(what: str, stamp: int, readings: dict[str, float], std: float) -> Sample:
-    match what:
+def _vessel_sample(quantity: str, stamp: int, readings: dict[str, float], std: float) -> Sample:
+    match quantity:
         case 'velocity_water':
             velocity = np.array([readings['forward'], readings.get('to_port', 0.0), 0.0])
             return VelocitySample(stamp, 'water', velocity, math.nan)
@@ -67,6 +67,6 @@ def _vessel_sample(what: str, stamp: int, readings: dict[str, float], std: float
     return FixSample(stamp, latitude, longitude, std)
 
 
-def _pair(readings: dict[str, float], what: str) -> tuple[float, float]:
-    port, starboard = (readings.get(f'{side}_{what}', math.nan) for side in SIDES)
+def _pair(readings: dict[str, float], quantity: str) -> tuple[float, float]:
+    port, starboard = (readings.get(f'{side}_{quantity}', math.nan) for side in SIDES)
     return port, starboard

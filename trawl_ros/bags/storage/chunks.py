@@ -92,7 +92,7 @@ def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
 
 def salvage(record: bytes) -> bytes:
     """Unpack a damaged chunk as far as that goes; what comes out may be wrong anywhere."""
-    parts: list[bytes] = []
+    pieces: list[bytes] = []
     try:
         chunk = next(parse_records(record))
         if not isinstance(chunk, Chunk):
@@ -105,12 +105,12 @@ def salvage(record: bytes) -> bytes:
             else _unpacker(chunk.data)
         )
         left = min(chunk.uncompressed_size, MAX_CHUNK_BYTES)
-        while left > 0 and (part := unpack.read(min(left, _SMALL_STEP))):
-            parts.append(part)
-            left -= len(part)
+        while left > 0 and (piece := unpack.read(min(left, _SMALL_STEP))):
+            pieces.append(piece)
+            left -= len(piece)
     except (*DAMAGE, EOFError):
         pass
-    return b''.join(parts)
+    return b''.join(pieces)
 
 
 def inflate(data: bytes) -> bytes:
@@ -142,11 +142,11 @@ def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
     size = 0
     try:
         reader = _unpacker(packed)
-        while part := reader.read(_STEP):
-            size += len(part)
+        while piece := reader.read(_STEP):
+            size += len(piece)
             if size > limit:
                 raise Damaged(f'it becomes more than {limit} bytes, for which there is no room')
-            plain.write(part)
+            plain.write(piece)
         packed.seek(0)
         _check_size(packed.read(_FRAME_START), size)
     except zstandard.ZstdError as reason:
@@ -186,9 +186,9 @@ def _decompress(chunk: Chunk) -> bytes:
 
 
 def _read_up_to(reader: zstandard.ZstdDecompressionReader, limit: int) -> bytes:
-    parts: list[bytes] = []
+    pieces: list[bytes] = []
     left = limit
-    while left and (part := reader.read(min(left, _STEP))):
-        parts.append(part)
-        left -= len(part)
-    return b''.join(parts)
+    while left and (piece := reader.read(min(left, _STEP))):
+        pieces.append(piece)
+        left -= len(piece)
+    return b''.join(pieces)

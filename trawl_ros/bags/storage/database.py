@@ -92,11 +92,11 @@ class Database:
         try:
             with closing(self._connect()) as database:
                 rows = database.execute('SELECT topic_id, count(*) FROM messages GROUP BY topic_id')
-                found: Counter[tuple[str, str]] = Counter()
+                counts: Counter[tuple[str, str]] = Counter()
                 for number, count in rows:
                     if number in self._topics:
-                        found[self._topics[number]] += count
-                return dict(found)
+                        counts[self._topics[number]] += count
+                return dict(counts)
         except sqlite3.Error:
             return None
 

@@ -79,10 +79,10 @@ class BagTypes:
                 self._stores[key] = self._make(definition)
             except BagError as reason:
                 self._stores[key] = reason
-        found = self._stores[key]
-        if isinstance(found, BagError):
-            raise BagError(f'{topic}: {found}')
-        return found
+        store = self._stores[key]
+        if isinstance(store, BagError):
+            raise BagError(f'{topic}: {store}')
+        return store
 
     def _make(self, definition: Definition) -> Typestore:
         name = definition.type

@@ -55,9 +55,9 @@ def parse_definition(definition: Definition) -> Typesdict:
             types = get_types_from_msg(text, definition.type)
         case 'ros2idl':
             types = {}
-            for part in text.split(_IDL_SEPARATOR):
-                body = part.partition('\n')[2] if part.startswith('IDL: ') else part
-                if part.strip():
+            for section in text.split(_IDL_SEPARATOR):
+                body = section.partition('\n')[2] if section.startswith('IDL: ') else section
+                if section.strip():
                     types.update(make_typesdict(_IdlParser(body).specification()))
         case other:
             raise TypesysError(f'schema encoding {other!r}; expected ros2msg or ros2idl')
@@ -101,8 +101,8 @@ class _IdlParser(IDLParser):
             setattr(self, rule, cache(getattr(self, rule)))
 
     def _binop(self, *args: Any) -> Any:
-        found = super()._binop(*args)
-        expression = getattr(found, 'value', None)
+        value = super()._binop(*args)
+        expression = getattr(value, 'value', None)
         if isinstance(expression, BinaryExpression) and expression.op in ('<<', '*'):
             # Only these make large numbers of small ones, so they are looked at before they are
             # worked out.
@@ -114,7 +114,7 @@ class _IdlParser(IDLParser):
                 raise TypesysError('a constant of more than 64 bits')
             if expression.op == '<<' and not 0 <= factors[1] < 64:
                 raise TypesysError('a shift by more than 63 bits')
-        return found
+        return value
 
 
 class _Sizes:

@@ -42,9 +42,9 @@ class Descriptions:
                 self._channels.setdefault(record.id, record)
         self._made.clear()
 
-    def add(self, number: int, topic: str, said: Definition) -> None:
+    def add(self, number: int, topic: str, definition: Definition) -> None:
         """Settle what a channel is of which the file does not say it."""
-        self._added[number] = topic, said
+        self._added[number] = topic, definition
 
     def find(self, number: int) -> tuple[str, Definition] | None:
         """Give topic and definition of a channel's messages; None if nothing describes it."""
@@ -104,17 +104,17 @@ def read_remains(stream: BinaryIO, damaged: Mapping[int, int], size: int) -> lis
     list
         Each of those that are equal once, and `RECOVERED_RECORDS` at most.
     """
-    found: list[Description] = []
+    descriptions: list[Description] = []
     seen: set[bytes] = set()
     places = [(max(0, size - _TAIL_BYTES), _TAIL_BYTES), *damaged.items()]
     for offset, length in places:
         stream.seek(offset)
         data = stream.read(min(length, MAX_CHUNK_BYTES))
         for record in find_descriptions(salvage(data) if offset in damaged else data, seen):
-            found.append(record)
-            if len(found) == RECOVERED_RECORDS.value:
-                return found
-    return found
+            descriptions.append(record)
+            if len(descriptions) == RECOVERED_RECORDS.value:
+                return descriptions
+    return descriptions
 
 
 def find_descriptions(data: bytes, seen: set[bytes]) -> Iterator[Description]:

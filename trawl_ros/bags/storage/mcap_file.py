@@ -107,10 +107,10 @@ class McapFile:
     @property
     def definitions(self) -> dict[str, Definition]:
         """Definition of each topic's messages; the first channel of a topic counts."""
-        found: dict[str, Definition] = {}
+        by_topic: dict[str, Definition] = {}
         for topic, definition in self._known.all().values():
-            found.setdefault(topic, definition)
-        return found
+            by_topic.setdefault(topic, definition)
+        return by_topic
 
     def types(self) -> set[tuple[str, str]]:
         """Give all (topic, type) there are."""
@@ -123,13 +123,13 @@ class McapFile:
         """
         if self._statistics is None:
             return None
-        found: dict[tuple[str, str], int] = {}
+        counts: dict[tuple[str, str], int] = {}
         for number, count in self._statistics.channel_message_counts.items():
             described = self._known.find(number)
             if described and count:
                 key = (described[0], described[1].type)
-                found[key] = found.get(key, 0) + count
-        return found
+                counts[key] = counts.get(key, 0) + count
+        return counts
 
     def messages(self) -> Iterator[Stored]:
         """Give all messages in the order of their log times; equal ones as they stand in the file.
@@ -247,7 +247,7 @@ class McapFile:
         """Tell channels by evidence that nothing sound describes."""
         allowed = Allowance(self.path, self._size)
         chunks = (self._load(stream, piece, allowed) or [] for piece in self._pieces)
-        found = recover(
+        recovered = recover(
             sample_messages(chunks, lost),
             [*self._known.records(), *read_remains(stream, self._damaged, self._size)],
             {n: topic for n, (topic, _) in self._known.all().items() if n not in lost},
@@ -255,8 +255,8 @@ class McapFile:
             in_order=self._library == LIBRARY,
         )
         reasons: defaultdict[str, list[str]] = defaultdict(list)
-        for number, channel in found.items():
-            self._known.add(number, channel.topic, channel.said)
+        for number, channel in recovered.items():
+            self._known.add(number, channel.topic, channel.definition)
             reasons[channel.why].append(channel.topic)
         for why, topics in reasons.items():
             self._report(
@@ -266,9 +266,9 @@ class McapFile:
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:
         """Yield opcode, offset and length of each record before the end of data."""
-        for found in scan_records(stream, self._size, self._step_over):
-            if found[0] != Opcode.DATA_END:
-                yield found
+        for record in scan_records(stream, self._size, self._step_over):
+            if record[0] != Opcode.DATA_END:
+                yield record
             elif not self.complete:
                 self._report(f'{self.path}: the index at the end is cut short; not needed')
 

@@ -75,12 +75,12 @@ def next_chunk(stream: BinaryIO, offset: int, size: int) -> int | None:
         stream.seek(offset)
         window = stream.read(_WINDOW)
         place = 0
-        while found := _CHUNK_HEADER.search(window, place):
-            start = offset + found.start()
-            inner = int.from_bytes(found[1], 'little')
-            if start + RECORD_START.size + inner <= size and _chunk_fits(found, inner):
+        while header := _CHUNK_HEADER.search(window, place):
+            start = offset + header.start()
+            inner = int.from_bytes(header[1], 'little')
+            if start + RECORD_START.size + inner <= size and _chunk_fits(header, inner):
                 return start
-            place = found.start() + 1
+            place = header.start() + 1
         # Windows overlap, so that a header across two of them is found too.
         offset += _WINDOW - _LONGEST_HEADER
     return None
@@ -90,9 +90,9 @@ def _fits(stream: BinaryIO, opcode: int, offset: int, inner: int) -> bool:
     """True if a record's length agrees with the lengths of its own parts."""
     if opcode == Opcode.CHUNK:
         stream.seek(offset)
-        found = _CHUNK_HEADER.match(stream.read(_LONGEST_HEADER))
+        header = _CHUNK_HEADER.match(stream.read(_LONGEST_HEADER))
         # A chunk too large to be opened is passed by its length, and said by who opens it.
-        return inner > MAX_CHUNK_BYTES or (found is not None and _chunk_fits(found, inner))
+        return inner > MAX_CHUNK_BYTES or (header is not None and _chunk_fits(header, inner))
     if opcode == Opcode.MESSAGE_INDEX:
         head = stream.read(_INDEX_HEAD.size)
         return (
@@ -102,6 +102,6 @@ def _fits(stream: BinaryIO, opcode: int, offset: int, inner: int) -> bool:
     return True
 
 
-def _chunk_fits(found: re.Match[bytes], inner: int) -> bool:
-    records = int.from_bytes(found[3], 'little')
-    return inner == _BEFORE_COMPRESSION + len(found[2]) + 8 + records
+def _chunk_fits(header: re.Match[bytes], inner: int) -> bool:
+    records = int.from_bytes(header[3], 'little')
+    return inner == _BEFORE_COMPRESSION + len(header[2]) + 8 + records

@@ -75,11 +75,11 @@ class BagMetadata(_Lenient):
 
     def counts(self) -> dict[tuple[str, str], int]:
         """Give the number of messages by (topic, type), of those that have any."""
-        found: dict[tuple[str, str], int] = {}
+        counts: dict[tuple[str, str], int] = {}
         for entry in self.topics_with_message_count:
             key = (entry.topic_metadata.name, entry.topic_metadata.type)
-            found[key] = found.get(key, 0) + entry.message_count
-        return {key: count for key, count in found.items() if count}
+            counts[key] = counts.get(key, 0) + entry.message_count
+        return {key: count for key, count in counts.items() if count}
 
     def stated(self) -> StatedTopics:
         """Give what is said of each topic, for files in which it was lost."""
@@ -103,13 +103,13 @@ class BagMetadata(_Lenient):
 
     def offered(self) -> dict[str, str]:
         """Offered QoS by topic, as text; left out where it is not valid."""
-        found = {}
+        by_topic = {}
         for entry in self.topics_with_message_count:
             topic = entry.topic_metadata
             with suppress(BagError):
                 profiles = parse_profiles(topic.name, topic.offered_qos_profiles)
-                found[topic.name] = dump_profiles(profiles)
-        return found
+                by_topic[topic.name] = dump_profiles(profiles)
+        return by_topic
 
 
 @dataclass(frozen=True)

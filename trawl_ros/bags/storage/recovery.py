@@ -35,7 +35,7 @@ class Recovered:
     """A channel's topic, the definition of its messages, and why it must be this one."""
 
     topic: str
-    said: Definition
+    definition: Definition
     why: str
 
 
@@ -124,7 +124,9 @@ class _Recovery:
                 for topic in TOPICS.values()
             }
         self._places = {
-            topic: said for topic, short in places.items() if (said := self._complete(short))
+            topic: definition
+            for topic, short in places.items()
+            if (definition := self._complete(short))
         }
 
     def solve(self) -> dict[int, Recovered]:
@@ -137,8 +139,8 @@ class _Recovery:
     def _open(self) -> list[int]:
         return [number for number in self._samples if number not in self._found]
 
-    def _take(self, number: int, topic: str, said: Definition, why: str) -> None:
-        self._found[number] = Recovered(topic, said, why)
+    def _take(self, number: int, topic: str, definition: Definition, why: str) -> None:
+        self._found[number] = Recovered(topic, definition, why)
         self._topics[number] = topic
 
     def _by_claims(self, number: int) -> None:
@@ -149,20 +151,21 @@ class _Recovery:
             if len(self._claimants[channel.topic]) > 1:
                 continue
             topic = self._spelled(channel.topic)
-            said: Definition | None
+            definition: Definition | None
             if topic in self._places:
-                said, witness = self._places[topic], 'metadata.yaml' if self._stated else TABLE
+                definition = self._places[topic]
+                witness = 'metadata.yaml' if self._stated else TABLE
             elif known := find_topic(topic):
-                said, witness = self._complete(Definition(known.type, 'cdr', '', b'')), TABLE
+                definition, witness = self._complete(Definition(known.type, 'cdr', '', b'')), TABLE
             else:
-                said, witness = self._claimed(channel), 'nothing'
-            if said and self._decode(number, said):
-                qos = said.qos or channel_definition(channel, None).qos
+                definition, witness = self._claimed(channel), 'nothing'
+            if definition and self._decode(number, definition):
+                qos = definition.qos or channel_definition(channel, None).qos
                 why = f'as damaged parts of the file say and {witness} confirms'
-                fitting[topic] = replace(said, qos=qos), why
+                fitting[topic] = replace(definition, qos=qos), why
         if len(fitting) == 1:
-            ((topic, (said, why)),) = fitting.items()
-            self._take(number, topic, said, why)
+            ((topic, (definition, why)),) = fitting.items()
+            self._take(number, topic, definition, why)
 
     def _spelled(self, topic: str) -> str:
         """Give the known topic that a name is but for one letter, if it is none itself."""
@@ -177,8 +180,8 @@ class _Recovery:
         options = {
             number: {
                 topic
-                for topic, said in self._places.items()
-                if topic not in self._topics.values() and self._may_be(number, topic, said)
+                for topic, definition in self._places.items()
+                if topic not in self._topics.values() and self._may_be(number, topic, definition)
             }
             for number in self._open
         }
@@ -193,8 +196,8 @@ class _Recovery:
             if not clear:
                 break
             for topic, number in clear.items():
-                said = self._places[topic]
-                self._take(number, topic, said, f'as its messages fit no other topic {where}')
+                definition = self._places[topic]
+                self._take(number, topic, definition, f'as its messages fit no other topic {where}')
         order = self._order()
         if order and all(order.get(number) in left[number] for number in left if number in order):
             for number in [number for number in left if number in order]:
@@ -210,43 +213,45 @@ class _Recovery:
         agree = all(order.get(number, topic) == topic for number, topic in self._topics.items())
         return order if agree else {}
 
-    def _complete(self, said: Definition) -> Definition | None:
+    def _complete(self, definition: Definition) -> Definition | None:
         """Give what was said of a topic with the text of its type's definition, if that is had."""
-        if said.type in STORE.types:
-            ours = describe(said.type, said.qos)
-            if said.type_hash in ('', ours.type_hash):
+        if definition.type in STORE.types:
+            ours = describe(definition.type, definition.qos)
+            if definition.type_hash in ('', ours.type_hash):
                 return ours
-        for schema in self._schemas[said.type]:
-            whole = replace(said, schema_encoding=schema.encoding, text=schema.data)
+        for schema in self._schemas[definition.type]:
+            whole = replace(definition, schema_encoding=schema.encoding, text=schema.data)
             if self._has_right_hash(whole):
                 return whole
         return None
 
     def _claimed(self, channel: Channel) -> Definition | None:
         """Give a strange topic's definition, if there is one and its hash is right."""
-        found = (channel_definition(channel, schema) for schema in self._schemas[channel.schema_id])
-        return next(filter(self._has_right_hash, found), None)
+        definitions = (
+            channel_definition(channel, schema) for schema in self._schemas[channel.schema_id]
+        )
+        return next(filter(self._has_right_hash, definitions), None)
 
-    def _has_right_hash(self, said: Definition) -> bool:
+    def _has_right_hash(self, definition: Definition) -> bool:
         try:
-            found = self._types.store('', said).hash_rihs01(said.type)
+            own_hash = self._types.store('', definition).hash_rihs01(definition.type)
         except BagError:
             return False
-        return said.type_hash == found
+        return definition.type_hash == own_hash
 
-    def _decode(self, number: int, said: Definition) -> list[Any]:
+    def _decode(self, number: int, definition: Definition) -> list[Any]:
         """Decode a channel's messages; none at all if one is of another type."""
-        key = number, said.type, said.text
+        key = number, definition.type, definition.text
         if key not in self._decoded:
             try:
-                decode = self._types.decoder('', said)
+                decode = self._types.decoder('', definition)
                 self._decoded[key] = [decode(data) for data in self._samples[number]]
             except (BagError, MessageError):
                 self._decoded[key] = []
         return self._decoded[key]
 
-    def _may_be(self, number: int, topic: str, said: Definition) -> bool:
-        messages = self._decode(number, said)
+    def _may_be(self, number: int, topic: str, definition: Definition) -> bool:
+        messages = self._decode(number, definition)
         known = find_topic(topic)
         return bool(messages) and (
             known is None or all(_is_of(known, message) for message in messages)

@@ -53,18 +53,18 @@ def matching(publishers: Sequence[TopicEndpointInfo], profile: QoSProfile) -> Qo
     profile
         Profile to ask for as far as they all offer it; its depth is kept.
     """
-    found = QoSProfile(
+    asked = QoSProfile(
         history=profile.history,
         depth=profile.depth,
         reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL,
     )
     profiles = [publisher.qos_profile for publisher in publishers]
-    if any(other.reliability != found.reliability for other in profiles):
-        found.reliability = ReliabilityPolicy.BEST_EFFORT
-    if any(other.durability != found.durability for other in profiles):
-        found.durability = DurabilityPolicy.VOLATILE
-    return found
+    if any(other.reliability != asked.reliability for other in profiles):
+        asked.reliability = ReliabilityPolicy.BEST_EFFORT
+    if any(other.durability != asked.durability for other in profiles):
+        asked.durability = DurabilityPolicy.VOLATILE
+    return asked
 
 
 def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | None:
@@ -85,7 +85,7 @@ def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | 
         least those of ``default``, so that a fast player loses nothing.
     """
     alike = {
-        one._replace(history=QosHistory.UNKNOWN, depth=0, lifespan=FOREVER) for one in recorded
+        qos._replace(history=QosHistory.UNKNOWN, depth=0, lifespan=FOREVER) for qos in recorded
     }
     if not recorded:
         return default
@@ -93,9 +93,9 @@ def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | 
         return None
     first = recorded[0]
     latched = first.durability is QosDurability.TRANSIENT_LOCAL
-    depths = [one.depth for one in recorded if one.history is QosHistory.KEEP_LAST and one.depth]
+    depths = [qos.depth for qos in recorded if qos.history is QosHistory.KEEP_LAST and qos.depth]
     depth = max(depths, default=default.depth)
-    found = QoSProfile(
+    profile = QoSProfile(
         history=HistoryPolicy.KEEP_LAST,
         depth=depth if latched else max(depth, default.depth),
         reliability=default.reliability,
@@ -105,15 +105,15 @@ def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | 
         liveliness_lease_duration=_duration(first.liveliness_lease_duration),
         avoid_ros_namespace_conventions=first.avoid_ros_namespace_conventions,
     )
-    if latched and any(one.history is QosHistory.KEEP_ALL for one in recorded):
-        found.history = HistoryPolicy.KEEP_ALL
+    if latched and any(qos.history is QosHistory.KEEP_ALL for qos in recorded):
+        profile.history = HistoryPolicy.KEEP_ALL
     if first.reliability in _RELIABILITIES:
-        found.reliability = ReliabilityPolicy(first.reliability.value)
+        profile.reliability = ReliabilityPolicy(first.reliability.value)
     if first.durability in _DURABILITIES:
-        found.durability = DurabilityPolicy(first.durability.value)
+        profile.durability = DurabilityPolicy(first.durability.value)
     if first.liveliness in _LIVELINESSES:
-        found.liveliness = LivelinessPolicy(first.liveliness.value)
-    return found
+        profile.liveliness = LivelinessPolicy(first.liveliness.value)
+    return profile
 
 
 def _as_recorded(profile: QoSProfile) -> Qos:

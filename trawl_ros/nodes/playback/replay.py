@@ -55,7 +55,7 @@ def replayed(
     there = sorted(set(definitions) - {CLOCK.name})
     if missing := sorted(set(wanted) - set(there)):
         raise BagError(f'{bag.path}: no topic {", ".join(missing)}; there are: {", ".join(there)}')
-    found: dict[str, Replayed] = {}
+    by_topic: dict[str, Replayed] = {}
     left_out = []
     for topic in there:
         if wanted and topic not in wanted:
@@ -68,10 +68,10 @@ def replayed(
             continue
         usual = offered(find_topic(topic, namespace))
         again = offered_again(recorded[topic], usual)
-        found[topic] = Replayed(definitions[topic].type, again or usual, again is not None)
-    if not found:
+        by_topic[topic] = Replayed(definitions[topic].type, again or usual, again is not None)
+    if not by_topic:
         raise BagError('; '.join(left_out) or f'{bag.path}: no topic to be played')
-    return found, left_out
+    return by_topic, left_out
 
 
 def _hindrance(bag: Bag, topic: str, definition: Definition) -> str:

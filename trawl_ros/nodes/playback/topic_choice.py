@@ -37,8 +37,8 @@ class TopicChoice:
         patterns: Mapping[str, str],
         never: Collection[str],
     ) -> None:
-        found = {name: _compiled(name, pattern) for name, pattern in patterns.items()}
-        self._added, self._left_out = found.get('regex'), found.get('exclude_regex')
+        compiled = {name: _compiled(name, pattern) for name, pattern in patterns.items()}
+        self._added, self._left_out = compiled.get('regex'), compiled.get('exclude_regex')
         self._everything = ALL in named
         self._named = frozenset(named) if named or self._added else frozenset(project)
         self._never = frozenset(never)

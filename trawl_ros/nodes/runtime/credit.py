@@ -131,9 +131,9 @@ class Consumers:
 
     def ready(self) -> bool:
         """True if all have been there, and discovery has come to rest; once true it stays so."""
-        found = self._node.subscribers()
-        if found != self._subscribers:
-            self._subscribers, self._changed = found, time.monotonic()
+        subscribers = self._node.subscribers()
+        if subscribers != self._subscribers:
+            self._subscribers, self._changed = subscribers, time.monotonic()
         settled = time.monotonic() - self._changed > SETTLED_S
         self._ready = self._ready or (settled and not self.missing())
         return self._ready

@@ -117,14 +117,14 @@ class Leaps:
         if self._newest is None or abs(stamp - self._newest) <= self._far:
             self._newest = stamp
             return [message], len(held)
-        agreeing = [one for one in held if abs(stamp - one[0]) <= self._far]
+        agreeing = [waiting for waiting in held if abs(stamp - waiting[0]) <= self._far]
         self._held = [*agreeing, (stamp, message)]
         false = len(held) - len(agreeing)
         if len(self._held) < CONFIRM:
             return [], false
         self._newest = stamp
-        found, self._held = [one for _, one in self._held], []
-        return found, false
+        messages, self._held = [message for _, message in self._held], []
+        return messages, false
 
 
 def decoding(topic: str, type_name: str, use: Callable[[Any], None]) -> Callable[[bytes], None]:
@@ -157,8 +157,8 @@ def settling(
         believed, false = leaps.take(stamp_in(message), message)
         for _ in range(false):
             refuse(f'{topic} is stamped far from its other messages, and only for a moment')
-        for one in believed:
-            use(one)
+        for message_of_leap in believed:
+            use(message_of_leap)
 
     return take
 

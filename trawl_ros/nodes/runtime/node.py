@@ -135,16 +135,16 @@ class TrawlNode(ConnectedNode):
         elif before != OK:
             log.info(f'{name}: {message}')
 
-    def _note_trouble(self, what: str, sentence: str) -> None:
-        if self._troubles.get(what) != sentence:
-            self._troubles[what] = sentence
-            self.get_logger().error(f'{what}: {sentence}')
+    def _note_trouble(self, activity: str, sentence: str) -> None:
+        if self._troubles.get(activity) != sentence:
+            self._troubles[activity] = sentence
+            self.get_logger().error(f'{activity}: {sentence}')
 
     def all_statuses(self) -> list[Status]:
         """Give what the node says of itself on /diagnostics, each sentence and value bounded."""
         clock = clock_status(self)
         clock = replace(clock, values={**clock.values, **self.headway.report()})
-        return [_bounded(one) for one in (self._traffic_status(), clock, *self.statuses())]
+        return [_bounded(status) for status in (self._traffic_status(), clock, *self.statuses())]
 
     def _diagnose(self) -> None:
         statuses = self.all_statuses()
@@ -181,8 +181,8 @@ class TrawlNode(ConnectedNode):
         message = '; '.join(problems) or 'messages are flowing as they should'
         level = WARN if problems else OK
         if self._troubles:
-            what, sentence = list(self._troubles.items())[-1]
-            level, message = ERROR, f'{what}: {sentence}'
+            activity, sentence = list(self._troubles.items())[-1]
+            level, message = ERROR, f'{activity}: {sentence}'
         return Status('messages', level, message, values)
 
 

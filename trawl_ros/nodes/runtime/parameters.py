@@ -42,24 +42,24 @@ class Number:
 
     def descriptor(self) -> ParameterDescriptor:
         """Return the descriptor for ROS tools."""
-        found = _descriptor(f'{self.sentence} ({self.unit})', self.live)
+        descriptor = _descriptor(f'{self.sentence} ({self.unit})', self.live)
         if self.whole:
             bounds = IntegerRange(from_value=int(self.low), to_value=int(self.high), step=0)
-            found.integer_range = [bounds]
+            descriptor.integer_range = [bounds]
         else:
-            found.floating_point_range = [
+            descriptor.floating_point_range = [
                 FloatingPointRange(from_value=self.low, to_value=self.high, step=0.0)
             ]
-        return found
+        return descriptor
 
     def checked(self, value: Any) -> float:
         """Return the checked number, an int as well as a double."""
         kinds: tuple[type, ...] = (int,) if self.whole else (int, float)
-        what = 'a whole number' if self.whole else 'a number'
+        kind = 'a whole number' if self.whole else 'a number'
         good = isinstance(value, kinds) and not isinstance(value, bool)
         if not good or not (math.isfinite(value) and self.low <= value <= self.high):
             raise ParameterError(
-                f'parameter {self.name}: found {value!r}, expected {what} from {self.low:g} to '
+                f'parameter {self.name}: found {value!r}, expected {kind} from {self.low:g} to '
                 f'{self.high:g} ({self.unit})'
             )
         return int(value) if self.whole else float(value)

@@ -63,7 +63,7 @@ class Rewinding:
 
     def _confirmed(self, stamp: int) -> bool:
         """True if enough readings of the winch have leapt to about here."""
-        self._leaps = [one for one in self._leaps if abs(stamp - one) <= BACK_NS]
+        self._leaps = [leap for leap in self._leaps if abs(stamp - leap) <= BACK_NS]
         self._leaps.append(stamp)
         return len(self._leaps) >= CONFIRM
 

@@ -82,7 +82,7 @@ class Source:
             return True
         # Not asked of each message: numbers that follow one another are of one publisher.
         several = self._publishers() > 1
-        other = next((one for one in self._others if number == one.number + 1), None)
+        other = next((twin for twin in self._others if number == twin.number + 1), None)
         if not several and other is None:
             self._go_on(source, number, now)
             return True
@@ -99,7 +99,7 @@ class Source:
         if several and now - source.heard_at <= source.patience_s:
             return False
         self._source = other
-        self._others = [one for one in self._others if one is not other]
+        self._others = [twin for twin in self._others if twin is not other]
         return True
 
     def _go_on(self, source: _Publisher, number: int, now: float) -> None:

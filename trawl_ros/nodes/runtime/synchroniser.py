@@ -37,9 +37,9 @@ class Joiner:
             self._runs[topic] += 1
         self._latest[topic] = stamp
         key = (self._run_of(topic, stamp), stamp)
-        found = self._waiting.setdefault(key, {})
-        found[topic] = message
-        if len(found) < len(self._topics):
+        by_topic = self._waiting.setdefault(key, {})
+        by_topic[topic] = message
+        if len(by_topic) < len(self._topics):
             if len(self._waiting) > LONGEST_WAIT:
                 # The one that waits longest: what false stamps have left behind may be ahead.
                 self._give_up(next(iter(self._waiting)))
@@ -57,7 +57,9 @@ class Joiner:
         """
         own = self._runs[topic]
         awaiting = [
-            run for (run, at), found in self._waiting.items() if at == stamp and topic not in found
+            run
+            for (run, at), by_topic in self._waiting.items()
+            if at == stamp and topic not in by_topic
         ]
         if awaiting and own not in awaiting and (own, stamp) not in self._waiting:
             self._runs[topic] = max(awaiting)

@@ -10,9 +10,15 @@ from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
-def innovations_of(found: Innovations) -> list[ChannelInnovation]:
+def innovations_of(innovations: Innovations) -> list[ChannelInnovation]:
     """Return the innovations of a window channel by channel."""
-    rows = zip(found.channels, found.values, found.stds, found.test_ratios, strict=True)
+    rows = zip(
+        innovations.channels,
+        innovations.values,
+        innovations.stds,
+        innovations.test_ratios,
+        strict=True,
+    )
     return [ChannelInnovation(name, float(v), float(s), float(r)) for name, v, s, r in rows]
 
 
@@ -76,15 +82,15 @@ def channels_status(outcome: EstimatorOutcome) -> Status:
         values[f'{name} arrived'] = str(count.arrived)
         values[f'{name} accepted'] = str(count.accepted)
     beyond = []
-    if outcome.estimate is not None and (found := outcome.estimate.innovation) is not None:
-        for seen in innovations_of(found):
+    if outcome.estimate is not None and (innovations := outcome.estimate.innovation) is not None:
+        for innovation in innovations_of(innovations):
             values |= {
-                f'{seen.channel} innovation': f'{seen.innovation:.6g}',
-                f'{seen.channel} std': f'{seen.std:.6g}',
-                f'{seen.channel} test ratio': f'{seen.ratio:.4g}',
+                f'{innovation.channel} innovation': f'{innovation.innovation:.6g}',
+                f'{innovation.channel} std': f'{innovation.std:.6g}',
+                f'{innovation.channel} test ratio': f'{innovation.ratio:.4g}',
             }
-            if seen.ratio > 1.0:
-                beyond.append(f'{seen.channel} is beyond what its stated errors allow')
+            if innovation.ratio > 1.0:
+                beyond.append(f'{innovation.channel} is beyond what its stated errors allow')
     for name, white in outcome.whiteness.items():
         values[f'{name} whiteness'] = 'too few windows' if white is None else f'{white.p_value:.3g}'
         if white is not None and not white.white:
@@ -99,9 +105,9 @@ def instruments_status(estimate: Estimate) -> Status:
         f'noise scale {group}': f'{scale:.4g}' for group, scale in estimate.noise_scales.items()
     }
     values['misfit'] = f'{estimate.birge_ratio:.4g}'
-    for found in estimate.tow_biases:
-        values[f'tow {found.tow + 1} {found.channel} bias'] = (
-            f'{found.value:.4g} ± {found.std:.2g} {found.unit}'
+    for bias in estimate.tow_biases:
+        values[f'tow {bias.tow + 1} {bias.channel} bias'] = (
+            f'{bias.value:.4g} ± {bias.std:.2g} {bias.unit}'
         )
     message = 'noise as found over noise as stated, and what each tow reads too high by'
     return Status('identification: instruments', OK, message, values)

@@ -43,15 +43,15 @@ def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
     return statuses
 
 
-def _sizes(one: Refit) -> dict[str, dict[str, str]]:
-    found: dict[str, dict[str, str]] = {}
-    for name, values in values_of(one).items():
-        found[name] = {}
+def _sizes(refit: Refit) -> dict[str, dict[str, str]]:
+    by_effect: dict[str, dict[str, str]] = {}
+    for name, values in values_of(refit).items():
+        by_effect[name] = {}
         for parameter, (value, low, high, unit) in values.items():
-            found[name] |= {
+            by_effect[name] |= {
                 parameter: f'{value:.6g}',
                 f'{parameter} low': f'{low:.6g}',
                 f'{parameter} high': f'{high:.6g}',
                 f'{parameter} unit': unit,
             }
-    return found
+    return by_effect

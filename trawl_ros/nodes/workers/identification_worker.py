@@ -192,13 +192,13 @@ class IdentificationWorker(Thread):
         self._troubles.pop('saving', None)
         self._attempt('saving', lambda: self._save(self._identification))
 
-    def _attempt(self, what: str, act: Callable[[], None]) -> None:
+    def _attempt(self, activity: str, act: Callable[[], None]) -> None:
         """Run an action; an error of it is reported, and the thread lives on."""
         try:
             act()
         except Exception as reason:
             # Unsaid, it would end the thread: the node would look alive and estimate nothing.
-            self._troubles[what] = sentence_of(reason)
+            self._troubles[activity] = sentence_of(reason)
 
     def _tell(self, finished: str | None = None, failed: bool = False) -> None:
         self.outcome = self._outcome(finished, failed)

@@ -69,4 +69,7 @@ def readings_of(identification: Identification) -> dict[str, Readings]:
 
 def whiteness_of(identification: Identification) -> dict[str, Whiteness | None]:
     """Test the innovations of each channel."""
-    return {found.channel: found.whiteness for found in innovations(identification.course)}
+    return {
+        innovation.channel: innovation.whiteness
+        for innovation in innovations(identification.course)
+    }
