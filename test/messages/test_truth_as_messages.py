@@ -8,7 +8,10 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.cdr import deserialize, serialize
-from trawl_ros.messages.from_messages import (
+from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
+from trawl_ros.messages.rotations import to_quaternion
+from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.messages.truth_from_messages import (
     door_truth,
     net_truth,
     schools_truth,
@@ -16,9 +19,6 @@ from trawl_ros.messages.from_messages import (
     vessel_truth,
     winch_truth,
 )
-from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
-from trawl_ros.messages.rotations import to_quaternion
-from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
 from trawl_ros.records.topics import TOPICS, TRUTH
 from trawl_ros.records.truth import (
