@@ -127,7 +127,7 @@ def _visits(readings: list[tuple[int, int, tuple[float, ...]]]) -> int:
     readings = sorted(readings, key=lambda reading: reading[1])
     times = np.array([stamp - readings[0][1] for _, stamp, _ in readings], dtype=float)
     courses = np.array([values for _, _, values in readings]).T
-    # What no instrument can say is refused elsewhere.
+    # Values beyond any instrument are refused elsewhere.
     with np.errstate(over='ignore', invalid='ignore'):
         return max(_beside(times, sign * course) for course in courses for sign in (1.0, -1.0))
 
