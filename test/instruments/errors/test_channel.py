@@ -99,3 +99,11 @@ def test_one_kind_of_error_leaves_the_draws_of_the_others_alone() -> None:
 def test_an_unknown_truth_stays_unknown() -> None:
     channel = ErrorChannel('a', ErrorModel(white=NoiseModel(1.0), resolution=0.1), 0)
     assert math.isnan(channel.measure(math.nan, 0))
+
+
+def test_a_share_of_readings_is_the_one_before_once_more() -> None:
+    plain = readings(ErrorModel(white=NoiseModel(1.0)), n=4000)
+    repeated = readings(ErrorModel(white=NoiseModel(1.0), repeated=0.2), n=4000)
+    again = np.diff(repeated) == 0.0
+    assert np.mean(again) == pytest.approx(0.2, abs=0.02)
+    assert np.array_equal(repeated[1:][~again], plain[1:][~again])

@@ -36,7 +36,8 @@ class ErrorModel:
     ``scale`` is the part by which readings are too large, ``offset`` is added to them, and
     ``drift`` per hour since the first reading. A share ``outlier_share`` of them is off by a
     normal error of ``outlier_std`` more. None is below ``lowest`` or above ``highest``. In
-    spells of ``freezes`` the reading stays what it was. ``false_echoes`` come a longer way.
+    spells of ``freezes`` the reading stays what it was, and so does a share ``repeated`` of all.
+    ``false_echoes`` come a longer way.
     """
 
     white: NoiseModel = NO_NOISE
@@ -53,6 +54,7 @@ class ErrorModel:
     lowest: float = -math.inf
     highest: float = math.inf
     freezes: BurstModel = NO_BURSTS
+    repeated: float = 0.0
     false_echoes: tuple[FalseEchoModel, ...] = ()
 
 
@@ -112,6 +114,7 @@ class ErrorChannel:
             for number, model in enumerate(self.errors.false_echoes)
         ]
         self._freezes = Bursts(self.errors.freezes, self._generator('freezes'))
+        self._repeats = self._generator('repeats')
         self._correlated: tuple[int, float] | None = None
         self._bias: tuple[int, float] | None = None
         self._first: int | None = None
@@ -140,7 +143,8 @@ class ErrorChannel:
         reading = min(max(reading, errors.lowest), errors.highest)
         if errors.resolution > 0 and math.isfinite(reading):
             reading = round(reading / errors.resolution) * errors.resolution
-        hangs = self._freezes.on(stamp) or 'frozen' in self._faults
+        repeats = errors.repeated > 0.0 and self._repeats.random() < errors.repeated
+        hangs = self._freezes.on(stamp) or repeats or 'frozen' in self._faults
         if hangs and not math.isnan(self._latest):
             reading = self._latest
         self._latest = float(reading)

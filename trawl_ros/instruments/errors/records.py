@@ -27,7 +27,8 @@ class ChannelErrors(Record):
     ``scale_error`` is the part by which readings are too large, ``offset_m`` is added to them,
     and ``drift_m_per_hour`` from the first reading on. Readings are multiples of
     ``resolution_m``, none below ``lowest_m`` or above ``highest_m``. The sensor hangs
-    ``freezes_per_hour`` times, for ``freeze_s`` in the mean. ``stated_std_m`` is what the maker
+    ``freezes_per_hour`` times, for ``freeze_s`` in the mean, and gives a share ``repeat_share``
+    of its readings a second time instead of a new one. ``stated_std_m`` is what the maker
     states; if that is left out, noise and rounding together are stated. Noise grows by the part
     ``noise_of_reading`` of the quantity, and is Student's t with ``noise_tail_dof`` degrees of
     freedom, of the same standard deviation, where that is given.
@@ -41,6 +42,7 @@ class ChannelErrors(Record):
     outlier_share: Share = 0.0
     noise_of_reading: Share = 0.0
     noise_tail_dof: Annotated[float, Field(gt=2)] = math.inf
+    repeat_share: Share = 0.0
     freezes_per_hour: NotNegative = 0.0
     freeze_s: Seconds = 0.0
 
@@ -82,6 +84,7 @@ class ChannelErrors(Record):
             outlier_std=self._si('outlier'),
             lowest=self._si('lowest'),
             highest=self._si('highest'),
+            repeated=self.repeat_share,
             freezes=BurstModel(self.freezes_per_hour, self.freeze_s),
         )
 

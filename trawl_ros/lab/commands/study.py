@@ -20,6 +20,7 @@ from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.files import empty_folder, made_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.gear.load import load_gear
+from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.lab.commands.outcome import print_outcome, stoppable
 from trawl_ros.lab.studies.chaos.plan import Plan as ChaosPlan
 from trawl_ros.lab.studies.chaos.report import REPORT as CHAOS_REPORT
@@ -36,6 +37,10 @@ from trawl_ros.lab.studies.identification.report import REPORT as IDENTIFICATION
 from trawl_ros.lab.studies.identification.report import write_identification
 from trawl_ros.lab.studies.identification.study import EstimationStudyPlan as IdentificationPlan
 from trawl_ros.lab.studies.identification.study import run_study
+from trawl_ros.lab.studies.instruments.report import REPORT as INSTRUMENTS_REPORT
+from trawl_ros.lab.studies.instruments.report import write_instruments
+from trawl_ros.lab.studies.instruments.study import SEED as INSTRUMENTS_SEED
+from trawl_ros.lab.studies.instruments.study import run_instruments
 from trawl_ros.lab.studies.robustness.report import REPORT as ROBUSTNESS_REPORT
 from trawl_ros.lab.studies.robustness.report import write_robustness
 from trawl_ros.lab.studies.robustness.study import LENGTHS, RobustnessPlan, run_robustness
@@ -177,6 +182,28 @@ def identification(
         found = run_study(plan, out, display, scheduler=scheduler, force=force, small=small)
     rows = write_identification(out, plan, found.sections, found.figure)
     print_outcome(rows, out / IDENTIFICATION_REPORT)
+
+
+@command.command('instruments')
+@click.option('--table', 'table', type=FILE, required=True,
+              help='Readings of a survey, CSV packed by gzip: HAUL, t, CABINET_SENSOR_FLAG, VALUE, '
+              'DATUM_CODE.')  # fmt: skip
+@click.option('--instruments', default='measured', show_default=True,
+              help='File or name of instrument parameters.')  # fmt: skip
+@REPORT_OPTION
+@click.option('--seed', default=INSTRUMENTS_SEED, show_default=True,
+              type=click.IntRange(0, 2**31), help='Of the simulated readings.')  # fmt: skip
+@FORCE_OPTION
+def instruments(table: Path, instruments: str, out: Path, seed: int, force: bool) -> None:
+    """Set simulated range sensors beside those of a survey, haul by haul.
+
+    Writes instruments.json, .md, .html and figures; a target that is missed is part of the report.
+    """
+    ship = load_instruments(instruments)
+    empty_folder(out, force=force)
+    with stoppable() as (display, _):
+        found = run_instruments(table, ship, display, seed)
+    print_outcome(write_instruments(out, found, instruments, seed), out / INSTRUMENTS_REPORT)
 
 
 @command.command('counters')

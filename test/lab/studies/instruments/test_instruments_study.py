@@ -1,0 +1,142 @@
+"""Measured sensors and simulated ones are held to the same statistics, and to the same gates."""
+
+import gzip
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from trawl_ros.cli.main import trawl
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.instruments.parameters import RangeParameters, load_instruments
+from trawl_ros.lab.studies.instruments.course import running_median, towing
+from trawl_ros.lab.studies.instruments.guards import gate
+from trawl_ros.lab.studies.instruments.simulated import simulated
+from trawl_ros.lab.studies.instruments.statistics import SPREAD_LIMITS, STATISTICS, statistics
+from trawl_ros.lab.studies.instruments.survey import (
+    FILE,
+    HEIGHT,
+    SPREAD,
+    Series,
+    SurveyHaul,
+    read_survey,
+)
+
+MEASURED = Path(__file__).parents[5] / 'shared/data/noaa_trawlmetrics' / FILE
+ABSENT = 'the measured readings are not beside this'
+
+
+def haul(number=1, seconds=2000, seed=1, far=0.1):
+    """A haul of a sensor that reads 16 m every 3 s, and 226 m in a share of the readings."""
+    drawn = np.random.default_rng(seed)
+    time = np.arange(0.0, seconds, 3.0)
+    level = np.interp(time, [0.0, 200.0, seconds - 200.0, seconds], [3.0, 16.0, 16.0, 3.0])
+    value = level + 0.3 * drawn.standard_normal(len(time))
+    value += np.where(drawn.random(len(time)) < far, 210.0, 0.0)
+    return SurveyHaul(number, Series(time, np.round(value, 1), np.zeros(len(time), dtype=np.int64)))
+
+
+def written(path, hauls):
+    rows = ['HAUL,t,CABINET_SENSOR_FLAG,VALUE,DATUM_CODE']
+    for flag in (SPREAD, HEIGHT):
+        for one in hauls:
+            pairs = zip(one.series.time, one.series.value, strict=True)
+            rows += [f'{one.number},{t:.0f},{flag},{v:.1f},0' for t, v in pairs]
+    with gzip.open(path, 'wt') as file:
+        file.write('\n'.join(rows))
+    return path
+
+
+def test_statistics_find_what_was_put_in():
+    found = statistics(haul(far=0.1).series, SPREAD_LIMITS)
+    assert list(found) == list(STATISTICS)
+    assert found['rate'] == pytest.approx(20.0, rel=0.01)
+    assert (found['interval'], found['longest'], found['silent']) == (3.0, 3.0, 0.0)
+    assert found['scatter'] == pytest.approx(0.3, rel=0.1)
+    assert found['far'] == pytest.approx(10.0, abs=3.0)
+    assert found['above'] == 0.0
+    assert np.isnan(found['excess'])
+    assert abs(found['next']) < 0.2
+    assert found['runs'] == pytest.approx(10.0, abs=8.0)
+
+
+def test_towing_leaves_shooting_and_hauling_out():
+    begin, end = towing(haul().series)
+    assert 200.0 < begin < 280.0
+    assert 1720.0 < end < 1800.0
+
+
+def test_a_running_median_does_not_follow_outliers():
+    series = haul(far=0.2).series
+    course = running_median(series.time, series.value, 60.0)
+    assert np.abs(course[100:500] - 16.0).max() < 1.0
+
+
+def test_a_perfect_sensor_gives_the_course_and_one_with_errors_has_their_statistics():
+    limits = {'rate_hz': 1 / 3, 'min_range_m': 0.1, 'max_range_m': 400.0}
+    perfect = simulated(haul(), RangeParameters(**limits), 3)
+    towed = (perfect.time > 300.0) & (perfect.time < 1700.0)
+    assert np.abs(perfect.value[towed] - 16.0).max() < 0.3
+    assert len(np.unique(perfect.time)) == len(perfect.time)
+    errors = {'noise_m': 0.3, 'ambiguity_share': 0.1, 'ambiguity_m': 210.0}
+    found = statistics(simulated(haul(), RangeParameters(**limits, **errors), 3), SPREAD_LIMITS)
+    assert found['far'] == pytest.approx(10.0, abs=3.0)
+    assert found['scatter'] == pytest.approx(0.3, rel=0.1)
+
+
+def test_gates_reject_repeated_seconds_and_far_readings_and_say_what_editors_did():
+    series = haul(far=0.05).series
+    time = np.insert(series.time, 300, series.time[300])
+    value = np.insert(series.value, 301, 16.4)
+    code = np.insert(series.code, 301, 2)
+    counts, reasons = gate(Series(time, value, code), 'door_spread', 0.3)
+    assert (counts.readings, counts.by_editors) == (len(time), 1)
+    assert (counts.stamps, counts.both) == (1, 1)
+    assert counts.agreement(with_outliers=False) == 1.0
+    assert counts.off == counts.off_kept == pytest.approx(0.05 * counts.towed, rel=0.5)
+    assert counts.agreement(with_outliers=True) < 0.1
+    assert counts.used + sum(reasons.values()) == counts.windows
+
+
+@pytest.mark.parametrize('text', ['', 'a,b\n1,2\n', 'HAUL,t\n1,2\n'])
+def test_what_is_no_survey_is_refused(tmp_path, text):
+    path = tmp_path / 'survey.csv.gz'
+    with gzip.open(path, 'wt') as file:
+        file.write(text)
+    with pytest.raises(TrawlError, match=r'survey\.csv\.gz: .*expected'):
+        read_survey(path)
+    path.write_text('not packed')
+    with pytest.raises(TrawlError, match=r'survey\.csv\.gz: cannot be read'):
+        read_survey(path)
+
+
+def test_the_command_writes_a_report_with_all_statistics(tmp_path):
+    table = written(tmp_path / 'survey.csv.gz', [haul(n, seed=n) for n in range(1, 5)])
+    out = tmp_path / 'out'
+    done = CliRunner().invoke(
+        trawl, ['study', 'instruments', '--table', str(table), '--out', str(out)]
+    )
+    assert done.exit_code == 0, done.output
+    rows = json.loads((out / 'instruments.json').read_text())['rows']
+    assert len(rows) == 2 * (len(STATISTICS) + 3)
+    assert (out / 'instruments.png').is_file()
+    report = (out / 'instruments.md').read_text()
+    assert all(sentence in report for sentence, _ in STATISTICS.values())
+
+
+@pytest.mark.skipif(not MEASURED.is_file(), reason=ABSENT)
+def test_measured_hauls_repeat_seconds_and_are_ambiguous_by_210_metres():
+    survey = read_survey(MEASURED)
+    assert {flag: len(hauls) for flag, hauls in survey.items()} == {SPREAD: 71, HEIGHT: 70}
+    for hauls in survey.values():
+        for one in hauls:
+            series = one.series
+            repeated = np.append(False, np.diff(series.time) == 0.0)
+            assert np.count_nonzero(series.code) == np.count_nonzero(repeated)
+    ship = load_instruments('measured')
+    far = [statistics(one.series.kept(), SPREAD_LIMITS)['far'] for one in survey[SPREAD][1::2]]
+    made = simulated(survey[SPREAD][0], ship.door.spread, 20)
+    low, high = np.percentile(far, [5, 95])
+    assert low < statistics(made, SPREAD_LIMITS)['far'] < high

@@ -1,0 +1,1 @@
+"""The study of instruments beside measured ones."""
