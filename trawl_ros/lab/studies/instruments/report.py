@@ -95,7 +95,7 @@ def _row(name: str, key: str, judged: Comparison) -> MeasuredValue:
         f'{name}: {sentence}',
         judged.median(key),
         unit,
-        between(low, high),
+        None if np.isnan(low) else between(low, high),
         f'{100.0 * judged.inside(key):.0f} % of the simulated hauls lie within; measured median '
         f'{percentiles(judged.measured[key])[1]:.3g}',
     )
