@@ -8,7 +8,7 @@ complex for a complex step where no slopes are asked for.
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.compiled import compiled
+from trawl_ros.model.compiled import compiled, inner
 
 SLACK_WIDTH = 1e-4
 """Half the range of strain over which slack passes smoothly into taut; eq. 20 has a kink."""
@@ -17,7 +17,7 @@ STILL = 1e-6
 """Speed (m/s) below which quadratic drag is rounded off, so that its derivative exists."""
 
 
-@compiled
+@inner
 def between(
     x: FloatArray,
     v: FloatArray,
@@ -36,7 +36,7 @@ def between(
     return height
 
 
-@compiled
+@inner
 def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
     """Elastic strain of a bar that bows under a load across it, and its first two derivatives.
 
@@ -56,7 +56,7 @@ def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
     return e + slope * beside, slope + curve * beside, curve
 
 
-@compiled
+@inner
 def taut_at(strain: float, bow: float) -> tuple[float, float, float]:
     """Elastic strain of a bar, and its first two derivatives: the positive part with a rounded
     corner or, where the bar bows, as `bowed_at` has it.
@@ -71,7 +71,7 @@ def taut_at(strain: float, bow: float) -> tuple[float, float, float]:
     return 0 * strain, 0 * strain, 0.0
 
 
-@compiled
+@inner
 def tension_at(
     stiffness: float,
     damping_time: float,
@@ -92,7 +92,7 @@ def tension_at(
     return stiffness * (value + damping_time * slope * closing / rest)
 
 
-@compiled
+@inner
 def drag_at(
     normal_area: float,
     sliding_area: float,
@@ -124,7 +124,7 @@ def weight_at(mass: float, volume: float, rest: float, density: float, gravity: 
     return -gravity * (mass - density * volume) * rest
 
 
-@compiled
+@inner
 def pull_slopes_at(
     stiffness: float,
     damping_time: float,
@@ -158,7 +158,7 @@ def pull_slopes_at(
             by_stretching[i, j] = viscous * along[i] * along[j]
 
 
-@compiled
+@inner
 def load_slopes_at(
     normal_area: float,
     sliding_area: float,

@@ -54,8 +54,8 @@ def add_bar_forces(
     stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
     bow = bars[10]
     density, gradient, gravity, knots, cubics = water
-    vector, stretching, velocity = np.empty((3, 3), x.dtype)
-    along, flow, load = np.empty((3, 3), x.dtype)
+    vector, stretching, velocity = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
+    along, flow, load = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
     shear = np.empty(3)
     for n in range(len(ends)):
         start, end = ends[n, 0], ends[n, 1]
@@ -102,11 +102,12 @@ def add_bar_blocks(
     bow = bars[10]
     density, gradient, gravity, knots, cubics = water
     plain = len(order) - len(k_others)
-    vector, stretching, velocity = np.empty((3, 3))
-    along, flow, load = np.empty((3, 3))
-    shear, by_height = np.empty((2, 3))
-    by_vector, by_stretching, load_by_vector, load_by_velocity = np.empty((4, 3, 3))
-    k, c = np.empty((2, 6, 6))
+    vector, stretching, velocity = np.empty(3), np.empty(3), np.empty(3)
+    along, flow, load = np.empty(3), np.empty(3), np.empty(3)
+    shear, by_height = np.empty(3), np.empty(3)
+    by_vector, by_stretching = np.empty((3, 3)), np.empty((3, 3))
+    load_by_vector, load_by_velocity = np.empty((3, 3)), np.empty((3, 3))
+    k, c = np.empty((6, 6)), np.empty((6, 6))
     for number in range(len(order)):
         n = order[number]
         start, end = ends[n, 0], ends[n, 1]

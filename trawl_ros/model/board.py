@@ -21,7 +21,7 @@ from trawl_ros.model.board_law import (
     fill_total,
 )
 from trawl_ros.model.board_table import TableLaw
-from trawl_ros.model.compiled import alike
+from trawl_ros.model.compiled import as_kind, stepped_among
 from trawl_ros.model.hooks import CoefficientModifier
 from trawl_ros.model.numerics import angle, transpose
 from trawl_ros.model.rotations import about_axis
@@ -121,12 +121,16 @@ def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) ->
         part stays.
     """
     shape = np.broadcast_shapes(np.shape(attack), np.shape(slip))
-    values, *angles = alike(
-        values, *(np.broadcast_to(given, shape).ravel() for given in (attack, slip))
-    )
-    coefficients = np.empty((*angles[0].shape, 6), values.dtype)
+    given = values, *(np.broadcast_to(angles, shape).ravel() for angles in (attack, slip))
+    values, *angles = as_kind(complex, *given)
+    coefficients = np.empty((*angles[0].shape, 6), complex)
     fill_coefficients(values, *angles, coefficients)
-    return coefficients.reshape(*shape, 6)
+    return _like(given, coefficients).reshape(*shape, 6)
+
+
+def _like(given: tuple[FloatArray, ...], found: FloatArray) -> FloatArray:
+    """What the law, which is compiled for complex numbers, finds: real for real numbers."""
+    return found if stepped_among(*given) else found.real
 
 
 def mirrored_axes(outward: FloatArray) -> FloatArray:
@@ -168,20 +172,20 @@ def flow_at(
     )
     outward = np.broadcast_to(outward, shape)
     relative = np.broadcast_to(water.current(position[..., 2]) - velocity, (*shape, 3))
-    middle, side, *moving = alike(
+    given = (
         board.fastening_points.sum(0) / 3,
         outward.ravel(),
         np.broadcast_to(rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
         relative.reshape(-1, 3),
         np.broadcast_to(rate, (*shape, 3)).reshape(-1, 3),
     )
-    flow = np.empty_like(moving[1])
-    attack, slip = np.empty((2, len(flow)), flow.dtype)
-    fill_flow(middle, side, *moving, flow, attack, slip)
+    flow = np.empty(given[3].shape, complex)
+    attack, slip = np.empty((2, len(flow)), complex)
+    fill_flow(*as_kind(complex, *given), flow, attack, slip)
     return BoardFlow(
-        attack=attack.reshape(shape),
-        slip=slip.reshape(shape),
-        flow=flow.reshape(*shape, 3),
+        attack=_like(given, attack).reshape(shape),
+        slip=_like(given, slip).reshape(shape),
+        flow=_like(given, flow).reshape(*shape, 3),
         density=np.broadcast_to(water.density_at(position[..., 2]), shape),
         lean=outward * rotation[..., 2, 1],
     )
@@ -195,12 +199,13 @@ def hydrodynamics(
     coefficients = law(values, flow.attack, board.slip_sign * flow.slip)
     if board.bend is not None:
         coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
-    density, along, c = alike(
-        flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
-    )
-    force, moment = np.empty((2, *along.shape), along.dtype)
+    given = flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
+    loads = np.empty((2, *given[1].shape), complex)
     levers = board.levers * np.asarray(board.moment_signs)
-    fill_loads(board.area, levers, board.flow_axes, density, along, c, force, moment)
+    fill_loads(
+        float(board.area), levers, board.flow_axes, *as_kind(complex, *given), loads[0], loads[1]
+    )
+    force, moment = _like(given, loads)
     return force.reshape(flow.flow.shape), moment.reshape(flow.flow.shape)
 
 
@@ -229,7 +234,7 @@ def own_load(
     shape = np.broadcast_shapes(
         np.shape(outward), position.shape[:-1], rotation.shape[:-2], velocity.shape[:-1]
     )
-    given = alike(
+    given = (
         values,
         board.fastening_points.sum(0) / 3,
         _flat(outward, shape),
@@ -238,7 +243,7 @@ def own_load(
         _flat(velocity, shape, 3),
         _flat(rate, shape, 3),
     )
-    total = np.empty((len(given[2]), 6), given[0].dtype)
+    total = np.empty((len(given[2]), 6), complex)
     turning = board.inertia, board.rotary_slope * board.rotary_areas
     if board.bend is None and board.law is None:
         fill_own_loads(
@@ -249,15 +254,15 @@ def own_load(
             float(board.area),
             board.levers * np.asarray(board.moment_signs),
             *turning,
-            *given,
+            *as_kind(complex, *given),
             water_of(water),
             total,
         )
-        return total.reshape(*shape, 6)
+        return _like(given, total).reshape(*shape, 6)
     flow = flow_at(board, outward, position, rotation, velocity, rate, water)
     force, moment = (_flat(part, shape, 3) for part in hydrodynamics(board, values, flow))
     heavy = (board.mass - flow.density * board.volume) * water.gravity
-    rest = alike(
+    rest = (
         _flat(heavy, shape),
         given[2],
         given[4],
@@ -267,9 +272,8 @@ def own_load(
         force,
         moment,
     )
-    total = np.empty((heavy.size, 6), rest[0].dtype)
-    fill_total(*turning, *rest, total)
-    return total.reshape(*shape, 6)
+    fill_total(*turning, *as_kind(complex, *rest), total)
+    return _like(rest, total).reshape(*shape, 6)
 
 
 def _flat(array: FloatArray, shape: tuple[int, ...], *tail: int) -> FloatArray:

@@ -1,7 +1,8 @@
 """The law of the otter board (eq. 1-4, 12-14, 19), compiled, one board after another.
 
-Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards; numbers are real, or complex
-for a complex step.
+Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards. Numbers are complex, for a
+complex step: boards are two, so a second form for real ones would save less time than its
+compilation takes.
 """
 
 from math import atan2, cos, radians
@@ -10,7 +11,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import WaterTable
-from trawl_ros.model.compiled import compiled
+from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.current import current_at
 
 LAW_RANGE = (0.0, radians(40.0))
@@ -30,7 +31,7 @@ ROUNDING = radians(4.0)
 """Width (rad) over which an angle comes to rest outside its range."""
 
 
-@compiled
+@inner
 def angle_at(y: float, x: float) -> float:
     """``arctan2`` that carries an infinitesimal imaginary part along."""
     square = x.real**2 + y.real**2
@@ -39,7 +40,7 @@ def angle_at(y: float, x: float) -> float:
     return atan2(y.real, x.real) + slope * inverse
 
 
-@compiled
+@inner
 def _settled(value: float, low: float, high: float) -> float:
     """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
     if value.real > high:
@@ -53,7 +54,7 @@ def _settled(value: float, low: float, high: float) -> float:
     return value
 
 
-@compiled
+@inner
 def _fading(attack: float) -> float:
     """Fade factor of the law: 1 inside its range, falling smoothly to 0 at `LAW_END`."""
     share = 0 * attack
@@ -66,7 +67,7 @@ def _fading(attack: float) -> float:
     return 1.0 - share**2 * (3.0 - 2.0 * share)
 
 
-@compiled
+@inner
 def _folded(attack: float) -> float:
     """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
     if attack.real >= 0.0:
@@ -76,7 +77,7 @@ def _folded(attack: float) -> float:
     return -attack - ROUNDING
 
 
-@compiled
+@inner
 def _across(flow: FloatArray) -> float:
     """Fade factor of α: 1, but smoothly 0 where the flow runs along the span and α is undefined."""
     plane = flow[0] ** 2 + flow[1] ** 2
@@ -116,7 +117,7 @@ def fill_flow(
     slip: FloatArray,
 ) -> None:
     """Fill in the flow (n, 3) in the outward frame and its angles (n,), eq. 1-4."""
-    arm, relative = np.empty((2, 3), flow.dtype)
+    arm, relative = np.empty(3, flow.dtype), np.empty(3, flow.dtype)
     for n in range(len(flow)):
         turn, spin = rotation[n], rate[n]
         for i in range(3):
@@ -178,7 +179,8 @@ def fill_total(
 
     ``slowing`` (3,) are rotary slope times rotary areas, ``heavy`` (n,) weights in water.
     """
-    turning, twist, spin = np.empty((3, 3), total.dtype)
+    turning, twist = np.empty(3, total.dtype), np.empty(3, total.dtype)
+    spin = np.empty(3, total.dtype)
     for n in range(len(total)):
         turn, side = rotation[n], outward[n]
         speed = np.sqrt(flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2 + 1e-18)
@@ -228,9 +230,11 @@ def fill_own_loads(
 ) -> None:
     """All of the above, one after another: the whole load (n, 6) of boards in the water."""
     surface_density, gradient, gravity, knots, cubics = water
-    relative, flow, force, moment = np.empty((4, len(total), 3), total.dtype)
-    density, attack, slip, heavy = np.empty((4, len(total)), total.dtype)
-    coefficients, shear = np.empty((len(total), 6), total.dtype), np.empty(3)
+    relative, flow = np.empty_like(position), np.empty_like(position)
+    force, moment = np.empty_like(position), np.empty_like(position)
+    density, attack = np.empty_like(outward), np.empty_like(outward)
+    slip, heavy = np.empty_like(outward), np.empty_like(outward)
+    coefficients, shear = np.empty_like(total), np.empty(3)
     for n in range(len(total)):
         density[n] = surface_density - gradient * position[n, 2]
         heavy[n] = (mass - density[n] * volume) * gravity

@@ -41,6 +41,20 @@ def compiled(function: Callable[Given, Result]) -> Compiled[Result]:
     return cast(Compiled[Result], njit(**OPTIONS)(function))  # type: ignore[call-overload]
 
 
+def inner(function: Callable[Given, Result]) -> Compiled[Result]:
+    """Compile a function that only compiled ones call: a wrapper for Python would take a fifth of
+    its compilation.
+    """
+    return cast(Compiled[Result], njit(**OPTIONS, no_cpython_wrapper=True)(function))  # type: ignore[call-overload]
+
+
+def inlined(function: Callable[Given, Result]) -> Compiled[Result]:
+    """Write a function into the compiled one that calls it, before that is compiled: done apart,
+    its machine code would be optimised once by itself and again in each that calls it.
+    """
+    return cast(Compiled[Result], njit(**OPTIONS, inline='always')(function))  # type: ignore[call-overload]
+
+
 def fused(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile sums of products, which may be fused and taken in any order."""
     fastmath = {'contract', 'reassoc', 'nsz'}
@@ -55,7 +69,16 @@ def is_cached(function: Compiled[object]) -> bool:
 
 def alike(*arrays: FloatArray) -> list[FloatArray]:
     """Arrays of one kind, all real or all complex, as compiled loops take them."""
-    kind = complex if 'c' in [array.dtype.kind for array in arrays] else float
+    return as_kind(complex if stepped_among(*arrays) else float, *arrays)
+
+
+def stepped_among(*arrays: FloatArray) -> bool:
+    """True if one of the arrays is complex."""
+    return 'c' in [array.dtype.kind for array in arrays]
+
+
+def as_kind(kind: type[float] | type[complex], *arrays: FloatArray) -> list[FloatArray]:
+    """Arrays of the given kind, as compiled loops take them."""
     rows = [np.ascontiguousarray(array, kind) for array in arrays]
     # A loop would be compiled once more for an array that cannot be written to.
     return [row if row.flags.writeable else row.copy() for row in rows]

@@ -1,10 +1,10 @@
 """Current of the water at a height, as compiled loops take it."""
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.compiled import compiled
+from trawl_ros.model.compiled import compiled, inner
 
 
-@compiled
+@inner
 def current_at(
     knots: FloatArray, cubics: FloatArray, z: float, flow: FloatArray, slope: FloatArray
 ) -> None:

@@ -47,7 +47,7 @@ def fill_lump_slopes(
 ) -> None:
     """Fill in K = -∂F/∂x and C = -∂F/∂v (n, 3, 3) of the lumps."""
     density, gradient, gravity, knots, cubics = water
-    flow, shear = np.empty((2, 3))
+    flow, shear = np.empty(3), np.empty(3)
     stiffness[:] = 0.0
     for n in range(len(stiffness)):
         here = density - gradient * x[n, 2]

@@ -19,12 +19,17 @@ def _fill_rotations(vectors: FloatArray, matrices: FloatArray) -> None:
     for n in range(len(vectors)):
         a, b, c = vectors[n, 0], vectors[n, 1], vectors[n, 2]
         square = a * a + b * b + c * c
-        if square.real < 1e-8:
+        real = square.real
+        if real < 1e-8:
             sine = 1 - square / 6 + square**2 / 120
             versine = 0.5 - square / 24
         else:
-            size = np.sqrt(square)
-            sine, versine = np.sin(size) / size, (1 - np.cos(size)) / square
+            size = np.sqrt(real)
+            at_sine, at_versine = np.sin(size) / size, (1 - np.cos(size)) / real
+            # The imaginary part is a complex step, so small that tangents are exact.
+            beside = 0.5 * (square - real) / real
+            sine = at_sine + (1 - real * at_versine - at_sine) * beside
+            versine = at_versine + (at_sine - 2 * at_versine) * beside
         for i in range(3):
             for j in range(3):
                 matrices[n, i, j] = versine * vectors[n, i] * vectors[n, j]

@@ -8,7 +8,7 @@ All takes real matrices, and complex ones.
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.compiled import compiled, fused
+from trawl_ros.model.compiled import fused, inlined
 
 PIVOTS, SIZE, CHILDREN, ENTRIES, BORDER, ROWS, FACTORS = range(7)
 """Columns of `Elimination.fronts`."""
@@ -20,7 +20,7 @@ EXCHANGE = 10.0
 """A pivot is exchanged with one so many times as large."""
 
 
-@compiled
+@fused
 def factorise(
     data: FloatArray,
     fronts: IntArray,
@@ -82,7 +82,7 @@ def factorise(
     return True
 
 
-@compiled
+@inlined
 def _add_rest(rest: FloatArray, rows: IntArray, front: FloatArray) -> None:
     """Add what is left of a child's border into its parent's front, block by block."""
     for i in range(len(rest)):
@@ -94,7 +94,7 @@ def _add_rest(rest: FloatArray, rows: IntArray, front: FloatArray) -> None:
             target[at + 2] += source[3 * j + 2]
 
 
-@fused
+@inlined
 def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
     """Eliminate the pivots of a front in place: L below its diagonal, U above, 1 / U on it."""
     size = len(front)
@@ -130,7 +130,7 @@ def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
     return True
 
 
-@fused
+@inlined
 def _update_by_six(front: FloatArray, k: int) -> None:
     """Subtract the product of six columns of L and six rows of U from all behind them."""
     size, end = len(front), k + 6
@@ -144,7 +144,7 @@ def _update_by_six(front: FloatArray, k: int) -> None:
             row[j] -= a0 * u0[j] + a1 * u1[j] + a2 * u2[j] + a3 * u3[j] + a4 * u4[j] + a5 * u5[j]
 
 
-@fused
+@inlined
 def _update_by_three(front: FloatArray, k: int) -> None:
     """Subtract the product of three columns of L and three rows of U from all behind them."""
     size, end = len(front), k + 3
