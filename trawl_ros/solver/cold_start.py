@@ -24,8 +24,10 @@ PRESSURE = 1000.0
 """Load across a bar per area (Pa) with which a shape is sought: about three times that of the
 water on netting that is towed at 2 m/s at 20° to its bars."""
 
-COARSE_LIMIT, LIMIT = 100, 300
-"""Iterations after which a rough shape is given up, of the coarsest net and of finer ones."""
+COARSE_LIMIT, LIMIT = 100, 3.0
+"""Iterations after which a rough shape is given up: of the coarsest net, and of finer ones per
+square root of the number of nodes, so per row and column. With 48 meshes around up to 63 are
+needed, with 96 up to 160."""
 
 ROUGH = 1.0
 """Force (N) left at which the load is lowered further."""
@@ -89,7 +91,7 @@ def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int
         if residual > ROUGH:
             return state, spent, residual
         state = carried_over(coarse, state, model)
-    limit = LIMIT if coarse else COARSE_LIMIT
+    limit = round(LIMIT * np.sqrt(model.nodes)) if coarse else COARSE_LIMIT
     state, more, residual = relax(loose, state, tow, tolerance=ROUGH, time_step=1.0, limit=limit)
     return state, spent + more, residual
 

@@ -44,14 +44,16 @@ def test_the_order_is_that_of_the_errors(order: float) -> None:
     exact, shape = rng.normal(size=(5, 22)), rng.normal(size=(5, 22))
     runs = [
         SteppedManoeuvre(
-            step, exact + shape * step**order, (exact + shape * step**order)[:, None, :3]
+            step, exact + shape * step**order, (exact + shape * step**order)[:, None, :3], tension
         )
-        for step in (0.4, 0.2, 0.1, 0.0)
+        for step, tension in ((0.4, 5.0), (0.2, 3.0), (0.1, 4.0), (0.0, 6.0))
     ]
     found = convergence(runs)
     np.testing.assert_allclose(found.orders(), order)
     assert found.order(found.norm) == pytest.approx(order)
     assert found.order(found.places.max(1)) == pytest.approx(order)
+    np.testing.assert_allclose(found.place_orders(), order)
+    assert found.tension == 3.0
     changes = np.ptp(exact, axis=0)
     np.testing.assert_allclose(
         found.errors[2], np.abs(shape).max(0) * 0.1**order / changes, rtol=1e-9

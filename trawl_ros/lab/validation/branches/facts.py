@@ -12,7 +12,7 @@ from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.observables import COLLAPSED_NORMAL, outward_normal_lift
 from trawl_ros.records.observables import Observables
 
-PATIENCE = 10.0
+PATIENCE = 2.0
 """Longest CPU time (s) an answer may take."""
 
 JUMP = 5.0

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
@@ -28,12 +29,14 @@ GAIN = 0.2
 @dataclass(frozen=True)
 class SteppedManoeuvre:
     """A manoeuvre at one time step: ``seen`` (samples, observables) and ``places`` (samples,
-    nodes and boards, 3) of all nodes and boards, m.
+    nodes and boards, 3) of all nodes and boards, m; ``tension`` is the lowest of any bar at any of
+    the samples, N.
     """
 
     step: float
     seen: FloatArray
     places: FloatArray
+    tension: float
 
 
 def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
@@ -60,14 +63,15 @@ def smooth_haul(
     """The stepper through the smooth manoeuvre, from a steady state."""
     stepper, motion = Stepper(model), at_rest(start.state)
     each = round(SAMPLE / step)
-    seen, places = [], []
+    seen, places, tension = [], [], np.inf
     for k in range(1, round(duration / step) + 1):
         tow = smooth_tow(model, start.tow, k * step, duration)
         motion = stepper.step(motion, tow, step)
         if k % each == 0:
             seen.append(observe(model, motion.state, tow).array())
             places.append(_places(motion.state))
-    return SteppedManoeuvre(step, np.array(seen), np.array(places))
+            tension = min(tension, float(bar_tensions(model, motion.state, tow).min()))
+    return SteppedManoeuvre(step, np.array(seen), np.array(places), tension)
 
 
 def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) -> SteppedManoeuvre:
@@ -81,14 +85,15 @@ def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) ->
         START.speed + 0.5 * GAIN,
     )
     each = round(2 * SAMPLE / step)
-    seen, places = [], []
+    seen, places, tension = [], [], np.inf
     for k in range(1, round(2 * duration / step) + 1):
         now = simulation.advance()
         if k % each == 0:
             tow = tow_of(model, now.ship, now.winches)
             seen.append(observe(model, now.motion.state, tow).array())
             places.append(_places(now.motion.state))
-    return SteppedManoeuvre(step, np.array(seen), np.array(places))
+            tension = min(tension, float(bar_tensions(model, now.motion.state, tow).min()))
+    return SteppedManoeuvre(step, np.array(seen), np.array(places), tension)
 
 
 def _places(state: State) -> FloatArray:
