@@ -81,7 +81,7 @@ def test_a_sensor_that_jumps_is_seen_to_do_so(coarse, clean):
 def test_the_gap_shrinks_on_a_tow_that_decided_nothing(caught):
     assert caught.split.by == 'tow'
     deciding = {window.tow for window in caught.split.deciding}
-    assert not deciding & {window.tow for window in caught.split.showing}
+    assert not deciding & {window.tow for window in caught.split.kept_back}
     # One tow of five windows, whose depths are off as one tow's may be: a study asks for more.
     assert caught.holdout.removed > 0.2
     assert caught.holdout.removed_by_placebo < caught.holdout.removed

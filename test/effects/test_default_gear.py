@@ -31,5 +31,5 @@ def test_its_steady_state_has_the_effect(gear, affected):
 def test_it_is_towed_with_the_effect(gear, affected):
     command = Command(500.0, 500.0, 2.1)
     without = Simulation(build_model(gear), command).truth()
-    there = Simulation(build_model(affected), command, acting=effects_of(affected)).truth()
+    there = Simulation(build_model(affected), command, effect_set=effects_of(affected)).truth()
     assert there.winches[0].tension > 1.1 * without.winches[0].tension

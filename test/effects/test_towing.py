@@ -42,7 +42,7 @@ def affected(gear):
 
 @pytest.fixture(scope='module')
 def truth(affected):
-    simulation = Simulation(build_model(affected), COMMAND, acting=effects_of(affected))
+    simulation = Simulation(build_model(affected), COMMAND, effect_set=effects_of(affected))
     first = simulation.truth()
     for _ in range(4):
         simulation.advance()

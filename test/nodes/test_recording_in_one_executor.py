@@ -105,12 +105,12 @@ def test_the_data_are_those_of_one_process(tow, scenario_path):
     suite = InstrumentSuite(
         scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
     )
-    showing = scenario.showing()
+    sensor_effects = scenario.sensor_effects()
     truth, samples = {}, {}
     while (instant := trial.step()) is not None:
         for topic, message in truth_messages(instant):
             truth.setdefault(absolute(topic), []).append(serialize(message))
-        for sample in map(showing, suite.observe(instant)):
+        for sample in map(sensor_effects, suite.observe(instant)):
             samples.setdefault(type(sample).__name__, []).append(sample)
     recorded = {}
     for raw in Bag(tow.path).raw(truth):

@@ -62,7 +62,7 @@ two."""
 
 
 class SourceWatch:
-    """Looks at the readings of one topic as they come, and judges them now and then."""
+    """Watch for a second source among the readings of one topic, as they come."""
 
     def __init__(self) -> None:
         self._readings: deque[tuple[int, int, tuple[float, ...]]] = deque(maxlen=MEMORY)

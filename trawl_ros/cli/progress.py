@@ -17,7 +17,7 @@ def error_console() -> Console:
 
 
 class ProgressDisplay:
-    """Shows the progress of a library call: bars on a terminal, else a line now and then.
+    """Display of the progress of a library call: bars on a terminal, else a line now and then.
 
     Parameters
     ----------

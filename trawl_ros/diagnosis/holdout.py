@@ -27,7 +27,7 @@ class Split:
     """
 
     deciding: tuple[SteadyWindow, ...]
-    showing: tuple[SteadyWindow, ...]
+    kept_back: tuple[SteadyWindow, ...]
     by: str
 
 
@@ -47,14 +47,14 @@ def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
     if len(examined) >= FEWEST_TOWS:
         kept = set(examined[1:-1:EVERY])
         by = 'tow'
-        showing = tuple(window for window in windows if window.tow in kept)
+        kept_back = tuple(window for window in windows if window.tow in kept)
     else:
         states = list(dict.fromkeys(w.state for w in windows if w.tow not in baseline))
         kept = set(states[1::EVERY]) if len(states) >= 2 * EVERY else set()
         by = 'state'
-        showing = tuple(window for window in windows if window.state in kept)
-    left = {window.index for window in showing}
-    return Split(tuple(w for w in windows if w.index not in left), showing, by)
+        kept_back = tuple(window for window in windows if window.state in kept)
+    left = {window.index for window in kept_back}
+    return Split(tuple(w for w in windows if w.index not in left), kept_back, by)
 
 
 @dataclass(frozen=True)

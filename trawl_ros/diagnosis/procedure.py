@@ -58,7 +58,7 @@ def diagnose_windows(
         If the gear file switches on an effect that there is not.
     """
     halves = split(windows, baseline)
-    deciding, kept_back = halves.deciding, halves.showing
+    deciding, kept_back = halves.deciding, halves.kept_back
     model = build_model(gear)
     # Effects found by an earlier diagnosis are those that the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)

@@ -41,20 +41,20 @@ class SensorEffects:
 
     Parameters
     ----------
-    acting
+    effect_set
         The effects; without any, samples pass unchanged.
     water
         Turns pressure into depth and back.
     """
 
-    def __init__(self, acting: EffectSet, water: Water) -> None:
-        self._acting = acting
+    def __init__(self, effect_set: EffectSet, water: Water) -> None:
+        self._effect_set = effect_set
         self._water = water
         self._first: int | None = None
 
     def __call__(self, sample: Sample) -> Sample:
         """Return the sample with the effects applied."""
-        if not self._acting:
+        if not self._effect_set:
             return sample
         if self._first is None or sample.stamp < self._first:
             self._first = sample.stamp
@@ -94,11 +94,11 @@ class SensorEffects:
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
         """Readings of sensors; each depends on one observable, so that others need not be known."""
-        return self._acting.apply_to_sensors({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
+        return self._effect_set.apply_to_sensors({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
 
     def _instrument(self, true: FloatArray, at: Situation) -> FloatArray:
         """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
         shown = true
         for _ in range(ROUNDS):
-            shown = shown + true - self._acting.apply_to_inputs(shown, at)
+            shown = shown + true - self._effect_set.apply_to_inputs(shown, at)
         return shown

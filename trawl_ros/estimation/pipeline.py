@@ -67,14 +67,14 @@ class Identification:
         self.window_options = window_options or WindowOptions()
         self.finder = SteadyWindowFinder(pressure_to_depth, self.window_options)
         self.estimator = Estimator(predictor, prior, observables, estimator_options)
-        self.guard = WindowGate(Screening(predictor, prior, observables))
+        self.gate = WindowGate(Screening(predictor, prior, observables))
         self.course: list[WindowUsed] = []
 
     def reset(self) -> None:
         """Reset to no data: time has jumped back."""
         self.finder.reset()
         self.estimator.reset()
-        self.guard.reset()
+        self.gate.reset()
         self.course = []
 
     def feed(self, sample: Sample) -> list[Event]:
@@ -104,14 +104,14 @@ class Identification:
     def rejected(self) -> dict[str, int]:
         """Counts of rejections by reason, without zeros, in the order of `REASONS`."""
         counts = Counter(self.finder.rejected)
-        counts.update(self.guard.rejections.counts)
+        counts.update(self.gate.rejections.counts)
         counts['no steady state'] += self.estimator.without_steady_state
         return {reason: counts[reason] for reason in REASONS if counts[reason]}
 
     @property
     def found(self) -> dict[str, str]:
         """Last finding by reason, in one sentence; in the order of `REASONS`."""
-        sentences = self.finder.rejections.sentences | self.guard.rejections.sentences
+        sentences = self.finder.rejections.sentences | self.gate.rejections.sentences
         return {reason: sentences[reason] for reason in REASONS if reason in sentences}
 
     def missing_channels(self) -> tuple[str, ...]:
@@ -159,15 +159,15 @@ class Identification:
             if isinstance(item, RejectedWindow):
                 events.append(item)
                 continue
-            guarded = self.guard.judge(item, self.estimator.coefficients)
-            if guarded.withdraw:
+            gated = self.gate.judge(item, self.estimator.coefficients)
+            if gated.withdraw:
                 self._withdraw(item.tow)
-            if guarded.rejected is not None:
-                events.append(guarded.rejected)
-            if guarded.window is None:
+            if gated.rejected is not None:
+                events.append(gated.rejected)
+            if gated.window is None:
                 continue
-            item = guarded.window
-            estimate = self.estimator.add(item, guarded.near)
+            item = gated.window
+            estimate = self.estimator.add(item, gated.near)
             if estimate is None:
                 lengths = f'{item.means["port_length"]:.0f} m'
                 speed = f'{item.means["speed"]:.2f} m/s'

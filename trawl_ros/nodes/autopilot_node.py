@@ -63,7 +63,7 @@ def load_track(path: str) -> SteerRecord:
 
 
 class AutopilotNode(TrawlNode):
-    """Steers as `trawl_ros.control.autopilot` says.
+    """Node that steers as `trawl_ros.control.autopilot` says.
 
     It answers each reading of the compass with a ``command/vessel``. When the compass is silent it
     asks for straight on, once all is silent too.

@@ -29,7 +29,7 @@ DEFAULT = AutotrawlSettings()
 
 
 class AutotrawlNode(TrawlNode):
-    """Holds set lengths or equal tension, as `trawl_ros.control.autotrawl` says.
+    """Node that holds set lengths or equal tension, as `trawl_ros.control.autotrawl` says.
 
     It answers each sample of ``winch/joint_states`` with a ``command/winch``; without samples it
     sends nothing, so the winches hold. It takes over with the lengths that the counters show.

@@ -30,7 +30,7 @@ CLOCK_STEP = SECOND // 100
 
 
 class BagPlayer(TrawlNode):
-    """Plays a bag at a rate, or as fast as its consumers follow.
+    """Node that plays a bag at a rate, or as fast as its consumers follow.
 
     Publishers offer the QoS that was recorded. It begins when discovery has come to rest and all
     of ``wait_for`` report on ``sync/progress``, and ends when subscribers have everything.

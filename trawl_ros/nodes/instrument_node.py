@@ -42,7 +42,7 @@ class Setup:
     parameters: InstrumentParameters
     surroundings: Surroundings
     draws: SeedPlan
-    showing: SensorEffects
+    sensor_effects: SensorEffects
     faults: tuple[PlannedFault, ...] = ()
 
 
@@ -78,7 +78,7 @@ class InstrumentNode(TrawlNode, ABC):
         super().__init__(name, **kwargs)
         setup = self._setup()
         self._panel = FaultPanel(self.set_up(setup))
-        self._showing = setup.showing
+        self._sensor_effects = setup.sensor_effects
         self._plan = FaultPlan(setup.faults, self._panel)
         self._by_parameter: dict[str, str] = {}
         self._take_parameter()
@@ -164,7 +164,7 @@ class InstrumentNode(TrawlNode, ABC):
                 scenario.instruments,
                 scenario.surroundings,
                 draws,
-                scenario.showing(),
+                scenario.sensor_effects(),
                 scenario.faults,
             )
         gear = load_gear(self.parameters['gear'])
@@ -190,7 +190,7 @@ class InstrumentNode(TrawlNode, ABC):
             self._plan.follow(stamp)
             try:
                 for sample in self.observe(stamp, complete):
-                    self.send(*sample_message(self._showing(sample)))
+                    self.send(*sample_message(self._sensor_effects(sample)))
             except MessageError as reason:
                 self.refuse(topic, str(reason))
             self._progress.done(stamp)

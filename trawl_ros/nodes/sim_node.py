@@ -47,7 +47,7 @@ PATIENCE_S = 10.0
 
 
 class SimNode(TrawlNode):
-    """Tows a gear from an equilibrium on, by a scenario or by commands.
+    """Node that tows a gear from an equilibrium on, by a scenario or by commands.
 
     Truth and instruments are stamped with simulated time from 0 on when ``/clock`` is
     published, else with the time of the node's clock. ``pause``, ``resume``, ``step`` (to the

@@ -57,7 +57,7 @@ class CommandedTow:
         First heading, ENU yaw, rad.
     truth_rate_hz
         Rate of truth, Hz: `MAX_TRUTH_HZ` divided by a whole number.
-    acting
+    effect_set
         Effects that the plant has beyond the model.
 
     Raises
@@ -75,7 +75,7 @@ class CommandedTow:
         *,
         heading: float,
         truth_rate_hz: float,
-        acting: EffectSet = NO_EFFECTS,
+        effect_set: EffectSet = NO_EFFECTS,
     ) -> None:
         every = MAX_TRUTH_HZ / truth_rate_hz
         if abs(every - round(every)) > 1e-9 * every:
@@ -84,7 +84,7 @@ class CommandedTow:
                 'divided by a whole number (Hz)'
             )
         self.simulation = Simulation(
-            model, start, heading=heading, period=1.0 / MAX_TRUTH_HZ, acting=acting
+            model, start, heading=heading, period=1.0 / MAX_TRUTH_HZ, effect_set=effect_set
         )
         self._steps = round(every)
         self._started = False
@@ -167,7 +167,7 @@ def commanded_tow(
         command = Command(length, length, speed)
         try:
             tow = CommandedTow(
-                model, command, heading=heading, truth_rate_hz=truth_rate_hz, acting=effects
+                model, command, heading=heading, truth_rate_hz=truth_rate_hz, effect_set=effects
             )
         except NoSteadyState as reason:
             refusals.append(str(reason))

@@ -21,14 +21,14 @@ def recorded_messages(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
         draws=scenario.draws,
         faults=scenario.faults,
     )
-    showing = scenario.showing()
+    sensor_effects = scenario.sensor_effects()
     while (truth := trial.step()) is not None:
         messages: list[TopicMessage] = []
         if 'truth' in scenario.record.record:
             messages += truth_messages(truth)
             if truth.stamp % SECOND == 0:
                 messages.append(gear_markers(trial.simulation.picture()))
-        for topic, message in map(sample_message, map(showing, suite.observe(truth))):
+        for topic, message in map(sample_message, map(sensor_effects, suite.observe(truth))):
             if ('pictures' if topic in PICTURES else 'instruments') in scenario.record.record:
                 messages.append((topic, message))
         yield truth.stamp, messages

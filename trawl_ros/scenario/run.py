@@ -89,7 +89,7 @@ class Trial:
                 stamp=stamp,
                 period=1.0 / scenario.record.truth_rate_hz / steps,
                 sea=sea,
-                acting=scenario.acting,
+                effect_set=scenario.effect_set,
             )
         except SeabedTouched as reason:
             raise SeabedTouched(f'{scenario.path}: start: {reason}') from reason

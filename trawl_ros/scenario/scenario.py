@@ -129,13 +129,13 @@ class Scenario:
         return build_surroundings(self.plant)
 
     @cached_property
-    def acting(self) -> EffectSet:
+    def effect_set(self) -> EffectSet:
         """Effect set of the plant beyond the model."""
         return effects_of(self.plant)
 
-    def showing(self) -> SensorEffects:
+    def sensor_effects(self) -> SensorEffects:
         """Return the converter of samples for a plant with these effects."""
-        return SensorEffects(self.acting, build_water(self.plant))
+        return SensorEffects(self.effect_set, build_water(self.plant))
 
     @property
     def faults(self) -> tuple[PlannedFault, ...]:

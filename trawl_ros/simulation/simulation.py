@@ -66,7 +66,7 @@ class Simulation:
         between lies on the cubic through both ends.
     sea
         Heave, seabed and schools of fish.
-    acting
+    effect_set
         Effects beyond the model. Winches and ship are commanded by what counters and log show.
 
     Raises
@@ -99,14 +99,14 @@ class Simulation:
         stamp: int = 0,
         period: float = 0.1,
         sea: Sea = CALM,
-        acting: EffectSet = NO_EFFECTS,
+        effect_set: EffectSet = NO_EFFECTS,
     ) -> None:
         if command.turn_rate:
             raise ScenarioError(
                 'a tow starts on a straight course, found a rate of turn of '
                 f'{command.turn_rate} rad/s'
             )
-        self._plain, self._acting = model, acting
+        self._plain, self._effect_set = model, effect_set
         self.sea = sea
         self.command = command
         self._period = round(period * NANOSECONDS)
@@ -188,7 +188,7 @@ class Simulation:
     def _advanced(self, now: Instant, span: int, halvings: int) -> Instant:
         dt = span / NANOSECONDS
         ship, winches = self._boundary(now, dt)
-        if self._acting:
+        if self._effect_set:
             self.model = self._gear_at(now.stamp + span, self.command, ship.heading)
             self._stepper.model = self.model
         try:
@@ -202,11 +202,11 @@ class Simulation:
 
     def _towed(self, command: Command) -> Command:
         """True command where counters and log show the given one."""
-        if not self._acting:
+        if not self._effect_set:
             return command
         shown = (command.port_length, command.starboard_length, command.speed)
         port, starboard, speed = map(
-            float, self._acting.apply_to_inputs(np.array(shown), Situation(shown))
+            float, self._effect_set.apply_to_inputs(np.array(shown), Situation(shown))
         )
         return replace(command, port_length=port, starboard_length=starboard, speed=speed)
 
@@ -214,7 +214,7 @@ class Simulation:
         """Gear model with the effects in the situation at ``stamp``."""
         shown = (command.port_length, command.starboard_length, command.speed)
         hours = self._seconds(stamp) / 3600.0
-        return self._acting.gear(self._plain, Situation(shown, heading, sense(heading), hours))
+        return self._effect_set.gear(self._plain, Situation(shown, heading, sense(heading), hours))
 
     def _seconds(self, stamp: int) -> float:
         """Time since the start, s."""

@@ -66,7 +66,7 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             f'On {kept_back} that decided nothing {it} removes {holdout.removed:.0%} of the error '
             f'beyond what instruments explain{placebo}.'
         )
-    if diagnosis.split.by == 'state' and diagnosis.split.showing:
+    if diagnosis.split.by == 'state' and diagnosis.split.kept_back:
         lines.append(
             'With so few tows the steady states that show the gap are of tows that also decided: '
             'tow again on another day.'

@@ -42,7 +42,12 @@ CLASSES: Mapping[str, str] = MappingProxyType(
 
 
 FIELDS: Mapping[str, str] = MappingProxyType(
-    {'freedom': 'degrees_of_freedom', 'misfit': 'birge_ratio'}
+    {
+        'freedom': 'degrees_of_freedom',
+        'misfit': 'birge_ratio',
+        'guard': 'gate',
+        '_timeline': '_winch_watermark',
+    }
 )
 
 

@@ -72,11 +72,11 @@ class SteadyWindowFinder:
         self._clear()
 
     def _clear(self) -> None:
-        self._timeline = Watermark()
+        self._winch_watermark = Watermark()
         self._buffers = {
             name: ChannelBuffer(
                 channel,
-                TimestampCheck(channel, self._options, self._timeline, self.rejections),
+                TimestampCheck(channel, self._options, self._winch_watermark, self.rejections),
                 self.rejections,
             )
             for name, channel in CHANNELS.items()
@@ -117,7 +117,7 @@ class SteadyWindowFinder:
         """Decide the remaining windows: no more samples will come."""
         for buffer in self._buffers.values():
             buffer.order.give_up()
-        lead = self._timeline.lead
+        lead = self._winch_watermark.lead
         return [] if lead is None else self._advance(lead + 1)
 
     def next_tow(self) -> list[SteadyWindow | RejectedWindow]:
@@ -130,12 +130,12 @@ class SteadyWindowFinder:
 
     def _watermark(self) -> int | None:
         """Watermark: stamp (ns) that all channels have passed that are waited for."""
-        lead = self._timeline.lead
+        lead = self._winch_watermark.lead
         if lead is None:
             return None
         patience = round(self._options.patience_s * NANO)
         reorder = round(self._options.reorder_s * NANO)
-        begins = lead < self._timeline.start + patience
+        begins = lead < self._winch_watermark.start + patience
         passed = lead
         for buffer in self._buffers.values():
             if buffer.newest is None:
@@ -146,10 +146,10 @@ class SteadyWindowFinder:
         return passed
 
     def _advance(self, watermark: int | None) -> list[SteadyWindow | RejectedWindow]:
-        if watermark is None or self._timeline.first is None:
+        if watermark is None or self._winch_watermark.first is None:
             return []
         if self._next_block is None:
-            self._next_block = self._timeline.first // self._block_ns
+            self._next_block = self._winch_watermark.first // self._block_ns
         decided: list[SteadyWindow | RejectedWindow] = []
         end_block = watermark // self._block_ns
         history = self._operation.most_blocks

@@ -36,7 +36,7 @@ class TimestampCheck:
         The channel's row of the table.
     options
         Slack and patience.
-    timeline
+    watermark
         Of the winches, kept by their own readings.
     rejections
         Counts of refused readings.
@@ -51,13 +51,13 @@ class TimestampCheck:
         self,
         channel: Channel,
         options: WindowOptions,
-        timeline: Watermark,
+        watermark: Watermark,
         rejections: Rejections,
     ) -> None:
         self.newest: int | None = None
         self._where = f'{channel.name} ({channel.topic})'
         self._rejections = rejections
-        self._timeline = timeline
+        self._winch_watermark = watermark
         self._winch = channel.topic == WINCH
         self._length = channel.name in INPUTS[:2]
         self._leap = round(channel.longest_gap * NANO)
@@ -111,10 +111,14 @@ class TimestampCheck:
         for reading in readings:
             stamp = reading.stamp
             silent = self.newest is None or stamp > self.newest + self._silence
-            if silent and not self._winch and self._timeline.speaks_at(stamp - self._half_patience):
+            if (
+                silent
+                and not self._winch
+                and self._winch_watermark.speaks_at(stamp - self._half_patience)
+            ):
                 self._closed_until = stamp + self._half_patience
             if self._length:
-                self._timeline.advance(stamp)
+                self._winch_watermark.advance(stamp)
             self.newest = stamp if self.newest is None else max(self.newest, stamp)
             if self._closed_until is None or stamp >= self._closed_until:
                 accepted.append(reading)

@@ -96,7 +96,7 @@ def stamper(type_name: str) -> Callable[[int], bytes]:
 
 
 class FullChain(TrawlNode):
-    """Publishes all topics at a rate in total for a while, and ends with its counts on stdout."""
+    """Node that publishes all topics at a rate in total for a while; its counts go to stdout."""
 
     SPECS: ClassVar = (
         Number('rate', 500.0, 'Hz', 1.0, 1e5, 'Messages per second, of all topics together.'),

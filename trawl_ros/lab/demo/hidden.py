@@ -29,7 +29,7 @@ NO_DISCREPANCY, DISCREPANCY = 0, 10
 
 
 class Commands:
-    """Runs ``trawl`` commands in a folder; leaving the context ends those that still run.
+    """Runner of ``trawl`` commands in a folder; leaving the context ends those that still run.
 
     Parameters
     ----------

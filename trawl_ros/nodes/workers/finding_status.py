@@ -16,7 +16,7 @@ def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
     values = {
         'verdict': diagnosis.verdict,
         'reason': diagnosis.reason,
-        'windows': str(len(diagnosis.split.deciding) + len(diagnosis.split.showing)),
+        'windows': str(len(diagnosis.split.deciding) + len(diagnosis.split.kept_back)),
         'tows': str(len(diagnosis.tows)),
     }
     if test is not None:

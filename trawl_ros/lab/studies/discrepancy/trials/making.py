@@ -120,10 +120,10 @@ def floor_of(
     windows: Sequence[SteadyWindow], looks: Sequence[Look], baseline: int
 ) -> dict[str, float]:
     """Errors that the plant itself would have on the windows that are kept back, by channel."""
-    showing = {window.index for window in split(windows, frozenset(range(baseline))).showing}
+    kept_back = {window.index for window in split(windows, frozenset(range(baseline))).kept_back}
     errors: dict[str, list[float]] = {}
     for window, look in zip(windows, looks, strict=True):
-        if window.index not in showing:
+        if window.index not in kept_back:
             continue
         inputs = np.array([window.means[name] for name in INPUTS])
         predicted = look.values + look.by_inputs @ (inputs - np.array(look.inputs))

@@ -82,7 +82,7 @@ def towed_in_time(
     heading, there = (0.0 if tow.eastward else np.pi), hidden_effect_set(effects)
     length, speed = tow.states[0]
     simulation = Simulation(
-        model, Command(length, length, speed), heading=heading, period=PERIOD_S, acting=there
+        model, Command(length, length, speed), heading=heading, period=PERIOD_S, effect_set=there
     )
     steps = round(SEEN_S / PERIOD_S)
     times, inputs, values, moments = [], [], [], []
