@@ -129,7 +129,7 @@ def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) ->
 
 
 def _like(given: tuple[FloatArray, ...], found: FloatArray) -> FloatArray:
-    """What the law, which is compiled for complex numbers, finds: real for real numbers."""
+    """Result of the law, which is compiled for complex numbers: real for real numbers."""
     return found if stepped_among(*given) else found.real
 
 
