@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
@@ -47,6 +48,18 @@ def test_a_collapsed_board_is_refused(model: GearModel) -> None:
     points = np.array([[0.32, -0.25, -0.49], [-0.27, -0.51, 1.71], [-0.33, -0.18, -2.23]])
     with pytest.raises(NoSteadyState, match='only a collapsed state was found'):
         steady_state(model.with_board(points=points), 500.0, 2.1)
+
+
+def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
+    # Drawn from the prior: its forces pull the gear far from the first guess.
+    drawn = np.array(
+        [2.133, 0.119, 4.28, 0.574, 0.606, -0.028, -0.412, 0.03, -0.216, 0.016, 0.916, 0.507]
+    )
+    netting = (gear := load_gear('kaifuha')).netting.model_copy(update={'around': 24})
+    board = build_model(gear.model_copy(update={'netting': netting})).with_coefficients(drawn)
+    with pytest.raises(NoSteadyState, match='boards do not stay upright.*kN m upward') as caught:
+        steady_state(board, 900.0, 2.0)
+    assert caught.value.reason == 'no balance'
 
 
 def test_a_board_beyond_the_range_of_its_law_is_refused(

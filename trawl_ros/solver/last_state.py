@@ -14,7 +14,7 @@ from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.observables import outward_normal_lift
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.cold_start import COARSE_LIMIT, PRESSURE, bowed, cold_start
+from trawl_ros.solver.cold_start import PRESSURE, bowed, cold_start
 from trawl_ros.solver.continuation import BranchPoint, branch
 from trawl_ros.solver.first_guess import ATTACK, LEAN, first_guess
 from trawl_ros.solver.growing_mode import growing_mode
@@ -46,6 +46,10 @@ LYING = np.sin(np.radians(50.0))
 
 HELD_TOLERANCE = 1000.0
 """Force (N) left at which the shape of a gear with held boards is good enough."""
+
+HELD_LIMIT = 300
+"""Iterations after which such a shape is given up: boards whose forces are far from those of the
+first guess have a long way to go."""
 
 AT_REST = 1e-3
 """Point (1/s) around which the eigenvalue that vanishes in a fold is sought."""
@@ -92,7 +96,7 @@ def _imbalance(model: GearModel, point: OperatingPoint) -> str:
         tolerance=HELD_TOLERANCE,
         time_step=2.0,
         free=without_attitude(model),
-        limit=COARSE_LIMIT,
+        limit=HELD_LIMIT,
     )
     if residual > HELD_TOLERANCE:
         return ''
