@@ -119,6 +119,8 @@ def board_loads(model: GearModel, state: State) -> FloatArray:
 def kite_load(model: GearModel, state: State) -> FloatArray:
     """Force (3,) on the kite."""
     held = model.layout.kite
+    if not held.held:
+        return np.zeros(3)
     front, rear = held.weights @ state.nodes[held.nodes]
     front_velocity, rear_velocity = held.weights @ state.node_velocities[held.nodes]
     return kite_physics.load(model.kite, front, rear, front_velocity, rear_velocity, model.water)
@@ -268,6 +270,8 @@ def _board_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArra
 def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The kite's load by the complex step in its two carriers' positions and velocities."""
     held = model.layout.kite
+    if not held.held:
+        return np.zeros((1, 9, 9)), np.zeros((1, 9, 9)), np.zeros(3)
     steps = (1j * STEP * np.eye(12)).reshape(12, 2, 2, 3)
     x = held.weights @ state.nodes[held.nodes] + steps[:, 0]
     v = held.weights @ state.node_velocities[held.nodes] + steps[:, 1]

@@ -1,6 +1,7 @@
 """The canvas kite on the headrope (eq. 29-33)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -33,11 +34,16 @@ class KiteNodes:
     nodes: IntArray
     weights: FloatArray
 
-    @property
+    @cached_property
     def shares(self) -> FloatArray:
         """Share (3,) of the kite's load on each node; both carriers hold half of it."""
         shares: FloatArray = self.weights.mean(axis=0)
         return shares
+
+    @cached_property
+    def held(self) -> bool:
+        """True if there is a kite."""
+        return bool(self.weights.any())
 
 
 NO_KITE = KiteNodes(np.zeros(3, int), np.zeros((2, 3)))
