@@ -60,6 +60,18 @@ def test_a_node_that_fails_is_named_with_its_last_words(tmp_path, environment):
         assert 'parameter output: missing' in failed()
 
 
+def test_what_a_node_says_is_not_written_through_a_link(tmp_path, environment):
+    logs, victim = tmp_path / 'log', tmp_path / 'victim'
+    logs.mkdir()
+    victim.write_text('mine')
+    (logs / 'bag_recorder.txt').symlink_to(victim)
+    with Processes(logs, environment) as processes:
+        processes.start('bag_recorder')
+        wait_until(lambda: 'missing' in (logs / 'bag_recorder.txt').read_text())
+    assert victim.read_text() == 'mine'
+    assert not (logs / 'bag_recorder.txt').is_symlink()
+
+
 def test_a_node_ends_cleanly_when_stopped(tmp_path, environment):
     with Processes(tmp_path / 'log', environment) as processes:
         processes.start('bag_recorder', output=str(tmp_path / 'bag'))

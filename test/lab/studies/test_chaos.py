@@ -12,7 +12,10 @@ pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.progress import ignore
+from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.running.chain import Glance
+from trawl_ros.lab.studies.chaos.alike import same_stretches
 from trawl_ros.lab.studies.chaos.crew import Recording
 from trawl_ros.lab.studies.chaos.kills import Kills
 from trawl_ros.lab.studies.chaos.plan import REPERTOIRE, Plan, faults_of
@@ -30,7 +33,11 @@ def estimate(value=1.0, windows='3'):
     named = {name: str(value) for name in COEFFICIENTS}
     ends = {f'{name} {end}': str(value + at) for name in COEFFICIENTS
             for end, at in (('low', -0.2), ('high', 0.2))}  # fmt: skip
-    return {'windows': windows, 'reason': '', **named, **ends}
+    return {'windows': windows, 'reason': '', 'rejected gap': '2', **named, **ends}
+
+
+def alike(value=1.0):
+    return {key: float(number) for key, number in estimate(value).items() if key[1].isdigit()}
 
 
 def tow(value=1.0, **kwargs):
@@ -41,9 +48,17 @@ def tow(value=1.0, **kwargs):
     return replace(made, **kwargs)
 
 
-def missed(wild, calm=None, kills=None):
-    chaos = Chaos(Plan(), calm or tow(), wild, kills or Kills((), 0.0))
-    return [row.what for section in chaos_sections(chaos) for row in section.missed]
+def window(start_s, end_s):
+    return SteadyWindow(0, 0, start_s * SECOND, end_s * SECOND, {}, {}, {}, {})
+
+
+def sections(wild, calm=None, kills=None, same=None):
+    same = alike() if same is None else same
+    return chaos_sections(Chaos(Plan(), calm or tow(), wild, kills or Kills((), 0.0), same))
+
+
+def missed(*args, **kwargs):
+    return [row.what for section in sections(*args, **kwargs) for row in section.missed]
 
 
 def test_an_hour_holds_every_fault_once_in_the_order_of_a_seed():
@@ -62,7 +77,7 @@ def test_a_tow_that_took_no_harm_reaches_every_target():
 @pytest.mark.parametrize(
     ('harm', 'row'),
     [
-        ({'value': 1.21}, 'estimate off the undisturbed one'),
+        ({'value': 1.21}, 'estimate off the undisturbed one of the same stretches'),
         ({'towed_s': 3000.0}, 'tow that is missing to the whole'),
         ({'died': [(7.0, 'winch_node ended with code 1; its last output (x):\n  ouch')]},
          'nodes ended by themselves'),
@@ -77,6 +92,24 @@ def test_a_tow_that_took_no_harm_reaches_every_target():
 )  # fmt: skip
 def test_each_harm_is_a_target_missed(harm, row):
     assert row in missed(tow(**harm))
+
+
+def test_windows_that_a_fault_has_cost_are_no_error_of_the_estimate_and_are_told():
+    rows = {row.what: row for row in sections(tow(1.3), same=alike(1.2))[2].rows}
+    assert 'left out, as it says: gap 2' in rows['windows of the disturbed tow'].note
+    assert rows['estimate off the undisturbed one of the same stretches'].ok
+    assert rows['estimate off that of the whole undisturbed tow'].value == pytest.approx(1.5)
+    whole = rows['undisturbed estimate of these stretches off that of the whole']
+    assert whole.value == pytest.approx(1.0)
+
+
+def test_tows_without_a_stretch_in_common_cannot_be_compared():
+    assert missed(tow(), same={}) == ['estimate off the undisturbed one of the same stretches']
+
+
+def test_stretches_are_the_same_where_windows_overlap():
+    calm = [window(0, 60), window(60, 120), window(300, 360), window(500, 560)]
+    assert same_stretches(calm, [window(30, 60), window(340, 400)]) == [calm[0], calm[2]]
 
 
 def test_no_estimate_is_well_where_the_reason_is_said():

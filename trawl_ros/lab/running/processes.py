@@ -13,6 +13,7 @@ from types import TracebackType
 
 from trawl_ros.cli.interruption import Uninterrupted
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import made_folder
 
 ENDED = (0, -signal.SIGINT)
 """Return codes of an interrupted node; the second one had not been imported yet, and had begun
@@ -48,7 +49,7 @@ class Processes:
         self._logs = logs
         self._environment = {**os.environ, **environment}
         self._running: dict[str, subprocess.Popen[bytes]] = {}
-        logs.mkdir(parents=True, exist_ok=True)
+        made_folder(logs)
 
     def start(self, node: str, **parameters: Value) -> None:
         """Start a node of this package with ROS parameters."""
@@ -63,7 +64,9 @@ class Processes:
             f"sys.argv[0] = '{node}'; from trawl_ros.nodes.{node} import main; sys.exit(main())"
         )
         command = [sys.executable, '-c', code, '--ros-args', *options]
-        with self._log(node).open('wb') as log, Uninterrupted(), _born_deaf():
+        # Anew: what is there may be a link to something else.
+        self._log(node).unlink(missing_ok=True)
+        with self._log(node).open('xb') as log, Uninterrupted(), _born_deaf():
             # A session of their own: Ctrl-C is for the demo, which ends them in good order.
             self._running[node] = subprocess.Popen(
                 command,

@@ -63,6 +63,7 @@ class Crew:
         self._scenario = scenario
         self._gear = gear
         self._folder = folder
+        self.state = folder / 'state.json'
         self.recordings: list[Recording] = []
         self.nodes = (RECORDER, *([IDENTIFICATION] if identify else []), *INSTRUMENTS, SIMULATION)
         for node in self.nodes:
@@ -73,9 +74,8 @@ class Crew:
         if node == RECORDER:
             self.recordings.append(Recording(self._folder / f'bag{len(self.recordings)}'))
         if node == IDENTIFICATION:
-            state = str(self._folder / 'state.json')
             self._processes.start(
-                node, use_sim_time=True, gear=self._gear, state=state, advise=False
+                node, use_sim_time=True, gear=self._gear, state=str(self.state), advise=False
             )
         else:
             consumers = [name for name in self.nodes if name != SIMULATION]

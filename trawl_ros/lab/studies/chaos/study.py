@@ -1,24 +1,31 @@
 """Study of fault injection: a tow undisturbed, the same with faults, and the recorder killed."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from trawl_ros.core.files import made_folder
 from trawl_ros.core.progress import OnProgress
+from trawl_ros.lab.studies.chaos.alike import estimate_alike
 from trawl_ros.lab.studies.chaos.kills import Kills, run_kills
 from trawl_ros.lab.studies.chaos.plan import Plan, faults_of
 from trawl_ros.lab.studies.chaos.tow import DisturbedTow, run_tow
+from trawl_ros.lab.studies.soak.long_tow import coarse_gear
 
 
 @dataclass(frozen=True)
 class Chaos:
-    """Results of the tow without faults and with them, and of the killed recorders."""
+    """Results of the tow without faults and with them, and of the killed recorders.
+
+    ``alike`` has the coefficients by name from those stretches of the tow without faults that the
+    other has windows of.
+    """
 
     plan: Plan
     calm: DisturbedTow
     wild: DisturbedTow
     kills: Kills
+    alike: Mapping[str, float] = field(default_factory=dict)
 
 
 def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[[], bool]) -> Chaos:
@@ -48,4 +55,5 @@ def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
         else run_tow(plan, faults_of(plan), 'chaos', folder, on_progress, stop)
     )
     kills = Kills((), 0.0) if stop() else run_kills(plan, folder, on_progress, stop)
-    return Chaos(plan, calm, wild, kills)
+    alike = estimate_alike(calm.windows, wild.windows, coarse_gear(plan.gear))
+    return Chaos(plan, calm, wild, kills, alike)

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.running.chain import Glance, glance, watched_of
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
+from trawl_ros.lab.studies.chaos.alike import saved_windows
 from trawl_ros.lab.studies.chaos.crew import Crew, Recording, looked_into
 from trawl_ros.lab.studies.chaos.plan import (
     IDENTIFICATION,
@@ -21,7 +23,7 @@ from trawl_ros.lab.studies.chaos.plan import (
     Plan,
     write_tow,
 )
-from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, write_coarse_gear
+from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, coarse_gear, write_coarse_gear
 
 if TYPE_CHECKING:
     from trawl_ros.lab.running.journal_monitor import JournalMonitor
@@ -46,8 +48,8 @@ class DisturbedTow:
 
     ``done`` are the faults that happened; ``died`` has the last words of nodes that ended by
     themselves though nothing but messages had befallen them, and ``mute`` recorders that did not
-    say that their disk was full; ``silence_s`` is the longest wall time without truth, and
-    ``estimate`` the values of the last status.
+    say that their disk was full; ``silence_s`` is the longest wall time without truth,
+    ``estimate`` has the values of the last status, and ``windows`` those it is made of.
     """
 
     glances: list[Glance] = field(default_factory=list)
@@ -59,6 +61,7 @@ class DisturbedTow:
     towed_s: float = 0.0
     estimate: Mapping[str, str] = field(default_factory=dict)
     finish: str = ''
+    windows: tuple[SteadyWindow, ...] = ()
 
 
 def run_tow(
@@ -129,6 +132,7 @@ def run_tow(
             tow.estimate = dict(monitor.coefficients)
         processes.stop(*(node for node in processes.pids() if node != RECORDER))
         processes.stop(*(node for node in processes.pids()))
+        tow.windows = saved_windows(crew.state, coarse_gear(plan.gear))
         tow.recordings = [looked_into(recording, monitor) for recording in crew.recordings]
     return tow
 

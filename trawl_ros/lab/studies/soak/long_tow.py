@@ -7,6 +7,7 @@ import yaml
 
 from trawl_ros.core.files import write_text
 from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
 
 TRUTH_HZ = 2.0
 LEG_MINUTES = 30.0
@@ -20,16 +21,20 @@ COARSEST = 12
 """Meshes around the mouth of the coarsest net there is."""
 
 
-def write_coarse_gear(folder: Path, gear: str) -> str:
-    """Write a gear with its netting as coarse as it may be, and give the file's path.
+def coarse_gear(gear: str) -> GearRecord:
+    """Return a gear with its netting as coarse as it may be.
 
     It is towed several times faster; but for the markers, messages are as many and as large.
     """
     record = load_gear(gear)
     netting = record.netting.model_copy(update={'around': COARSEST})
-    data = record.model_copy(update={'netting': netting}).model_dump(mode='json')
+    return record.model_copy(update={'netting': netting})
+
+
+def write_coarse_gear(folder: Path, gear: str) -> str:
+    """Write a gear with its netting as coarse as it may be, and give the file's path."""
     path = folder / 'coarse.yaml'
-    write_text(path, yaml.safe_dump(data, sort_keys=False))
+    write_text(path, yaml.safe_dump(coarse_gear(gear).model_dump(mode='json'), sort_keys=False))
     return str(path)
 
 
