@@ -7,7 +7,8 @@ import pytest
 
 from trawl_ros.bags.csv_output import CsvOutput
 
-FORMULAS = ('=1+1', '+1+1', '-1+1', '@SUM(A1)', '\t=1', '\r=1', '=cmd|"/c calc"!A1', '-', '+')
+FORMULAS = ('=1+1', '+1+1', '-1+1', '@SUM(A1)', '\t=1', '\r=1', '=cmd|"/c calc"!A1', '-', '+',
+            '\n=1', '＝1+1', '＠SUM(A1)')  # fmt: skip
 NUMBERS = ('-1.5', '+2', '-1e-300', '-inf', 'nan', '-.5', '3.')
 
 

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable
 from typing import TextIO
 
-_FORMULA = ('=', '+', '-', '@', '\t', '\r')
+_FORMULA = ('=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠')  # wide ones
 _NUMBER = re.compile(r'[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf|nan)', re.IGNORECASE)
 
 

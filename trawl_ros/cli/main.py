@@ -97,7 +97,8 @@ def refusal(error: OSError) -> str:
     try:
         Path.cwd()
     except OSError:
-        return f'the working folder: {reason}, expected one that is still there'
+        if isinstance(error, FileNotFoundError):
+            return f'the working folder: {reason}, expected one that is still there'
     return f'{error.filename}: {reason}' if error.filename else reason
 
 
