@@ -48,7 +48,8 @@ def test_a_wrong_parameter_is_named(tmp_path: Path, old: str, new: str, sentence
 
 
 def test_an_unknown_set_is_refused_with_the_names_there_are() -> None:
-    with pytest.raises(InstrumentError, match=r'there are: default\.yaml, measured\.yaml, worn\.yaml'):
+    there = r'there are: default\.yaml, measured\.yaml, worn\.yaml'
+    with pytest.raises(InstrumentError, match=there):
         load_instruments('nosuch')
 
 
