@@ -112,7 +112,9 @@ def _other(value: Any, rng: Generator) -> Any:
 def _other_array(values: NDArray[np.generic], rng: Generator) -> NDArray[np.generic]:
     changed: NDArray[np.generic] = values.copy()
     if changed.size and changed.dtype.kind == 'f' and rng.random() < 0.7:
-        changed[rng.integers(changed.size)] = rng.choice(NUMBERS)
+        # What is too large for the type becomes infinite.
+        with np.errstate(over='ignore'):
+            changed[rng.integers(changed.size)] = rng.choice(NUMBERS)
     else:
         changed = np.resize(changed, int(rng.integers(0, MOST_ENTRIES)))
     return changed
