@@ -27,6 +27,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         ),
         'effects': ('cli.effects', 'List the effects that a gear may have beyond the model.'),
         'trim': ('cli.trim', 'Find fastening points that give the boards wanted angles.'),
+        'gear': ('cli.gear', 'Check gear files, and make them from net plans.'),
         'validate': ('lab.commands.validate', "Check the model's claims and write the report."),
         'benchmark': ('lab.commands.benchmark', 'Measure how fast things are, beside other tools.'),
         'study': (

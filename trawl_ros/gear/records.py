@@ -1,13 +1,15 @@
 """Records of the gear file: every key carries its unit, every value is checked on load."""
 
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
 from trawl_ros.gear.boards import CORRECTIONS, BoardRecord, StartRecord
+from trawl_ros.gear.net_plan import NetPlanRecord
 from trawl_ros.gear.numbers import Degrees, NotNegative, Positive
+from trawl_ros.gear.rigging import HungRecord, OwnBridleRecord
 
 
 class CurrentAt(Record):
@@ -91,13 +93,20 @@ class BridleRecord(RopeRecord):
 
 
 class FrameRopeRecord(RopeRecord):
-    """Headrope or footrope, from wing tip to wing tip."""
+    """Rope of the frame, from wing tip to wing tip.
 
-    length_m: Positive
+    Without a length it is as long as the hanging ratios of the net plan make it.
+    """
+
+    length_m: Positive | None = None
 
 
 class SectionRecord(Record):
-    """A section of netting, from front to back; its stretched circumference tapers linearly."""
+    """A section of netting, from front to back; its stretched circumference tapers linearly.
+
+    ``shielding`` is the part of the drag of single twines that is left in this netting, ``twines``
+    the number of them side by side in each bar.
+    """
 
     name: str
     length_m: Positive
@@ -107,23 +116,29 @@ class SectionRecord(Record):
     twine_diameter_m: Annotated[float, Field(gt=0, le=0.1)]
     twine_density_kg_m3: Annotated[float, Field(ge=500, le=8000)]
     twine_modulus_pa: Positive
+    twines: Literal[1, 2] = 1
+    knotless: bool = False
+    shielding: Annotated[float, Field(gt=0, le=1)] = 1.0
 
 
 class NettingRecord(Record):
-    """The net: sections of diamond mesh, a codend, and how they are grouped.
+    """The net: sections of diamond mesh, a codend, and how they are grouped; or its plan.
 
-    ``around`` numerical meshes stand for the real ones of every row; a numerical row is as
-    long as keeps the angle of the meshes. ``body`` sections become netting, the ``codend``
-    sections one line of ``codend_segments`` with the drag of its twine at the stated angle.
-    Behind each stretched circumference of ``halved_at_circumference_m`` half as many numerical
-    meshes go around as before it. ``bowing_pressure_pa`` is the load of the water across twine,
-    per projected area, under which it bows between its knots; without it bars are straight.
+    With a ``plan`` sections, codend and wings are those of its pieces.
+
+    ``around`` numerical meshes stand for the real ones of every row; a numerical row is as long
+    as keeps the angle of the meshes. ``body`` sections become netting, the ``codend`` sections
+    one line of ``codend_segments`` with the drag of its twine at the stated angle. Behind each
+    stretched circumference of ``halved_at_circumference_m`` half as many numerical meshes go
+    around as before it. ``bowing_pressure_pa`` is the load of the water across twine, per
+    projected area, under which it bows between its knots; without it bars are straight.
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
     halved_at_circumference_m: Annotated[tuple[Positive, ...], Field(max_length=4)] = ()
-    body: Annotated[tuple[SectionRecord, ...], Field(min_length=1, max_length=30)]
-    codend: Annotated[tuple[SectionRecord, ...], Field(min_length=1, max_length=10)]
+    body: Annotated[tuple[SectionRecord, ...], Field(max_length=30)] = ()
+    codend: Annotated[tuple[SectionRecord, ...], Field(max_length=10)] = ()
+    plan: NetPlanRecord | None = None
     codend_segments: Annotated[int, Field(ge=2, le=100)]
     codend_mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)]
     damping_time_s: NotNegative
@@ -133,9 +148,24 @@ class NettingRecord(Record):
     knot_diameters: NotNegative
     knot_drag: NotNegative
     knot_added_mass: NotNegative
-    wing_end_m: Positive
-    wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)]
+    wing_end_m: Positive | None = None
+    wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)] | None = None
     bowing_pressure_pa: NotNegative = 0.0
+
+    @model_validator(mode='after')
+    def _one_form(self) -> 'NettingRecord':
+        outline = {
+            'body': self.body or None,
+            'codend': self.codend or None,
+            'wing_end_m': self.wing_end_m,
+            'wing_edge_hanging': self.wing_edge_hanging,
+        }
+        for key, value in outline.items():
+            if self.plan is None and value is None:
+                raise ValueError(f'{key}: missing, expected it, or a plan')
+            if self.plan is not None and value is not None:
+                raise ValueError(f'{key}: found beside a plan, expected one of them')
+        return self
 
 
 class KiteRecord(Record):
@@ -233,10 +263,16 @@ class GearRecord(Record):
     headrope: FrameRopeRecord
     footrope: FrameRopeRecord
     netting: NettingRecord
-    kite: KiteRecord
-    clump: ClumpRecord
-    floats: FloatRecord
+    side_rope: FrameRopeRecord | None = None
+    kite: KiteRecord | None = None
+    clump: ClumpRecord = ClumpRecord(weight_in_water_n=0.0, density_kg_m3=7800.0, drag_area_m2=0.0)
+    floats: FloatRecord = FloatRecord(buoyancy_n=0.0, density_kg_m3=300.0, drag_area_m2=0.0)
     identification: StartRecord
+    bridles: Annotated[tuple[OwnBridleRecord, ...], Field(max_length=6)] = (
+        OwnBridleRecord(name='upper', at_board='upper', at_net='upper'),
+        OwnBridleRecord(name='lower', at_board='lower', at_net='lower'),
+    )
+    hung: Annotated[tuple[HungRecord, ...], Field(max_length=100)] = ()
     effects: Annotated[tuple[EffectRecord, ...], Field(max_length=20)] = ()
 
     @model_validator(mode='before')
@@ -247,6 +283,37 @@ class GearRecord(Record):
             if isinstance(board, dict) and board.get('law') is not None:
                 return {**data, 'identification': CORRECTIONS}
         return data
+
+    @model_validator(mode='after')
+    def _lengths(self) -> 'GearRecord':
+        if self.netting.plan is None:
+            for key in ('headrope', 'footrope'):
+                if getattr(self, key).length_m is None:
+                    raise ValueError(f'{key}.length_m: missing, expected a number (metres)')
+        return self
+
+    @model_validator(mode='after')
+    def _rigged(self) -> 'GearRecord':
+        names = [bridle.name for bridle in self.bridles]
+        if len(set(names)) < len(names):
+            raise ValueError(f'bridles: found the names {", ".join(names)}, expected each once')
+        for end, expected in (('at_board', ('upper', 'lower')), ('at_net', ('upper', 'lower'))):
+            missing = set(expected) - {getattr(bridle, end) for bridle in self.bridles}
+            if missing:
+                raise ValueError(
+                    f'bridles: found none {end} {", ".join(sorted(missing))}, expected one at least'
+                )
+        ropes = ['headrope', 'footrope', 'side_rope', *(f'{name}_bridle' for name in names)]
+        for number, item in enumerate(self.hung):
+            if item.rope not in ropes:
+                raise ValueError(
+                    f'hung[{number}].rope: found {item.rope}, expected one of {", ".join(ropes)}'
+                )
+        return self
+
+    def bridle_of(self, own: OwnBridleRecord) -> BridleRecord:
+        """Make of one of the bridles."""
+        return self.bridle.model_copy(update=own.changes)
 
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False
@@ -260,6 +327,12 @@ class GearRecord(Record):
                 'warp': self.warp.model_copy(update={'segments': self.warp.segments * warp}),
                 'bridle': self.bridle.model_copy(
                     update={'segments': self.bridle.segments * bridle}
+                ),
+                'bridles': tuple(
+                    own
+                    if own.segments is None
+                    else own.model_copy(update={'segments': own.segments * bridle})
+                    for own in self.bridles
                 ),
                 'netting': self.netting.model_copy(
                     update={

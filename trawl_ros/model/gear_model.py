@@ -12,14 +12,16 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.gear.polars import polar_of
-from trawl_ros.gear.records import BridleRecord, FrameRopeRecord, GearRecord, RopeRecord
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import Kite, KiteNodes
 from trawl_ros.model.line import BarProperties
-from trawl_ros.model.netting import NetMesh, build_net
+from trawl_ros.model.net_weave import NetMesh
+from trawl_ros.model.netting import build_net
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
+from trawl_ros.model.rigging import GearBuilder, add_bridles, bridle_ends_of, hung_places, rope_row
 from trawl_ros.model.water import Water, build_water
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -32,19 +34,26 @@ class NodeLayout:
     """Node numbering: the nodes of warps, bridles, net, headrope, footrope and kite.
 
     ``warps`` and ``bridles`` are tuples of node arrays (warps from block to board, port and
-    starboard; bridles from board to wing tip: port upper, port lower, starboard upper,
-    starboard lower), ``net`` the net's nodes; ``lines`` (name, point numbers, bar numbers) of
-    everything to be drawn.
+    starboard; bridles from board to net in the order of the gear file, port's, then
+    starboard's), ``bridle_ends`` the net's nodes at which these end, ``net`` the net's nodes;
+    ``lines`` (name, point numbers, bar numbers) of everything to be drawn.
     """
 
     warps: tuple[IntArray, IntArray]
     bridles: tuple[IntArray, ...]
+    bridle_ends: IntArray
     net: IntArray
     headrope: IntArray
     footrope: IntArray
     kite: KiteNodes
     top_warp_bars: IntArray
     lines: tuple[tuple[str, IntArray, IntArray], ...]
+
+    @property
+    def bridles_by_side(self) -> tuple[tuple[IntArray, ...], tuple[IntArray, ...]]:
+        """Bridles of port and of starboard."""
+        half = len(self.bridles) // 2
+        return self.bridles[:half], self.bridles[half:]
 
 
 @dataclass(frozen=True)
@@ -130,76 +139,6 @@ class GearModel:
         )
 
 
-class _Builder:
-    """Builder of nodes and bars; fastening points and blocks are renumbered at the end."""
-
-    FASTENING = -100
-    BLOCK = -200
-
-    def __init__(self) -> None:
-        self.count = 0
-        self.ends: list[tuple[int, int]] = []
-        self.rows: list[tuple[float, ...]] = []
-        self.rest: list[float] = []
-        self.side: list[int] = []
-        self.lines: list[tuple[str, list[int], list[int]]] = []
-
-    def nodes(self, number: int) -> IntArray:
-        first = self.count
-        self.count += number
-        return np.arange(first, self.count)
-
-    def bar(self, a: int, b: int, rest: float, row: tuple[float, ...], side: int = -1) -> int:
-        self.ends.append((a, b))
-        self.rows.append(row)
-        self.rest.append(rest)
-        self.side.append(side)
-        return len(self.ends) - 1
-
-    def rope(
-        self,
-        name: str,
-        points: list[int],
-        rests: list[float],
-        row: tuple[float, ...],
-        side: int = -1,
-    ) -> list[int]:
-        bars = []
-        for a, b, rest in zip(points, points[1:], rests, strict=False):
-            # A bar at a board starts there: the assembly relies on it.
-            flip = self.BLOCK < b <= self.FASTENING
-            bars.append(self.bar(b if flip else a, a if flip else b, rest, row, side))
-        self.lines.append((name, points, bars))
-        return bars
-
-    def resolve(self, number: int) -> int:
-        """Final number of a point."""
-        if number <= self.BLOCK:
-            return self.count + 6 + (self.BLOCK - number)
-        if number <= self.FASTENING:
-            return self.count + (self.FASTENING - number)
-        return number
-
-
-def _rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:
-    """Properties of a rope in the order of `BarProperties`, per metre."""
-    volume = np.pi / 4 * rope.diameter_m**2
-    mass = rope.weight_in_water_n_m / water.gravity + water.density * volume
-    return (
-        rope.stiffness_n,
-        rope.damping_time_s,
-        mass,
-        volume,
-        rope.diameter_m,
-        np.pi * rope.diameter_m,
-        rope.normal_drag,
-        rope.tangential_drag,
-        rope.added_mass_normal,
-        rope.added_mass_tangential,
-        0.0,
-    )
-
-
 def build_board(gear: GearRecord) -> Board:
     """The board of a gear file."""
     record = gear.board
@@ -237,30 +176,29 @@ def build_board(gear: GearRecord) -> Board:
     )
 
 
-def _frame_rests(rope: FrameRopeRecord, edge: float, wing_rows: int, bars: int) -> list[float]:
-    """Rest lengths along head- or footrope: wing edges as hung, the rest on the bosom."""
-    bosom = (rope.length_m - 2 * wing_rows * edge) / (bars - 2 * wing_rows)
-    return [edge] * wing_rows + [bosom] * (bars - 2 * wing_rows) + [edge] * wing_rows
-
-
-def _add_bridles(
-    build: _Builder, record: BridleRecord, row: tuple[float, ...], tips: list[int]
-) -> list[IntArray]:
-    """Four bridles: port upper, port lower, starboard upper, starboard lower."""
-    nodes = []
-    names = (
-        'port_upper_bridle',
-        'port_lower_bridle',
-        'starboard_upper_bridle',
-        'starboard_lower_bridle',
-    )
-    for k, (name, tip) in enumerate(zip(names, tips, strict=True)):
-        own = build.nodes(record.segments - 1)
-        nodes.append(own)
-        fastening = build.FASTENING - (3 * (k // 2) + 1 + k % 2)
-        rests = [record.length_m / record.segments] * record.segments
-        build.rope(name, [fastening, *own, tip], rests, row)
-    return nodes
+def _frame_rests(gear: GearRecord, mesh: NetMesh) -> tuple[list[float], list[float], list[float]]:
+    """Rest lengths along headrope, footrope, and the ropes between the wing tips of a side."""
+    record, plan = gear.netting, gear.netting.plan
+    if plan is not None and mesh.frame is not None:
+        names = ('headrope', 'footrope', 'side_rope')
+        lengths = (rope and rope.length_m for rope in (getattr(gear, name) for name in names))
+        headrope, footrope, side = (
+            rim.rests(plan, length, name).tolist()
+            for rim, length, name in zip(mesh.frame, lengths, names, strict=True)
+        )
+        return headrope, footrope, side
+    assert record.wing_edge_hanging is not None
+    assert record.wing_end_m is not None
+    wing_rows, bars = record.around // 12, len(mesh.wing_ends[0]) - 1
+    edge = record.wing_edge_hanging * mesh.edge_rest
+    rests = []
+    for rope, rim in ((gear.headrope, mesh.headrope), (gear.footrope, mesh.footrope)):
+        # Wing edges as hung, the rest on the bosom.
+        assert rope.length_m is not None
+        inner = len(rim) - 1 - 2 * wing_rows
+        bosom = (rope.length_m - 2 * wing_rows * edge) / inner
+        rests.append([edge] * wing_rows + [bosom] * inner + [edge] * wing_rows)
+    return rests[0], rests[1], [record.wing_end_m / bars] * bars
 
 
 def build_model(gear: GearRecord) -> GearModel:
@@ -289,9 +227,9 @@ def build_model(gear: GearRecord) -> GearModel:
     (142, True)
     """
     water, board = build_water(gear), build_board(gear)
-    mesh = build_net(gear.netting, gear.kite.chord_m)
-    build = _Builder()
-    warp_row = _rope_row(gear.warp, water)
+    mesh = build_net(gear.netting, None if gear.kite is None else gear.kite.chord_m)
+    build = GearBuilder()
+    warp_row = rope_row(gear.warp, water)
     segments = gear.warp.segments
     warps, top_bars = [], []
     for side, name in enumerate(('port_warp', 'starboard_warp')):
@@ -299,37 +237,36 @@ def build_model(gear: GearRecord) -> GearModel:
         warps.append(own)
         points = [build.BLOCK - side, *own, build.FASTENING - 3 * side]
         top_bars.append(build.rope(name, points, [1.0] * segments, warp_row, side)[0])
-    net_first = build.count + 4 * (gear.bridle.segments - 1)
-    tips = [net_first + rope[end] for end in (0, -1) for rope in (mesh.headrope, mesh.footrope)]
-    bridles = _add_bridles(build, gear.bridle, _rope_row(gear.bridle, water), tips)
+    bridle_nodes = sum(gear.bridle_of(own).segments - 1 for own in gear.bridles)
+    net_first = build.count + 2 * bridle_nodes
+    bridle_ends = [net_first + node for node in bridle_ends_of(gear, mesh)]
+    bridles = add_bridles(build, gear, water, bridle_ends)
     net = build.nodes(len(mesh.positions))
 
     record = gear.netting
-    shared = (record.normal_drag, record.friction, record.added_mass_normal, 0.0)
+    added = (record.added_mass_normal, 0.0)
     for bar in mesh.bars:
         # The codend's drag is on its nodes, its volume and stiffness in its bars.
         area = 0.0 if bar.group == 'codend' else bar.area
         row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
-        number = build.bar(net[bar.start], net[bar.end], bar.rest, (*row, *shared, bar.bow))
+        drag = (record.normal_drag * bar.shielding, record.friction * bar.shielding)
+        number = build.bar(net[bar.start], net[bar.end], bar.rest, (*row, *drag, *added, bar.bow))
         build.lines.append((bar.group, [int(net[bar.start]), int(net[bar.end])], [number]))
-    wing_rows = record.around // 12
-    edge = record.wing_edge_hanging * mesh.edge_rest
-    for name, rope, rim in (
-        ('headrope', gear.headrope, mesh.headrope),
-        ('footrope', gear.footrope, mesh.footrope),
+    rests_of, sides = _frame_rests(gear, mesh), mesh.wing_ends
+    for name, rope, rim, rests in (
+        ('headrope', gear.headrope, mesh.headrope, rests_of[0]),
+        ('footrope', gear.footrope, mesh.footrope, rests_of[1]),
+        ('port_wing_end', gear.side_rope or gear.headrope, sides[0], rests_of[2]),
+        ('starboard_wing_end', gear.side_rope or gear.headrope, sides[1], rests_of[2]),
     ):
-        rests = _frame_rests(rope, edge, wing_rows, len(rim) - 1)
-        build.rope(name, [int(net[k]) for k in rim], rests, _rope_row(rope, water))
-    for name, end in zip(('port_wing_end', 'starboard_wing_end'), mesh.wing_ends, strict=True):
-        rests = [record.wing_end_m / (len(end) - 1)] * (len(end) - 1)
-        build.rope(name, [int(net[k]) for k in end], rests, _rope_row(gear.headrope, water))
+        build.rope(name, [int(net[k]) for k in rim], rests, rope_row(rope, water))
 
     lumps = np.zeros((4, build.count))
     lumps[1, net] += mesh.knot_volume
     lumps[2, net] += mesh.knot_area * record.knot_drag + mesh.line_drag_area
     lumps[3, net] += mesh.knot_volume * record.knot_added_mass
     # Knots are made of the twine they join: their mass is the first body section's density.
-    lumps[0, net] += mesh.knot_volume * record.body[0].twine_density_kg_m3
+    lumps[0, net] += mesh.knot_volume * mesh.knot_density
     clump, floats = gear.clump, gear.floats
     for rim, force, density, drag_area in (
         (mesh.footrope, clump.weight_in_water_n, clump.density_kg_m3, clump.drag_area_m2),
@@ -339,6 +276,12 @@ def build_model(gear: GearRecord) -> GearModel:
         # A compact body: half its volume of added mass, as a sphere.
         for tip in (net[rim[0]], net[rim[-1]]):
             lumps[:, tip] += (density * volume, volume, drag_area, 0.5 * volume)
+    for item in gear.hung:
+        volume = item.force / water.gravity / (item.density - water.density)
+        body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
+        for nodes, shares in hung_places(build, item):
+            # A rope passes each node once.
+            lumps[:, nodes] += body[:, None] * shares
     guess = np.full((build.count, 3), np.nan)
     guess[net] = mesh.positions
     ends = np.array([[build.resolve(a), build.resolve(b)] for a, b in build.ends])
@@ -360,6 +303,7 @@ def build_model(gear: GearRecord) -> GearModel:
         layout=NodeLayout(
             warps=(warps[0], warps[1]),
             bridles=tuple(bridles),
+            bridle_ends=np.array(bridle_ends),
             net=net,
             headrope=net[mesh.headrope],
             footrope=net[mesh.footrope],
@@ -378,6 +322,8 @@ def build_model(gear: GearRecord) -> GearModel:
 
 def _build_kite(gear: GearRecord) -> Kite:
     kite = gear.kite
+    if kite is None:
+        return Kite(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     return Kite(
         area=kite.area_m2,
         mass=kite.mass_kg,

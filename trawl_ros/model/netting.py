@@ -13,57 +13,35 @@ a pitch further, so the net is its own mirror image and has a node at the headro
 The codend is one line: its meshes are too small for rows, and their drag is put on its nodes.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import GearError
+from trawl_ros.gear.net_plan import NetPlanRecord
 from trawl_ros.gear.records import NettingRecord
-from trawl_ros.model.kite import KiteNodes
+from trawl_ros.model.kite import NO_KITE, KiteNodes
+from trawl_ros.model.net_weave import NetMesh, add_codend, weave
 from trawl_ros.model.netting_rows import NettingRow, Profile, rows_of
+from trawl_ros.model.planned_cloth import PlannedCloth, sections_of
+from trawl_ros.model.planned_mouth import Place, PlannedMouth
 
 
-@dataclass(frozen=True)
-class NetBar:
-    """A numerical bar between two net nodes, with the properties of `line.BarProperties`."""
+def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
+    """Group the netting of a gear into nodes and bars.
 
-    start: int
-    end: int
-    rest: float
-    stiffness: float
-    area: float
-    volume: float
-    mass: float
-    bow: float
-    group: str
+    Parameters
+    ----------
+    net
+        Sections with wings of the usual cut, or a plan.
+    kite_chord
+        See `KiteRecord`; None without a kite.
 
-
-@dataclass
-class NetMesh:
-    """Nodes and bars of the net.
-
-    ``positions`` (n, 3) is a first guess, x forward from the wing tips, y to port, z up;
-    ``bars`` its netting; ``knot_area`` (m²) and ``knot_volume`` (m³) per node;
-    ``line_drag_area`` C_D S (m²) of the codend's nodes; ``headrope`` and ``footrope`` the
-    nodes from port to starboard wing tip, with their ropes' rest lengths as shares of the
-    bosom and the wing edges; ``wing_ends`` the nodes joined by the wing-end lines;
-    ``kite`` what carries the kite.
+    Raises
+    ------
+    GearError
+        If the net cannot be cut as the file says.
     """
-
-    positions: FloatArray
-    bars: list[NetBar]
-    knot_area: FloatArray
-    knot_volume: FloatArray
-    line_drag_area: FloatArray
-    headrope: list[int]
-    footrope: list[int]
-    edge_rest: float
-    wing_ends: list[list[int]]
-    kite: KiteNodes
-
-
-def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
-    """Group the netting of a gear into nodes and bars; see `KiteRecord` for the kite's chord."""
+    if net.plan is not None:
+        return _planned_net(net, net.plan, kite_chord)
     n = net.around
     body = Profile(net.body)
     rows = rows_of(body, n, net.halved_at_circumference_m)
@@ -73,62 +51,95 @@ def build_net(net: NettingRecord, kite_chord: float) -> NetMesh:
         NettingRow(k * wing_row, (k + 1) * wing_row, n, k % 2 == 1, False)
         for k in range(-wing_rows, 0)
     ]
-    index: dict[tuple[int, int], int] = {}
-    positions: list[tuple[float, float, float]] = []
 
-    def add(edge: int, x: float, around: int, odd: bool) -> None:
-        _, circumference = body.at(x)
-        radius = 0.4 * circumference / (2 * np.pi)
-        for j in range(around):
-            if edge >= 0 or _in_wing(edge, j, n, wing_rows):
-                phi = (j + 0.5 * odd) * 2 * np.pi / around
-                index[edge, j] = len(positions)
-                positions.append(
-                    (
-                        -0.85 * (x + wing_rows * wing_row),
-                        radius * np.sin(phi),
-                        0.6 * radius * np.cos(phi),
-                    )
-                )
+    columns = {
+        k: body.per_mesh_column(row.front, row.back, row.columns)
+        for k, row in enumerate([*wings, *rows], -wing_rows)
+    }
 
-    for k, row in enumerate([*wings, *rows], -wing_rows):
-        add(k, row.front, row.around, row.odd)
-    last = rows[-1]
-    add(len(rows), last.back, last.columns, not last.joins and not last.odd)
-    bars: list[NetBar] = []
-    knot_area = np.zeros(len(positions) + net.codend_segments)
-    knot_volume = np.zeros_like(knot_area)
-    for k, row in enumerate([*wings, *rows], -wing_rows):
-        sums = body.per_mesh_column(row.front, row.back, row.columns)
-        for j in range(row.around):
-            for other in _behind(row, j):
-                if (k, j) not in index or (k + 1, other) not in index:
-                    continue
-                a, b = index[k, j], index[k + 1, other]
-                # Half of the column of a bar on a wing's edge is cut away.
-                share = 0.5 if _on_edge(k, j, other, n, wing_rows) else 1.0
-                own = {key: share * value for key, value in sums.items()}
-                bars.append(_bar(a, b, row.rest, own, net.bowing_pressure_pa, 'netting'))
-                knot_area[[a, b]] += 0.5 * own['knots'] * net.knot_diameters**2
-                knot_volume[[a, b]] += 0.5 * own['knot_volume'] * net.knot_diameters**3
-    line_drag = np.zeros(len(positions) + net.codend_segments)
+    def sums(k: int, row: NettingRow, j: int, other: int) -> dict[str, float]:
+        # Half of the column of a bar on a wing's edge is cut away.
+        share = 0.5 if _on_edge(k, j, other, n, wing_rows) else 1.0
+        return {key: share * value for key, value in columns[k].items()}
+
+    made = weave(net, body, wings, rows, lambda k, j: _in_wing(k, j, n, wing_rows), sums)
+    index, last = made.index, rows[-1]
     ring = [index[len(rows), j] for j in range(last.columns)]
-    codend = Profile((*body.behind(last.back), *net.codend))
-    _add_codend(net, codend, ring, positions, bars, line_drag)
+    add_codend(net, Profile((*body.behind(last.back), *net.codend)), ring, made)
     top, bottom = 0, n // 2
     rim_top = _rim(index, n, wing_rows, top)
     rim_bottom = _rim(index, n, wing_rows, bottom)
     return NetMesh(
-        positions=np.array(positions),
-        bars=bars,
-        knot_area=knot_area,
-        knot_volume=knot_volume,
-        line_drag_area=line_drag,
+        positions=np.array(made.positions),
+        bars=made.bars,
+        knot_area=made.knot_area,
+        knot_volume=made.knot_volume,
+        line_drag_area=made.line_drag,
         headrope=rim_top,
         footrope=rim_bottom,
         edge_rest=wing_row,
         wing_ends=_wing_ends(index, n, wing_rows),
-        kite=_kite_nodes(rows, index, kite_chord),
+        kite=NO_KITE if kite_chord is None else _kite_nodes(rows, index, kite_chord),
+        tips=(rim_top[0], rim_bottom[0], rim_top[-1], rim_bottom[-1]),
+        knot_density=net.body[0].twine_density_kg_m3,
+    )
+
+
+def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | None) -> NetMesh:
+    """Group the netting of a plan; see `PlannedMouth` and `PlannedCloth`."""
+    mouth = PlannedMouth(plan, net.around)
+    cloth = PlannedCloth(net, mouth)
+    body = cloth.bodies['upper']
+    halved = net.halved_at_circumference_m or (plan.circumference / 2, plan.circumference / 4)
+    rows = rows_of(body, net.around, halved)
+    wings = [
+        NettingRow(k * mouth.row, (k + 1) * mouth.row, net.around, k % 2 == 1, False)
+        for k in range(-mouth.foremost, 0)
+    ]
+
+    def sums(k: int, row: NettingRow, j: int, other: int) -> dict[str, float]:
+        front = (2 * j + row.odd) / (2 * row.around)
+        # The back edge has half as many nodes where meshes are joined.
+        odd = not row.odd and not row.joins
+        back = (2 * other + odd) / (2 * row.columns)
+        return cloth.sums(row, front + 0.5 * ((back - front + 0.5) % 1.0 - 0.5))
+
+    made = weave(net, body, wings, rows, lambda k, j: mouth.holds(k, 2 * j + k % 2), sums)
+    last, codend = rows[-1], sections_of(net, plan, 'codend', 'upper')
+    ring = [made.index[len(rows), j] for j in range(last.columns)]
+    add_codend(net, Profile((*body.behind(last.back), *codend.sections)), ring, made)
+
+    def nodes(places: tuple[Place, ...], *, mirrored: bool = False) -> list[int]:
+        around = 2 * net.around
+        halves = [(k, -half % around if mirrored else half) for k, half in places]
+        return [made.index[k, (half - k % 2) // 2] for k, half in halves]
+
+    frame = mouth.headrope(), mouth.footrope(), mouth.side_rope()
+    headrope, footrope = (nodes(rope.places) for rope in frame[:2])
+    kite = NO_KITE
+    if kite_chord is not None:
+        kite = _kite_nodes(rows, made.index, kite_chord)
+        if headrope[len(headrope) // 2] != kite.nodes[0]:
+            raise GearError(
+                'kite: found beside an upper panel that reaches ahead of the mouth, expected one'
+            )
+    return NetMesh(
+        positions=np.array(made.positions),
+        bars=made.bars,
+        knot_area=made.knot_area,
+        knot_volume=made.knot_volume,
+        line_drag_area=made.line_drag,
+        headrope=headrope,
+        footrope=footrope,
+        edge_rest=mouth.row,
+        wing_ends=[nodes(frame[2].places, mirrored=side) for side in (False, True)],
+        kite=kite,
+        tips=(
+            *nodes(mouth.tips),
+            *nodes(mouth.tips, mirrored=True),
+        ),
+        knot_density=body.sections[0].twine_density_kg_m3,
+        frame=frame,
     )
 
 
@@ -145,31 +156,6 @@ def _kite_nodes(
     share = (chord - a) / (b - a)
     nodes = [index[0, 0], index[top[behind - 1], 0], index[top[behind], 0]]
     return KiteNodes(np.array(nodes), np.array([[1.0, 0.0, 0.0], [0.0, 1.0 - share, share]]))
-
-
-def _bar(
-    a: int, b: int, rest: float, sums: dict[str, float], pressure: float, group: str
-) -> NetBar:
-    # Netting of hardly any circumference has no twine.
-    sag = pressure * sums['width'] * rest / sums['stiffness'] if sums['stiffness'] else 0.0
-    return NetBar(
-        a,
-        b,
-        rest,
-        sums['stiffness'] / rest,
-        sums['area'] / rest,
-        sums['volume'] / rest,
-        sums['mass'] / rest,
-        sag**2 / 24.0,
-        group,
-    )
-
-
-def _behind(row: NettingRow, j: int) -> tuple[int, ...]:
-    """Nodes of the back edge that the bars of node ``j`` of the front edge go to."""
-    if row.joins:
-        return (((j + 1) // 2) % row.columns,)
-    return ((j - 1 + row.odd) % row.around, (j + row.odd) % row.around)
 
 
 def _angle_index(row: int, j: int) -> int:
@@ -227,35 +213,3 @@ def _wing_ends(index: dict[tuple[int, int], int], n: int, wing_rows: int) -> lis
         nodes = [index[row, (half - row % 2) // 2] for half in halves]
         ends.append(nodes if side == n // 2 else nodes[::-1])
     return ends
-
-
-def _add_codend(
-    net: NettingRecord,
-    codend: Profile,
-    ring: list[int],
-    positions: list[tuple[float, float, float]],
-    bars: list[NetBar],
-    line_drag: FloatArray,
-) -> None:
-    """One line behind the last whole row, whose nodes are all tied to its first node."""
-    m = net.codend_segments
-    step = codend.length / m
-    tail = positions[ring[0]][0]
-    mesh_angle = np.radians(net.codend_mesh_angle_deg)
-    # Eq. 23 and 24 along the flow for a bar at the stated angle, as C_D S per twine area.
-    per_area = (
-        net.normal_drag * np.sin(mesh_angle) ** 3 + net.friction * np.pi * np.cos(mesh_angle) ** 3
-    )
-    previous: list[int] = ring
-    for k in range(m):
-        positions.append((tail - (k + 1) * step, 0.0, 0.0))
-        node = len(positions) - 1
-        sums = codend.per_mesh_column(k * step, (k + 1) * step, 1)
-        # Two bars make a mesh: all bars of the cross-section lie in the line.
-        sums = {key: 2 * value for key, value in sums.items()}
-        knots = sums['knots'] * net.knot_diameters**2 * net.knot_drag
-        line_drag[node] += sums['area'] * per_area + knots
-        share = {key: value / len(previous) for key, value in sums.items()}
-        for start in previous:
-            bars.append(_bar(start, node, step, share, 0.0, 'codend'))
-        previous = [node]

@@ -80,22 +80,24 @@ class Profile:
 
         Netting ahead of the mouth is taken to be like that at the mouth.
         """
-        sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
+        sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume', 'felt'
         total = dict.fromkeys(sums, 0.0)
         dx = (back - front) / SLICES
         for x in front + (np.arange(SLICES) + 0.5) * dx:
             section, circumference = self.at(float(x))
-            parallel = circumference / section.mesh_m / around
+            parallel = circumference / section.mesh_m / around * section.twines
             d = section.twine_diameter_m
             twine = np.pi / 4 * d**2
             total['area'] += parallel * d * dx
+            # The part of that area which the drag is as large as that of.
+            total['felt'] += parallel * d * dx * section.shielding
             total['width'] += d * dx
             total['volume'] += parallel * twine * dx
             total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx
             total['stiffness'] += parallel * twine * section.twine_modulus_pa * dx
             # Two knots per mesh and mesh length, shared by the two bars of a column.
-            knots = parallel / (section.mesh_m / 2) * dx / 2
-            total['knots'] += knots * np.pi / 4 * d**2
+            knots = 0.0 if section.knotless else parallel / (section.mesh_m / 2) * dx / 2
+            total['knots'] += knots * np.pi / 4 * d**2 * section.shielding
             total['knot_volume'] += knots * np.pi / 6 * d**3
         return total
 

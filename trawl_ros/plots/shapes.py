@@ -178,7 +178,9 @@ def _from_readings(time: float, tow: TowHistory, gear: GearRecord) -> GearShape 
     depth, height, width = map(reading, ('net_depth', 'opening_height', 'opening_width'))
     height, half_width = (0.0 if not math.isfinite(x) else x for x in (height, 0.5 * width))
     if math.isfinite(depth):
-        x = float(np.mean(behind, axis=0)[0]) - gear.bridle.length_m
+        x = float(np.mean(behind, axis=0)[0]) - max(
+            gear.bridle_of(own).length_m for own in gear.bridles
+        )
         ring = [[x, s * half_width, -depth - d * height] for s, d in ((1, 0), (-1, 0), (-1, 1))]
         ring = [*ring, [x, half_width, -depth - height], ring[0]]
         strands.append(_one_colour('mouth', _chain(np.array(ring)), NETTING))

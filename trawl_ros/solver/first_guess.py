@@ -42,12 +42,12 @@ def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
     share = np.arange(1, model.warp_segments) / model.warp_segments
     for side, warp in enumerate(layout.warps):
         nodes[warp] = blocks[side] + share[:, None] * (boards[side] - blocks[side])
-    bridle = 0.88 * model.gear.bridle.length_m
+    bridle = 0.88 * max(model.gear.bridle_of(own).length_m for own in model.gear.bridles)
     nodes[layout.net] += [boards[:, 0].mean() - bridle, 0.0, boards[:, 2].mean()]
-    tips = (layout.headrope[0], layout.footrope[0], layout.headrope[-1], layout.footrope[-1])
-    for k, (line, tip) in enumerate(zip(layout.bridles, tips, strict=True)):
+    for k, (line, end) in enumerate(zip(layout.bridles, layout.bridle_ends, strict=True)):
         share = np.arange(1, len(line) + 1) / (len(line) + 1)
-        nodes[line] = boards[k // 2] + share[:, None] * (nodes[tip] - boards[k // 2])
+        board = boards[2 * k // len(layout.bridles)]
+        nodes[line] = board + share[:, None] * (nodes[end] - board)
     turn = about_axis(2, heading)
     port = about_axis(2, ATTACK) @ about_axis(0, LEAN)
     flip = np.array([1.0, -1.0, 1.0])

@@ -25,7 +25,7 @@ class BridleDrag(EmpiricalTerm):
         """Gear model with changed drag of the bridles."""
         port, starboard = (
             np.isin(model.ends, np.concatenate(pair)).any(axis=1)
-            for pair in (model.layout.bridles[:2], model.layout.bridles[2:])
+            for pair in model.layout.bridles_by_side
         )
         more = np.where(starboard, values[0], 0.0)
         more = more + np.where(port, -values[0] if self.difference else values[0], 0.0)

@@ -90,7 +90,7 @@ def bridle_weed(chance: np.random.Generator) -> Hidden:
     """Weed on the bridles of one side."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        nodes = np.concatenate(model.layout.bridles[2:])
+        nodes = np.concatenate(model.layout.bridles_by_side[1])
         on = np.isin(model.ends, nodes).any(axis=1)
         drag = model.bars.normal_drag * np.where(on, 1.0 + size, 1.0)
         friction = model.bars.friction * np.where(on, 1.0 + 10.0 * size, 1.0)

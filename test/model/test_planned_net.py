@@ -1,0 +1,307 @@
+"""A net from its plan: twine, mirror image, ropes and rigging are those of the plan."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.resources import share_path
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.net_plan import NetPlanRecord, cut_slope
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.planned_cloth import shielding
+
+AROUND = (24, 36, 48)
+
+
+def plan_data() -> dict[str, Any]:
+    return yaml.safe_load(share_path('config', 'gear', 'krill_800.yaml').read_text())
+
+
+def loaded(folder: Path, data: dict[str, Any]) -> GearRecord:
+    path = folder / 'own.yaml'
+    path.write_text(yaml.safe_dump(data))
+    return load_gear(path)
+
+
+def cut_to(gear: GearRecord, around: int) -> GearModel:
+    netting = gear.netting.model_copy(update={'around': around})
+    return build_model(gear.model_copy(update={'netting': netting}))
+
+
+def plan_of(gear: GearRecord) -> NetPlanRecord:
+    assert gear.netting.plan is not None
+    return gear.netting.plan
+
+
+def piece(part: str, panel: str, front: float, back: float, long: float, **more: Any) -> dict:
+    return {
+        'part': part,
+        'panel': panel,
+        'mesh_mm': 800.0,
+        'front_meshes': front,
+        'back_meshes': back,
+        'long_meshes': long,
+        'rtex': 3370.0,
+        'material': 'PA',
+        **more,
+    }
+
+
+TWO_PANELS = [
+    piece('wing', 'upper', 20, 60, 40),
+    piece('wing', 'lower', 20, 60, 40),
+    piece('body', 'upper', 160, 60, 60, section='belly'),
+    piece('body', 'lower', 160, 60, 60, section='belly'),
+    piece('codend', 'all', 120, 100, 20, section='codend'),
+]
+WHOLE_SIDES = [
+    piece('wing', 'upper', 10, 40, 30),
+    piece('wing', 'side', 60, 60, 30),
+    piece('wing', 'lower', 10, 40, 30),
+    piece('body', 'upper', 110, 40, 60, section='belly'),
+    piece('body', 'side', 60, 30, 60, section='belly'),
+    piece('body', 'lower', 110, 40, 60, section='belly'),
+    piece('codend', 'all', 140, 100, 20, section='codend'),
+]
+SQUARE = [
+    piece('wing', 'upper', 10, 40, 30),
+    piece('wing', 'upper', 110, 110, 18, pieces=1),
+    piece('wing', 'side_upper', 10, 28, 48),
+    piece('wing', 'side_lower', 10, 28, 48),
+    piece('wing', 'lower', 10, 40, 48),
+    *WHOLE_SIDES[3:],
+]
+NO_SIDE_WINGS = [SQUARE[0], SQUARE[4] | {'long_meshes': 30}, *WHOLE_SIDES[3:]]
+PLANS = {
+    'published': None,
+    'two panels': TWO_PANELS,
+    'whole sides': WHOLE_SIDES,
+    'square': SQUARE,
+    'no side wings': NO_SIDE_WINGS,
+}
+
+
+@pytest.fixture(params=PLANS)
+def gear(request: pytest.FixtureRequest, tmp_path: Path) -> GearRecord:
+    data = plan_data()
+    if PLANS[request.param] is not None:
+        data['netting']['plan']['pieces'] = PLANS[request.param]
+        for rope in ('headrope', 'footrope', 'side_rope'):
+            data.get(rope, {}).pop('length_m', None)
+    return loaded(tmp_path, data)
+
+
+@pytest.mark.parametrize('around', AROUND)
+def test_twine_is_that_of_the_plan(gear: GearRecord, around: int) -> None:
+    bars = cut_to(gear, around).net_mesh.bars
+    area = sum(bar.area * bar.rest for bar in bars)
+    assert area == pytest.approx(sum(p.twine_area for p in plan_of(gear).pieces), rel=0.02)
+
+
+@pytest.mark.parametrize('around', AROUND)
+def test_the_net_is_its_own_mirror_image(gear: GearRecord, around: int) -> None:
+    mesh = cut_to(gear, around).net_mesh
+    image = mesh.positions * [1.0, -1.0, 1.0]
+    apart = np.linalg.norm(image[:, None] - mesh.positions[None], axis=2)
+    assert apart.min(axis=1).max() < 1e-9
+    twin = apart.argmin(axis=1)
+    for rim in (mesh.headrope, mesh.footrope):
+        np.testing.assert_array_equal(twin[rim], rim[::-1])
+        assert len(rim) % 2 == 1
+    np.testing.assert_array_equal(twin[mesh.wing_ends[0]], mesh.wing_ends[1])
+    np.testing.assert_array_equal(twin[list(mesh.tips[:2])], mesh.tips[2:])
+    np.testing.assert_allclose(mesh.knot_area[twin], mesh.knot_area, rtol=1e-9)
+
+
+@pytest.mark.parametrize('around', AROUND)
+def test_ropes_are_as_long_as_planned_however_fine_the_net(gear: GearRecord, around: int) -> None:
+    model = cut_to(gear, around)
+    bars: dict[str, list[int]] = {}
+    for name, _, numbers in model.layout.lines:
+        bars.setdefault(name, []).extend(numbers.tolist())
+    for name, key in (
+        ('headrope', 'headrope'),
+        ('footrope', 'footrope'),
+        ('port_wing_end', 'side_rope'),
+        ('starboard_wing_end', 'side_rope'),
+    ):
+        record = getattr(gear, key)
+        given = record.length_m if record is not None else None
+        length = plan_of(gear).rope_length(key) if given is None else given
+        assert model.rest[bars[name]].sum() == pytest.approx(length, rel=1e-9), name
+
+
+@pytest.mark.parametrize('around', AROUND)
+def test_every_node_of_the_frame_is_on_a_rope_and_hangs_on_netting(
+    gear: GearRecord, around: int
+) -> None:
+    """The frame is one closed line around the mouth, along which neighbours are netting's."""
+    mesh = cut_to(gear, around).net_mesh
+    ring = [*mesh.headrope[:-1], *mesh.wing_ends[1][:-1], *mesh.footrope[:0:-1]]
+    ring += mesh.wing_ends[0][:0:-1]
+    assert len(set(ring)) == len(ring)
+    assert mesh.headrope[0] == mesh.wing_ends[0][0] == mesh.tips[0]
+    assert mesh.footrope[0] == mesh.wing_ends[0][-1] == mesh.tips[1]
+    held = {bar.start for bar in mesh.bars} | {bar.end for bar in mesh.bars}
+    assert set(range(len(mesh.positions))) == held
+
+
+def test_wings_are_as_long_as_planned_as_near_as_rows_go(gear: GearRecord) -> None:
+    mesh = cut_to(gear, 48).net_mesh
+    plan = plan_of(gear)
+    ahead = max(plan.wing_length('upper'), plan.wing_length('lower'))
+    mouth = -mesh.positions[mesh.headrope[len(mesh.headrope) // 2]][0] / 0.85
+    # The middle of the headrope needs a node, which only every other row has.
+    square = sum(p.length for p in plan.wing('upper') if p.pieces == 1)
+    assert mouth == pytest.approx(ahead - square, abs=1.6 * mesh.edge_rest)
+
+
+def test_what_hangs_on_ropes_weighs_what_the_file_says(tmp_path: Path) -> None:
+    data = plan_data()
+    hung = data.pop('hung')
+    with_it, without = (
+        build_model(loaded(tmp_path, data | more)) for more in ({'hung': hung}, {'hung': []})
+    )
+    more = with_it.lump_mass - without.lump_mass
+    water = with_it.water
+    weight = more - water.density * (with_it.lump_volume - without.lump_volume)
+    per_side = 2 * hung[0]['weight_in_water_n']
+    total = per_side + hung[1]['weight_in_water_n'] - hung[2]['buoyancy_n']
+    assert weight.sum() * water.gravity == pytest.approx(total, rel=1e-9)
+    port, starboard = (np.concatenate(side) for side in with_it.layout.bridles_by_side)
+    assert more[port].sum() == pytest.approx(more[starboard].sum())
+    # The last 6 % of a bridle lie between its last node and the wing tip.
+    lower = with_it.layout.bridles[1]
+    assert more[lower[:-1]].sum() == 0.0
+    assert more[with_it.layout.bridle_ends[1]] > 0.6 * per_side / 2 / water.gravity
+
+
+def test_three_bridles_of_different_length_end_where_the_file_says(tmp_path: Path) -> None:
+    data = plan_data()
+    data['bridles'] = [
+        {'name': 'upper', 'at_board': 'upper', 'at_net': 'upper', 'length_m': 98.0},
+        {'name': 'middle', 'at_board': 'lower', 'at_net': 'side', 'segments': 3},
+        {'name': 'lower', 'at_board': 'lower', 'at_net': 'lower', 'diameter_m': 0.02},
+    ]
+    gear = loaded(tmp_path, data)
+    model = build_model(gear)
+    assert [len(line) for line in model.layout.bridles] == [5, 2, 5, 5, 2, 5]
+    assert len(gear.refined(bridle=2).bridles) == 3
+    lines = {name: (points, bars) for name, points, bars in model.layout.lines}
+    points, bars = lines['starboard_middle_bridle']
+    side = model.layout.net[model.net_mesh.wing_ends[1]]
+    assert points[0] == model.nodes + 5
+    assert points[-1] == side[len(side) // 2]
+    assert model.rest[bars].sum() == pytest.approx(gear.bridle.length_m)
+    assert model.rest[lines['port_upper_bridle'][1]].sum() == pytest.approx(98.0)
+    assert model.bars.normal_area[lines['port_lower_bridle'][1]].max() == 0.02
+
+
+def test_knotless_netting_has_no_knots_and_dense_netting_less_drag(tmp_path: Path) -> None:
+    data = plan_data()
+    for row in data['netting']['plan']['pieces']:
+        row['knots'] = 'knotless'
+    gear = loaded(tmp_path, data)
+    assert build_model(gear).net_mesh.knot_area.max() == 0.0
+    pieces = plan_of(gear).pieces
+    left = {p.mesh_mm: shielding(p, gear.netting) for p in pieces}
+    assert all(0.4 < part < 1.0 for part in left.values())
+    assert left[800] > 0.98
+    assert left[800] > left[80] > left[22]
+
+
+def test_the_kite_hangs_on_a_planned_headrope(tmp_path: Path) -> None:
+    data = plan_data()
+    data['kite'] = {
+        'area_m2': 2.0,
+        'mass_kg': 10.0,
+        'volume_m3': 0.01,
+        'setting_deg': 5.0,
+        'chord_m': 4.0,
+        'lift_slope': 0.4,
+        'drag_base': 0.1,
+        'drag_growth': 0.4,
+    }
+    model = build_model(loaded(tmp_path, data))
+    head = model.layout.headrope
+    assert model.layout.kite.nodes[0] == head[len(head) // 2]
+
+
+@pytest.mark.parametrize(
+    ('cut', 'slope'), [('AB', 1.0), ('AN', 0.0), ('1N2B', 0.5), ('1N4B', 2 / 3), ('1T2B', 2.0)]
+)
+def test_cutting_rates(cut: str, slope: float) -> None:
+    assert cut_slope(cut) == pytest.approx(slope)
+
+
+def test_a_cutting_rate_stands_for_a_missing_count(tmp_path: Path) -> None:
+    data = plan_data()
+    pieces = data['netting']['plan']['pieces']
+    body = next(row for row in pieces if row.get('section') == '400 mm')
+    del body['back_meshes']
+    body['cut'] = '1N2B'
+    wing = pieces[0]
+    del wing['front_meshes']
+    read = plan_of(loaded(tmp_path, data)).pieces
+    assert next(p for p in read if p.section == '400 mm').back_meshes == pytest.approx(152 - 25)
+    assert read[0].front_meshes == pytest.approx(40 - 25.5)
+
+
+@pytest.mark.parametrize(
+    ('change', 'part'),
+    [
+        (lambda p: p[0].update(cut='2Q'), "cut: found '2Q', expected a cutting rate such as AB"),
+        (lambda p: p[0].pop('rtex'), 'found neither rtex nor twine_diameter_mm'),
+        (lambda p: p[0].update(panel='all'), 'panel: found all, expected one of upper, lower'),
+        (lambda p: p.pop(0), 'found no wing of the upper panel'),
+        (
+            lambda p: p[5].update(long_meshes=40),
+            "panels of section '800 mm' are 20 to 32 m long, expected one length",
+        ),
+        (lambda p: p[0].update(material='cotton'), "found 'cotton', expected 'PA'"),
+    ],
+)
+def test_a_plan_that_cannot_be_is_refused(tmp_path: Path, change: Any, part: str) -> None:
+    data = plan_data()
+    change(data['netting']['plan']['pieces'])
+    with pytest.raises(GearError) as caught:
+        loaded(tmp_path, data)
+    assert part in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ('changes', 'part'),
+    [
+        ({'netting': {'wing_end_m': 3.0}}, 'netting.wing_end_m: found beside a plan'),
+        ({'hung': [{'name': 'x', 'rope': 'kite', 'buoyancy_n': 1.0}]}, 'hung[0].rope: found kite'),
+        (
+            {'hung': [{'name': 'x', 'rope': 'headrope'}]},
+            'hung[0]: needs either weight_in_water_n or buoyancy_n',
+        ),
+        (
+            {'bridles': [{'name': 'upper', 'at_board': 'upper', 'at_net': 'upper'}]},
+            'bridles: found none at_board lower',
+        ),
+    ],
+)
+def test_a_rigging_that_cannot_be_is_refused(
+    tmp_path: Path, changes: dict[str, Any], part: str
+) -> None:
+    data = plan_data()
+    for key, value in changes.items():
+        data[key] = data[key] | value if isinstance(value, dict) else value
+    with pytest.raises(GearError) as caught:
+        loaded(tmp_path, data)
+    assert part in str(caught.value)
+
+
+def test_a_rope_that_is_too_short_for_its_bosom_is_refused(tmp_path: Path) -> None:
+    data = plan_data()
+    data['headrope']['length_m'] = 15.0
+    with pytest.raises(GearError, match=r'headrope\.length_m: found 15, expected more than the'):
+        build_model(loaded(tmp_path, data))

@@ -1,0 +1,199 @@
+"""Check of a gear file before anything is solved: figures, findings, and pictures."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.files import made_folder, write_figure
+from trawl_ros.core.resources import packaged
+from trawl_ros.core.schema import load_yaml
+from trawl_ros.gear.drag_bands import BANDS, KNOT
+from trawl_ros.gear.findings import GearFinding, findings
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
+
+SPEEDS = (2.0, 3.0, 4.0)
+"""Knots at which the drag is looked up."""
+
+
+@dataclass(frozen=True)
+class GearCheck:
+    """Check of a gear file.
+
+    Attributes
+    ----------
+    gear, model
+        The file's record, and the model built of it; nothing is solved.
+    twine_area
+        Of all netting, twine length times diameter, m².
+    weights
+        Weight in water (N) by part of the gear, warps left out; floats count negative.
+    drag
+        Drag of the net (N) by speed (knots) and empirical formula.
+    findings
+        What looks wrong, in the order of the file.
+    derived
+        Values that the file does not give, by key, as they were taken.
+    """
+
+    gear: GearRecord
+    model: GearModel
+    twine_area: float
+    weights: Mapping[str, float]
+    drag: Mapping[float, Mapping[str, float]]
+    findings: tuple[GearFinding, ...]
+    derived: Mapping[str, str]
+
+
+def check_gear(path: str | Path) -> GearCheck:
+    """Check a gear file without solving anything.
+
+    Parameters
+    ----------
+    path
+        A file, or the name of a gear that comes with the package.
+
+    Returns
+    -------
+    GearCheck
+        Figures and findings.
+
+    Raises
+    ------
+    GearError
+        If the file cannot be loaded, or no model can be built of it.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> check = trawl_ros.check_gear('kaifuha')
+    >>> print(f'{check.twine_area:.0f} m² of twine')
+    679 m² of twine
+    >>> check.findings
+    ()
+    """
+    raw = load_yaml(packaged(path, 'gear', GearError), GearError)
+    gear = load_gear(path)
+    model = build_model(gear)
+    area = sum(bar.area * bar.rest for bar in model.net_mesh.bars)
+    return GearCheck(
+        gear=gear,
+        model=model,
+        twine_area=float(area),
+        weights=weights_of(model),
+        drag={knots: {name: band(area, knots) for name, band in BANDS.items()} for knots in SPEEDS},
+        findings=findings(gear),
+        derived=dict(_derived(raw, gear)),
+    )
+
+
+def weights_of(model: GearModel) -> dict[str, float]:
+    """Weight in water (N) by part of the gear, warps left out."""
+    water, bars, gear = model.water, model.bars, model.gear
+    heavy = water.gravity * (bars.mass - water.density * bars.volume) * model.rest
+    found = {
+        'boards': 2 * water.gravity * (gear.board.mass_kg - water.density * gear.board.volume_m3),
+    }
+    for name, _, numbers in model.layout.lines:
+        if name.endswith('_warp'):
+            continue
+        part = 'bridles' if name.endswith('_bridle') else name
+        part = {'port_wing_end': 'side ropes', 'starboard_wing_end': 'side ropes'}.get(part, part)
+        found[part] = found.get(part, 0.0) + float(heavy[numbers].sum())
+    mesh = model.net_mesh
+    if mesh.knot_volume.any():
+        sunk = mesh.knot_density - water.density
+        found['knots'] = float(water.gravity * sunk * mesh.knot_volume.sum())
+    for name, force in (
+        ('clump', gear.clump.weight_in_water_n),
+        ('floats', -gear.floats.buoyancy_n),
+    ):
+        if force:
+            found[name] = 2 * force
+    for item in gear.hung:
+        sides = 1 if item.rope in ('headrope', 'footrope') else 2
+        found[item.name] = found.get(item.name, 0.0) + sides * item.force
+    if gear.kite is not None:
+        sunk = gear.kite.mass_kg - water.density * gear.kite.volume_m3
+        found['kite'] = water.gravity * sunk
+    return found
+
+
+def drag_of_model(model: GearModel, knots: float) -> float:
+    """Drag (N) of netting, ropes and what hangs on them, without boards, bridles and warps, in the
+    shape in which the net is built, at a speed (knots).
+    """
+    from trawl_ros.model.assembly import lump_forces, motion_of, points_of
+    from trawl_ros.model.line import drag, tension
+    from trawl_ros.solver.first_guess import first_guess
+    from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+
+    tow = steady_tow(model, OperatingPoint(500.0, 500.0, knots * KNOT))
+    state = first_guess(model, tow, 0.0)
+    motion = motion_of(model, points_of(model, state, tow), tow)
+    loads = drag(model.bars, motion, tension(model.bars, motion)[1], model.water)
+    of_net = np.isin(model.ends, model.layout.net).all(axis=1)
+    lumps = lump_forces(model, state)[model.layout.net]
+    return float(-loads[of_net, 0].sum() - lumps[:, 0].sum())
+
+
+def draw_gear(check: GearCheck, folder: Path) -> list[Path]:
+    """Draw the net plan, where the file has one, and the rigged gear as it is built.
+
+    Raises
+    ------
+    OSError
+        If the pictures cannot be written.
+    """
+    from trawl_ros.plots.net_plan import net_plan_figure
+    from trawl_ros.plots.rigged_gear import rigged_gear_figure
+    from trawl_ros.report.style import DPI
+
+    folder, drawn = made_folder(folder), []
+    figures = {'gear.png': rigged_gear_figure(check.model)}
+    if check.gear.netting.plan is not None:
+        figures['net_plan.png'] = net_plan_figure(check.gear.name, check.gear.netting.plan)
+    for name, figure in figures.items():
+        write_figure(folder / name, figure, DPI)
+        drawn.append(folder / name)
+    return drawn
+
+
+def _derived(raw: dict[str, object], gear: GearRecord) -> Iterator[tuple[str, str]]:
+    """Values of the record that the file does not give, ropes of the frame among them."""
+    yield from _missing('', raw, gear.model_dump(mode='json'))
+    plan = gear.netting.plan
+    if plan is None:
+        return
+    for key in ('headrope', 'footrope', 'side_rope'):
+        record = getattr(gear, key)
+        if record is None or record.length_m is None:
+            yield f'{key}.length_m', f'{plan.rope_length(key):.4g}'
+    twines = {
+        (p.material, p.rtex, p.twine.diameter) for p in plan.pieces if not p.twine_diameter_mm
+    }
+    for material, rtex, diameter in sorted(twines, key=lambda twine: -twine[2]):
+        yield f'twine of {material} R{rtex:g}', f'{1e3 * diameter:.3g} mm'
+
+
+def _missing(key: str, raw: object, taken: object) -> Iterator[tuple[str, str]]:
+    if isinstance(raw, dict) and isinstance(taken, dict):
+        for name, value in taken.items():
+            place = f'{key}.{name}' if key else name
+            if name in raw:
+                yield from _missing(place, raw[name], value)
+            elif value not in (None, [], {}, '') and name not in ('pieces', 'plan'):
+                yield place, _shown(value)
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, dict):
+        inner = {k: v for k, v in value.items() if v not in (None, [], '')}
+        return ', '.join(f'{k} {_shown(v)}' for k, v in inner.items())
+    if isinstance(value, list):
+        return '[' + ', '.join(map(_shown, value)) + ']'
+    return f'{value:.4g}' if isinstance(value, float) else str(value)

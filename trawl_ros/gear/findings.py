@@ -1,0 +1,251 @@
+"""What looks wrong in a gear file, found by arithmetic before anything is built or solved."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi
+
+from trawl_ros.gear.boards import plate_inertia
+from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
+from trawl_ros.gear.records import GearRecord, NettingRecord
+
+JOIN = 0.15
+"""Part by which the stretched circumferences of two joined edges may differ: what a net maker
+gathers."""
+
+CUT = 0.15
+"""Part of the meshes lost along a piece by which its counts may differ from its cutting rate."""
+
+STEEL_EA = 4.0e10
+"""EA of steel wire rope over its squared diameter, Pa."""
+
+
+@dataclass(frozen=True)
+class GearFinding:
+    """Finding in a gear file: the key it is about, and what was found and expected there."""
+
+    key: str
+    sentence: str
+
+    def __str__(self) -> str:
+        return f'{self.key}: {self.sentence}'
+
+
+def findings(gear: GearRecord) -> tuple[GearFinding, ...]:
+    """Find what looks wrong in a gear file.
+
+    Parameters
+    ----------
+    gear
+        As it was loaded: what could not be at all was refused then.
+
+    Returns
+    -------
+    tuple of GearFinding
+        In the order of the file; none where nothing looks wrong.
+    """
+    return tuple(finding for part in (_ropes, _net, _rigging, _board) for finding in part(gear))
+
+
+def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
+    for key in ('warp', 'bridle'):
+        rope = getattr(gear, key)
+        steel = STEEL_EA * rope.diameter_m**2
+        if rope.weight_in_water_n_m > 0.5 * 4e4 * rope.diameter_m**2 and not (
+            0.4 * steel < rope.stiffness_n < 2.5 * steel
+        ):
+            yield GearFinding(
+                f'{key}.stiffness_n',
+                f'found {rope.stiffness_n:.3g} N, expected about {steel:.3g} N for a wire of '
+                f'{1e3 * rope.diameter_m:.3g} mm',
+            )
+        mass = rope.weight_in_water_n_m / 9.81 + 1025.0 * pi / 4 * rope.diameter_m**2
+        if mass > 6500.0 * pi / 4 * rope.diameter_m**2:
+            yield GearFinding(
+                f'{key}.weight_in_water_n_m',
+                f'found {rope.weight_in_water_n_m:g} N/m, more than solid steel of '
+                f'{1e3 * rope.diameter_m:.3g} mm across has in a wire',
+            )
+
+
+def _net(gear: GearRecord) -> Iterator[GearFinding]:
+    net = gear.netting
+    if net.plan is None:
+        yield from _sections(gear, net)
+    else:
+        yield from _plan(gear, net.plan)
+
+
+def _sections(gear: GearRecord, net: NettingRecord) -> Iterator[GearFinding]:
+    sections = [
+        (f'netting.{part}[{n}]', section)
+        for part in ('body', 'codend')
+        for n, section in enumerate(getattr(net, part))
+    ]
+    for (_, ahead), (key, behind) in pairwise(sections):
+        yield from _join(key, ahead.back_circumference_m, behind.front_circumference_m)
+    for key, section in sections:
+        yield from _twine(key, section.twine_diameter_m, section.mesh_m)
+    mouth = net.body[0].front_circumference_m
+    if net.wing_edge_hanging is not None:
+        # Wings are a twenty-fourth of the mouth long and leave two thirds of it to the bosoms.
+        edge, bosom = net.wing_edge_hanging * mouth / 24, mouth / 3
+        for key in ('headrope', 'footrope'):
+            length = getattr(gear, key).length_m
+            left = length - 2 * edge
+            if left <= 0.0:
+                yield GearFinding(
+                    f'{key}.length_m',
+                    f'found {length:g} m, expected more than the {2 * edge:.4g} m of wing edges '
+                    'that hang on it',
+                )
+            else:
+                yield from _hanging(f'{key}.length_m', left / bosom, f'{left:.4g} m on its bosom')
+
+
+def _hanging(key: str, ratio: float, rope: str) -> Iterator[GearFinding]:
+    if not 0.2 <= ratio <= 0.9:
+        yield GearFinding(
+            key, f'leaves {rope}, a hanging ratio of {ratio:.2f}, expected 0.2 to 0.9'
+        )
+
+
+def _join(key: str, ahead: float, behind: float) -> Iterator[GearFinding]:
+    if not 1 / (1 + JOIN) <= behind / ahead <= 1 + JOIN:
+        yield GearFinding(
+            key,
+            f'its front edge is {behind:.4g} m around (stretched), that of the netting ahead of it '
+            f'{ahead:.4g} m, expected them within {100 * JOIN:.0f} % of each other',
+        )
+
+
+def _twine(key: str, diameter: float, mesh: float) -> Iterator[GearFinding]:
+    ratio = diameter / (0.5 * mesh)
+    if not 5e-4 <= ratio <= 0.25:
+        yield GearFinding(
+            key,
+            f'its twine of {1e3 * diameter:.3g} mm is {ratio:.2g} of a bar of '
+            f'{500 * mesh:.4g} mm, expected 0.0005 to 0.25',
+        )
+
+
+def _plan(gear: GearRecord, plan: NetPlanRecord) -> Iterator[GearFinding]:
+    number = {id(piece): f'netting.plan.pieces[{n}]' for n, piece in enumerate(plan.pieces)}
+    for piece in plan.pieces:
+        key = number[id(piece)]
+        yield from _twine(key, piece.twine.diameter, piece.mesh)
+        yield from _cut(key, piece)
+        filled = piece.twine.tex / piece.twine.fibre.density / piece.twine.section
+        if not 0.35 <= filled <= 1.0:
+            yield GearFinding(
+                key,
+                f'its fibres would fill {filled:.2f} of a twine of '
+                f'{1e3 * piece.twine.diameter:.3g} mm, expected 0.35 to 1: Rtex and diameter '
+                'disagree',
+            )
+    rows = [pieces for part in ('body', 'codend') for _, pieces in plan.sections(part)]
+    for ahead, behind in pairwise(rows):
+        key = number[id(behind[0])]
+        if {p.panel for p in ahead} == {p.panel for p in behind}:
+            back = {p.panel: p.widths[1] for p in ahead}
+            for piece in behind:
+                yield from _join(number[id(piece)], back[piece.panel], piece.widths[0])
+        else:
+            yield from _join(
+                key,
+                sum(p.count * p.widths[1] for p in ahead),
+                sum(p.count * p.widths[0] for p in behind),
+            )
+    for rope in ('headrope', 'footrope', 'side_rope'):
+        record = getattr(gear, rope)
+        if record is not None and record.length_m is not None:
+            yield from _edges(rope, record.length_m, plan)
+    long = {name: plan.wing_length(name) for name in ('upper', 'side_upper', 'side_lower', 'lower')}
+    for side, panel in (('side_upper', 'upper'), ('side_lower', 'lower')):
+        if long[side] and abs(long[side] - long[panel]) > 0.05 * long[panel]:
+            yield GearFinding(
+                f'netting.plan ({side} wing)',
+                f'is {long[side]:.4g} m long, the {panel} wing that it is joined to '
+                f'{long[panel]:.4g} m, expected them alike',
+            )
+
+
+def _cut(key: str, piece: PieceRecord) -> Iterator[GearFinding]:
+    if piece.cut is None:
+        return
+    edges = 1 if piece.part == 'wing' else 2
+    expected = edges * cut_slope(piece.cut) * piece.long_meshes
+    found = abs(piece.front_meshes - piece.back_meshes)
+    if abs(found - expected) > max(CUT * expected, 2.0):
+        yield GearFinding(
+            key,
+            f'found {piece.front_meshes:g} to {piece.back_meshes:g} meshes over '
+            f'{piece.long_meshes:g}, a difference of {found:g}, where the cut {piece.cut} gives '
+            f'{expected:.3g}',
+        )
+
+
+def _edges(rope: str, length: float, plan: NetPlanRecord) -> Iterator[GearFinding]:
+    netting, hanging = plan.hung_netting(rope), plan.hanging
+    left = length - hanging.bosom * netting['bosom'] - hanging.wing_tip * netting['tip']
+    if netting['edge'] and not 0.7 <= left / netting['edge'] <= 1.05:
+        yield GearFinding(
+            f'{rope}.length_m',
+            f'found {length:g} m, which leaves {left:.4g} m to {netting["edge"]:.4g} m of wing '
+            f'edges, a ratio of {left / netting["edge"]:.2f}, expected 0.7 to 1.05',
+        )
+
+
+def _rigging(gear: GearRecord) -> Iterator[GearFinding]:
+    long = {own.name: gear.bridle_of(own).length_m for own in gear.bridles}
+    if max(long.values()) > 1.15 * min(long.values()):
+        told = ', '.join(f'{name} {length:g} m' for name, length in long.items())
+        yield GearFinding('bridles', f'found {told}, expected them within 15 % of each other')
+    sinks = 2 * gear.clump.weight_in_water_n + sum(
+        item.weight_in_water_n * (1 if item.rope in ('headrope', 'footrope') else 2)
+        for item in gear.hung
+    )
+    if sinks == 0.0 and gear.footrope.weight_in_water_n_m <= 0.0:
+        yield GearFinding(
+            'hung', 'found no weight on net or bridles, which opens the mouth downward'
+        )
+
+
+def _board(gear: GearRecord) -> Iterator[GearFinding]:
+    board = gear.board
+    plate = board.span_m * board.chord_m
+    if not 0.7 <= board.area_m2 / plate <= 1.15:
+        yield GearFinding(
+            'board.area_m2',
+            f'found {board.area_m2:g} m², where span times chord is {plate:.4g} m²',
+        )
+    density = board.mass_kg / board.volume_m3
+    if not 1025.0 < density <= 8000.0:
+        yield GearFinding(
+            'board.volume_m3',
+            f'found {board.volume_m3:g} m³ for {board.mass_kg:g} kg, a density of {density:.0f} '
+            'kg/m³, expected more than sea water and no more than steel',
+        )
+    usual = plate_inertia(board.mass_kg, board.volume_m3, board.span_m, board.chord_m)
+    for name in ('xx_kg_m2', 'yy_kg_m2', 'zz_kg_m2'):
+        found = getattr(board.inertia, name)
+        if not 1 / 3 <= found / usual[name] <= 3:
+            yield GearFinding(
+                f'board.inertia.{name}',
+                f'found {found:g}, where an even plate has {usual[name]:.4g}',
+            )
+    points = board.fastening
+    for name in ('warp_m', 'upper_bridle_m', 'lower_bridle_m'):
+        x, _, z = getattr(points, name)
+        if abs(x) > 0.75 * board.chord_m or abs(z) > 0.75 * board.span_m:
+            yield GearFinding(
+                f'board.fastening.{name}',
+                f'found {x:g} m ahead and {z:g} m up, beyond the board and half as much again '
+                f'({board.chord_m:g} by {board.span_m:g} m)',
+            )
+    if points.upper_bridle_m[2] <= points.lower_bridle_m[2]:
+        yield GearFinding(
+            'board.fastening', 'the upper bridle is shackled below the lower one, expected above'
+        )
+    if points.warp_m[0] <= max(points.upper_bridle_m[0], points.lower_bridle_m[0]):
+        yield GearFinding('board.fastening.warp_m', 'lies behind a bridle, expected ahead of both')

@@ -1,0 +1,287 @@
+"""The net plan: pieces of netting as a plan on paper has them, row by row of a table."""
+
+import re
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from trawl_ros.core.schema import Record
+from trawl_ros.gear.twine import Material, Twine, twine_of
+
+Part = Literal['wing', 'body', 'codend']
+Panel = Literal['upper', 'lower', 'side', 'side_upper', 'side_lower', 'all']
+Meshes = Annotated[float, Field(ge=0, le=100_000)]
+
+WING_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower')
+BODY_PANELS = ('upper', 'lower', 'side', 'all')
+
+_CUT = re.compile(r'(?:A([BNT])|(?:(\d+)([NT]))?(?:(\d+)B)?)')
+
+
+def cut_slope(cut: str) -> float:
+    """Meshes that an edge of this cutting rate moves across per mesh along it.
+
+    A bar (B) goes half a mesh along and half a mesh across, a point (N) one along, a mesh (T) one
+    across: ``AB`` gives 1, ``1N2B`` gives 0.5, ``AN`` gives 0.
+
+    Raises
+    ------
+    ValueError
+        If it is no cutting rate, or one that never comes forward.
+    """
+    found = _CUT.fullmatch(cut.replace(' ', '').upper())
+    if found is None or not cut.strip():
+        raise ValueError(f"found '{cut}', expected a cutting rate such as AB, AN, 1N2B or 1T2B")
+    whole, count, kind, bars = found.groups()
+    if whole is not None:
+        count, kind, bars = (None, None, '1') if whole == 'B' else ('1', whole, None)
+    straight, slanted = float(count or 0), 0.5 * float(bars or 0)
+    along = slanted + (straight if kind == 'N' else 0.0)
+    across = slanted + (straight if kind == 'T' else 0.0)
+    if along <= 0.0:
+        raise ValueError(f"found '{cut}', expected a cut that comes forward")
+    return across / along
+
+
+class PieceRecord(Record):
+    """A piece of netting: counts of meshes across its front and back edge, and along it.
+
+    Counts of a ``wing`` are those of one of its two pieces (or of one, where ``pieces`` is 1: a
+    panel that reaches further forward over its whole width), those of a panel of the ``body`` are
+    its own, and those of ``all`` go all around. Where the count of one edge is missing it follows
+    from the ``cut``.
+    """
+
+    part: Part
+    panel: Panel
+    section: str = ''
+    mesh_mm: Annotated[float, Field(gt=0, le=200_000)]
+    front_meshes: Meshes
+    back_meshes: Meshes
+    long_meshes: Annotated[float, Field(gt=0, le=100_000)]
+    rtex: Annotated[float, Field(gt=0, le=1e7)] | None = None
+    twine_diameter_mm: Annotated[float, Field(gt=0, le=100)] | None = None
+    material: Material
+    knots: Literal['knotted', 'knotless'] = 'knotted'
+    twines: Literal[1, 2] = 1
+    pieces: Literal[1, 2] | None = None
+    cut: str | None = None
+
+    @model_validator(mode='before')
+    @classmethod
+    def _counted(cls, data: object) -> object:
+        """Meshes of the edge that is not given, from the cut and the other edge."""
+        if not isinstance(data, dict) or not isinstance(data.get('cut'), str):
+            return data
+        long, part = data.get('long_meshes'), data.get('part')
+        known = [key for key in ('front_meshes', 'back_meshes') if key in data]
+        numbers = [data.get(key) for key in ('long_meshes', *known)]
+        if len(known) != 1 or not all(isinstance(x, int | float) for x in numbers):
+            return data
+        # A wing's seam runs straight, its other edge is cut; a panel is cut on both.
+        lost = (1 if part == 'wing' else 2) * cut_slope(data['cut']) * float(long or 0)
+        front = 'front_meshes' in data
+        # Wings widen and bodies narrow toward the codend.
+        sign = 1 if (part == 'wing') == front else -1
+        other = 'back_meshes' if front else 'front_meshes'
+        return {**data, other: max(float(data[known[0]]) + sign * lost, 0.0)}
+
+    @model_validator(mode='after')
+    def _whole(self) -> 'PieceRecord':
+        if self.rtex is None and self.twine_diameter_mm is None:
+            raise ValueError('found neither rtex nor twine_diameter_mm, expected one of them')
+        allowed = WING_PANELS if self.part == 'wing' else BODY_PANELS
+        if self.panel not in allowed:
+            raise ValueError(f'panel: found {self.panel}, expected one of {", ".join(allowed)}')
+        if self.cut is not None:
+            try:
+                cut_slope(self.cut)
+            except ValueError as reason:
+                raise ValueError(f'cut: {reason}') from reason
+        return self
+
+    @property
+    def mesh(self) -> float:
+        """Stretched length of a mesh, m."""
+        return 1e-3 * self.mesh_mm
+
+    @property
+    def length(self) -> float:
+        """Stretched length of the piece, m."""
+        return self.mesh * self.long_meshes
+
+    @property
+    def widths(self) -> tuple[float, float]:
+        """Stretched widths (m) of the front and the back edge."""
+        return self.mesh * self.front_meshes, self.mesh * self.back_meshes
+
+    @property
+    def twine(self) -> Twine:
+        """The piece's twine."""
+        diameter = None if self.twine_diameter_mm is None else 1e-3 * self.twine_diameter_mm
+        return twine_of(self.material, self.rtex, diameter)
+
+    @property
+    def count(self) -> int:
+        """How many such pieces the net has, with those that the whole circumference counts as."""
+        if self.part != 'wing':
+            return 2 if self.panel == 'side' else 1
+        if self.panel in ('side_upper', 'side_lower'):
+            return 2
+        # One whole side panel on either side; two wings of the upper or the lower panel.
+        return 2 if self.panel == 'side' else self.pieces or 2
+
+    @property
+    def twine_length(self) -> float:
+        """Length of twine (m) in all such pieces: two meshes long per mesh."""
+        meshes = 0.5 * (self.front_meshes + self.back_meshes) * self.long_meshes
+        return 2 * self.mesh * meshes * self.twines * self.count
+
+    @property
+    def twine_area(self) -> float:
+        """Area of that twine, length times diameter, m²."""
+        return self.twine_length * self.twine.diameter
+
+    @property
+    def mass(self) -> float:
+        """Mass of that twine in air without what its knots take, kg."""
+        return self.twine_length * self.twine.tex
+
+
+class HangingRecord(Record):
+    """Hanging ratios: rope over stretched netting, along bosoms, cut edges of wings and their tips.
+
+    Bosoms and tips have the rope that these say; the wing edges the rest of the rope's length, or
+    what ``wing_edge`` says where the file gives no length.
+    """
+
+    bosom: Annotated[float, Field(gt=0.1, le=1)] = 0.5
+    wing_edge: Annotated[float, Field(gt=0.3, le=1)] = 0.96
+    wing_tip: Annotated[float, Field(gt=0, le=1)] = 0.3
+
+
+class NetPlanRecord(Record):
+    """A net plan: pieces from the wings to the codend, in the order in which the plan has them.
+
+    Pieces of the body that share a ``section`` stand beside each other and are equally long; pieces
+    of one panel's wing, and sections of the codend, follow each other.
+    """
+
+    hanging: HangingRecord = HangingRecord()
+    pieces: Annotated[tuple[PieceRecord, ...], Field(min_length=2, max_length=200)]
+
+    @model_validator(mode='after')
+    def _joins(self) -> 'NetPlanRecord':
+        parts: tuple[Part, ...] = 'body', 'codend'
+        for part in parts:
+            if not self.sections(part):
+                raise ValueError(f'pieces: found no {part}, expected at least one piece of it')
+        for part in parts:
+            for name, pieces in self.sections(part):
+                panels = sorted(piece.panel for piece in pieces)
+                if panels not in (['all'], ['lower', 'upper'], ['lower', 'side', 'upper']):
+                    raise ValueError(
+                        f"pieces: section '{name}' has the panels {', '.join(panels)}, expected "
+                        'all, or upper and lower, or upper, lower and side, each once'
+                    )
+                long = [piece.length for piece in pieces]
+                if max(long) > 1.03 * min(long):
+                    raise ValueError(
+                        f"pieces: panels of section '{name}' are {min(long):g} to {max(long):g} m "
+                        'long, expected one length'
+                    )
+        for panel in ('upper', 'lower'):
+            if not self.wing(panel):
+                raise ValueError(f'pieces: found no wing of the {panel} panel, expected one')
+        if self.panels == ('all',) and any(p.part == 'wing' for p in self.pieces):
+            raise ValueError(
+                'pieces: the foremost section is one piece all around, expected its panels, to '
+                'which the wings are joined'
+            )
+        return self
+
+    def sections(self, part: Part) -> list[tuple[str, list[PieceRecord]]]:
+        """Sections of the body or the codend, from front to back, with the pieces of each."""
+        found: dict[str, list[PieceRecord]] = {}
+        for number, piece in enumerate(self.pieces):
+            if piece.part == part:
+                # Pieces without a name are sections of their own, one after another.
+                found.setdefault(piece.section or f'{part} {number + 1}', []).append(piece)
+        return list(found.items())
+
+    @property
+    def panels(self) -> tuple[str, ...]:
+        """Panels at the mouth, ``('all',)`` where the body is one piece."""
+        return tuple(piece.panel for piece in self.sections('body')[0][1])
+
+    def mouth_width(self, panel: str) -> float:
+        """Stretched width (m) of a panel at the mouth; 0 for one that the net has not."""
+        for piece in self.sections('body')[0][1]:
+            if piece.panel == panel:
+                return piece.widths[0]
+        return 0.0
+
+    @property
+    def circumference(self) -> float:
+        """Stretched circumference of the mouth, m."""
+        return sum(piece.count * piece.widths[0] for piece in self.sections('body')[0][1])
+
+    def wing(self, panel: str) -> list[PieceRecord]:
+        """Pieces of a panel's wing, from the mouth forward."""
+        return [p for p in self.pieces if p.part == 'wing' and p.panel == panel][::-1]
+
+    @property
+    def open_side(self) -> bool:
+        """True for a net whose sides are cut out between upper and lower wings."""
+        return 'side' in self.panels and not self.wing('side')
+
+    def hung_netting(self, rope: str) -> dict[str, float]:
+        """Stretched netting (m) that hangs on a rope of the frame, by kind.
+
+        Parameters
+        ----------
+        rope
+            ``headrope``, ``footrope`` or ``side_rope``, which is the one of one side.
+
+        Returns
+        -------
+        dict
+            ``edge`` along the cut edges of wings, ``bosom`` between them, ``tip`` across the ends
+            of the wings up to where bridles are shackled.
+        """
+        if rope != 'side_rope':
+            panel = 'upper' if rope == 'headrope' else 'lower'
+            whole = [piece for piece in self.wing(panel) if piece.pieces == 1]
+            cut = [piece for piece in self.wing(panel) if piece.pieces != 1]
+            width = whole[-1].widths[0] if whole else self.mouth_width(panel)
+            gap = width - 2 * (cut[0].widths[1] if cut else 0.0)
+            tip = cut[-1].widths[0] if cut and self.open_side else 0.0
+            edge = sum(piece.length for piece in cut)
+            return {'edge': 2 * edge, 'bosom': max(gap, 0.0), 'tip': 2 * tip}
+        if not self.open_side:
+            names = [name for name in ('upper', 'side', 'lower') if self.wing(name)]
+            return {
+                'edge': 0.0,
+                'bosom': 0.0,
+                'tip': sum(self.wing(name)[-1].widths[0] for name in names),
+            }
+        wings = [self.wing(name) for name in ('side_upper', 'side_lower')]
+        gap = self.mouth_width('side') - sum(wing[0].widths[1] for wing in wings if wing)
+        return {
+            'edge': sum(self.wing_length(name) for name in ('upper', 'lower')),
+            'bosom': max(gap, 0.0),
+            'tip': sum(wing[-1].widths[0] for wing in wings if wing),
+        }
+
+    def rope_length(self, rope: str) -> float:
+        """Length (m) of a rope of the frame that the hanging ratios give it."""
+        netting, ratios = self.hung_netting(rope), self.hanging
+        return (
+            ratios.wing_edge * netting['edge']
+            + ratios.bosom * netting['bosom']
+            + ratios.wing_tip * netting['tip']
+        )
+
+    def wing_length(self, panel: str) -> float:
+        """Stretched length of a panel's wing, m."""
+        return sum(piece.length for piece in self.wing(panel))

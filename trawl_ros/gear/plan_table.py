@@ -1,0 +1,104 @@
+"""A net plan as a table (CSV), read and written as the section of a gear file."""
+
+import csv
+from pathlib import Path
+
+import yaml
+
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.foreign import reading
+from trawl_ros.core.limits import YAML_BYTES
+from trawl_ros.core.schema import validated
+from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
+
+TEXT = ('part', 'panel', 'section', 'material', 'knots', 'cut')
+WHOLE = ('twines', 'pieces')
+
+
+def read_plan(path: Path) -> NetPlanRecord:
+    """Read a net plan from a CSV file.
+
+    Parameters
+    ----------
+    path
+        UTF-8, with a heading; columns are the keys of `PieceRecord`, separated by commas or
+        semicolons. Empty cells are missing keys; lines that are empty or begin with # are none.
+
+    Raises
+    ------
+    GearError
+        Naming file, line and column, what was found and what was expected.
+    """
+    if not path.is_file():
+        raise GearError(f'{path}: no such file')
+    try:
+        raw = path.read_bytes()[: YAML_BYTES.value + 1]
+    except OSError as reason:
+        raise GearError(f'{path}: cannot be read ({reason.strerror})') from reason
+    if len(raw) > YAML_BYTES.value:
+        raise GearError(f'{path}: larger than {YAML_BYTES}, expected a smaller table')
+    try:
+        text = raw.decode('utf-8-sig')
+    except UnicodeDecodeError as reason:
+        raise GearError(
+            f'{path}: byte {reason.start} is not UTF-8, expected a text file'
+        ) from reason
+    with reading(path, GearError):
+        return _plan(path, text)
+
+
+def _plan(path: Path, text: str) -> NetPlanRecord:
+    lines = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip(' ;,') and not line.lstrip().startswith('#')
+    ]
+    if not lines:
+        raise GearError(f'{path}: found no line, expected a heading and a line for each piece')
+    mark = ';' if lines[0][1].count(';') > lines[0][1].count(',') else ','
+    try:
+        rows = list(csv.reader([line for _, line in lines], delimiter=mark, strict=True))
+    except csv.Error as reason:
+        raise GearError(f'{path}: found no table ({reason}), expected CSV') from reason
+    heading, known = [name.strip() for name in rows[0]], list(PieceRecord.model_fields)
+    for name in heading:
+        if name not in known:
+            raise GearError(f"{path}: column '{name}', expected one of {', '.join(known)}")
+        if heading.count(name) > 1:
+            raise GearError(f"{path}: column '{name}' stands twice, expected each once")
+    pieces = []
+    for (number, _), cells in zip(lines[1:], rows[1:], strict=False):
+        if len(cells) != len(heading):
+            raise GearError(
+                f'{path}: line {number} has {len(cells)} cells, expected {len(heading)} as in the '
+                'heading'
+            )
+        piece = {
+            name: _value(name, cell.strip(), f'{path}: line {number}')
+            for name, cell in zip(heading, cells, strict=True)
+            if cell.strip()
+        }
+        validated(PieceRecord, piece, f'{path}: line {number}', GearError)
+        pieces.append(piece)
+    return validated(NetPlanRecord, {'pieces': pieces}, path, GearError)
+
+
+def _value(name: str, cell: str, place: str) -> str | float | int:
+    if name in TEXT:
+        return cell
+    try:
+        return int(cell) if name in WHOLE else float(cell)
+    except ValueError as reason:
+        raise GearError(f"{place}: {name}: found '{cell}', expected a number") from reason
+
+
+def plan_text(plan: NetPlanRecord) -> str:
+    """Text of the ``plan`` of a gear file's ``netting``, a line per piece."""
+    lines = ['plan:', '  pieces:']
+    for piece in plan.pieces:
+        given = piece.model_dump(exclude_defaults=True, exclude_none=True)
+        flow = yaml.safe_dump(
+            given, default_flow_style=True, sort_keys=False, allow_unicode=True, width=10_000
+        )
+        lines.append(f'    - {flow.strip()}')
+    return '\n'.join(lines) + '\n'

@@ -1,0 +1,80 @@
+"""Records of the rigging between boards and net: bridles of any make, and what hangs on ropes."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from trawl_ros.core.schema import Record
+from trawl_ros.gear.numbers import NotNegative, Positive, Share
+
+Name = Annotated[str, Field(pattern=r'^[a-z][a-z0-9_]{0,30}$')]
+
+
+class OwnBridleRecord(Record):
+    """A bridle on either side: from which of the board's points to which place of the net.
+
+    It is made as ``bridle`` says, but for what is given here. ``side`` is the middle of the rope
+    between upper and lower wing tip.
+    """
+
+    name: Name
+    at_board: Literal['upper', 'lower']
+    at_net: Literal['upper', 'side', 'lower']
+    length_m: Positive | None = None
+    diameter_m: Annotated[float, Field(gt=0, le=0.5)] | None = None
+    weight_in_water_n_m: float | None = None
+    stiffness_n: Positive | None = None
+    segments: Annotated[int, Field(ge=2, le=200)] | None = None
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """What is given here of the make of the bridle."""
+        places = {'name', 'at_board', 'at_net'}
+        return {k: v for k, v in self.model_dump(exclude=places).items() if v is not None}
+
+
+class HungRecord(Record):
+    """Weights, chain or floats on a rope, spread evenly from one share of its length to another.
+
+    Shares of a bridle count from the board to the net, those of headrope, footrope and the side
+    ropes from port to starboard or from the top down. What hangs on a bridle or on a side rope
+    hangs there on either side; on headrope and footrope the figures are those of the whole rope.
+    """
+
+    name: str
+    rope: Name
+    from_share: Share = 0.0
+    to_share: Share = 1.0
+    weight_in_water_n: NotNegative = 0.0
+    buoyancy_n: NotNegative = 0.0
+    density_kg_m3: Annotated[float, Field(gt=0, le=20_000)] | None = None
+    drag_area_m2: NotNegative = 0.0
+
+    @model_validator(mode='after')
+    def _sinks_or_floats(self) -> 'HungRecord':
+        if (self.weight_in_water_n > 0) == (self.buoyancy_n > 0):
+            raise ValueError('needs either weight_in_water_n or buoyancy_n, found both or neither')
+        if self.to_share < self.from_share:
+            raise ValueError(
+                f'to_share: found {self.to_share:g}, expected from_share, {self.from_share:g}, or '
+                'more'
+            )
+        low, high = (1100.0, 20_000.0) if self.weight_in_water_n else (1.0, 950.0)
+        if not low <= self.density <= high:
+            raise ValueError(
+                f'density_kg_m3: found {self.density:g}, expected {low:g} to {high:g} for what '
+                f'{"sinks" if self.weight_in_water_n else "floats"}'
+            )
+        return self
+
+    @property
+    def density(self) -> float:
+        """Density, kg/m³: that of steel, or of a float, where none is given."""
+        if self.density_kg_m3 is not None:
+            return self.density_kg_m3
+        return 7800.0 if self.weight_in_water_n else 300.0
+
+    @property
+    def force(self) -> float:
+        """Weight in water, N; negative for floats."""
+        return self.weight_in_water_n - self.buoyancy_n

@@ -1,0 +1,175 @@
+"""The netting of a planned net: what hangs at a place of it, panel by panel."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from trawl_ros.gear.net_plan import NetPlanRecord, Part, PieceRecord
+from trawl_ros.gear.records import NettingRecord, SectionRecord
+from trawl_ros.model.netting_rows import NettingRow, Profile
+from trawl_ros.model.planned_mouth import PlannedMouth
+
+SEA = 1025.0
+"""Density (kg/m³) of the water in the twines."""
+
+LEAST_SHARE = 0.3
+"""Part of its column that a bar at the edge of a wing has at least, so that it can bear a load."""
+
+PANELS = ('upper', 'side', 'lower')
+
+
+def shielding(piece: PieceRecord, net: NettingRecord) -> float:
+    """Part of the drag of single twines that is left in a piece of netting.
+
+    As for a porous screen (Taylor 1944): with a resistance K per sheet area the water goes through
+    it at 1 / (1 + K / 4) of its speed. K is that of the twines and knots on the area of the meshes
+    at the opening of the gear file.
+    """
+    bar, diameter = 0.5 * piece.mesh, piece.twine.diameter * piece.twines
+    open_area = bar**2 * np.sin(2 * np.radians(net.codend_mesh_angle_deg))
+    blocked = net.normal_drag * 2 * bar * diameter
+    if piece.knots == 'knotted':
+        knot = net.knot_diameters * piece.twine.diameter
+        blocked += net.knot_drag * np.pi / 4 * knot**2
+    return float(1 / (1 + blocked / open_area / 4) ** 2)
+
+
+def section_of(
+    piece: PieceRecord, net: NettingRecord, length: float, front: float, back: float
+) -> SectionRecord:
+    """A piece as a section all around of this length (m) and these circumferences (m)."""
+    twine = piece.twine
+    return SectionRecord(
+        name=piece.section or piece.part,
+        length_m=length,
+        front_circumference_m=front,
+        back_circumference_m=max(back, 1e-6),
+        mesh_m=piece.mesh,
+        twine_diameter_m=twine.diameter,
+        twine_density_kg_m3=twine.density(SEA),
+        twine_modulus_pa=twine.fibre.modulus,
+        twines=piece.twines,
+        knotless=piece.knots == 'knotless',
+        shielding=shielding(piece, net),
+    )
+
+
+def sections_of(net: NettingRecord, plan: NetPlanRecord, part: Part, panel: str) -> Profile:
+    """Profile of a part of the net, as if it were this panel's netting all around."""
+    sections = []
+    for _, pieces in plan.sections(part):
+        front, back = (sum(p.count * p.widths[edge] for p in pieces) for edge in (0, 1))
+        length = float(np.mean([piece.length for piece in pieces]))
+        own = next((p for p in pieces if p.panel in (panel, 'all')), pieces[0])
+        sections.append(section_of(own, net, length, front, back))
+    return Profile(tuple(sections))
+
+
+@dataclass(frozen=True)
+class PlannedCloth:
+    """Netting of a planned net whose mouth is ``mouth``; ``known`` keeps sums already made."""
+
+    net: NettingRecord
+    mouth: PlannedMouth
+    known: dict[tuple[str, NettingRow], dict[str, float]] = field(default_factory=dict)
+
+    @property
+    def plan(self) -> NetPlanRecord:
+        """The plan."""
+        return self.mouth.plan
+
+    @cached_property
+    def bodies(self) -> dict[str, Profile]:
+        """Profile of the body for the netting of each panel; their circumferences are the same."""
+        return {panel: sections_of(self.net, self.plan, 'body', panel) for panel in PANELS}
+
+    @cached_property
+    def wings(self) -> dict[str, Profile]:
+        """Netting ahead of the mouth for each panel, over the distance forward from it."""
+        around, found = self.plan.circumference, {}
+        for panel in PANELS:
+            names = ('side_upper', 'side_lower', 'side', 'upper') if panel == 'side' else (panel,)
+            pieces = next(pieces for name in names if (pieces := self.plan.wing(name)))
+            sections = [section_of(p, self.net, p.length, around, around) for p in pieces]
+            found[panel] = Profile(tuple(sections))
+        return found
+
+    def bounds(self, x: float) -> tuple[float, float]:
+        """Where the upper panel ends and the lower begins at a distance (m) behind the mouth, as
+        parts of the circumference from the top.
+        """
+        if x <= 0.0:
+            upper, lower = self.mouth.seams
+            return upper / (2 * self.mouth.around), lower / (2 * self.mouth.around)
+        for number, (_, pieces) in enumerate(self.plan.sections('body')):
+            long = self.bodies['upper'].sections[number].length_m
+            if x <= long or number == len(self.bodies['upper'].sections) - 1:
+                share = min(x / long, 1.0)
+                width = {p.panel: np.interp(share, (0.0, 1.0), p.widths) for p in pieces}
+                whole = sum(p.count * width[p.panel] for p in pieces)
+                if 'all' in width:
+                    return self._last_bounds(number)
+                return 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
+            x -= long
+        raise AssertionError
+
+    def _last_bounds(self, number: int) -> tuple[float, float]:
+        """Bounds at the end of the last section ahead of one that is not in panels."""
+        for _, pieces in self.plan.sections('body')[number::-1]:
+            width = {p.panel: p.widths[1] for p in pieces}
+            if 'all' not in width:
+                whole = sum(p.count * p.widths[1] for p in pieces)
+                return 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
+        return 0.25, 0.25
+
+    def sums(self, row: NettingRow, middle: float) -> dict[str, float]:
+        """Sums of `Profile.per_mesh_column` for the bar of a row whose middle lies at this part of
+        the circumference from the top.
+        """
+        width = 1.0 / (row.around if row.joins else 2 * row.around)
+        place = min(middle % 1.0, 1.0 - middle % 1.0)
+        x = 0.5 * (row.front + row.back)
+        upper, lower = self.bounds(x)
+        low, high = place - 0.5 * width, place + 0.5 * width
+        # Beyond the top and the bottom it is the same panel again.
+        cuts = {'upper': (-1.0, upper), 'side': (upper, lower), 'lower': (lower, 2.0)}
+        shares = {
+            panel: max(min(high, end) - max(low, start), 0.0) / width
+            for panel, (start, end) in cuts.items()
+        }
+        if row.back <= 1e-9:
+            inside = self._inside(row, low, high)
+            scale = max(inside, LEAST_SHARE) / max(sum(shares.values()), 1e-12)
+            shares = {panel: scale * share for panel, share in shares.items()}
+        total: dict[str, float] = {}
+        for panel, share in shares.items():
+            if share > 0.0:
+                for key, value in self._column(panel, row).items():
+                    total[key] = total.get(key, 0.0) + share * value
+        return total
+
+    def _inside(self, row: NettingRow, low: float, high: float) -> float:
+        """Part of [low, high] of the circumference that wings cover in the middle of a row."""
+        mouth, k = self.mouth, 0.5 * (row.front + row.back) / self.mouth.row
+        whole, covered = 2 * mouth.around, 0.0
+        for seam, rows, panels in (
+            (mouth.seams[0], mouth.rows[0], ('upper', 'side_upper')),
+            (mouth.seams[1], mouth.rows[1], ('side_lower', 'lower')),
+        ):
+            if -k <= rows:
+                start = (seam - mouth.reach(panels[0], k)) / whole
+                end = (seam + mouth.reach(panels[1], k)) / whole
+                # A wing that reaches the middle of its panel goes on behind it.
+                start, end = (-1.0 if start <= 0.0 else start), (2.0 if end >= 0.5 else end)
+                covered += max(min(high, end) - max(low, start), 0.0)
+        return min(covered / (high - low), 1.0)
+
+    def _column(self, panel: str, row: NettingRow) -> dict[str, float]:
+        if (panel, row) not in self.known:
+            if row.back <= 1e-9:
+                sums = self.wings[panel].per_mesh_column(-row.back, -row.front, row.columns)
+            else:
+                sums = self.bodies[panel].per_mesh_column(row.front, row.back, row.columns)
+            self.known[panel, row] = sums
+        return self.known[panel, row]

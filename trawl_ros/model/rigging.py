@@ -1,0 +1,139 @@
+"""Rigging of a gear as nodes and bars: ropes, bridles, and what hangs on them."""
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.gear.records import GearRecord, RopeRecord
+from trawl_ros.gear.rigging import HungRecord
+from trawl_ros.model.net_weave import NetMesh
+from trawl_ros.model.water import Water
+
+HUNG_PIECES = 200
+"""Pieces into which what is spread along a rope is divided among its nodes."""
+
+
+class GearBuilder:
+    """Builder of nodes and bars; fastening points and blocks are renumbered at the end."""
+
+    FASTENING = -100
+    BLOCK = -200
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.ends: list[tuple[int, int]] = []
+        self.rows: list[tuple[float, ...]] = []
+        self.rest: list[float] = []
+        self.side: list[int] = []
+        self.lines: list[tuple[str, list[int], list[int]]] = []
+
+    def nodes(self, number: int) -> IntArray:
+        """Numbers of new nodes."""
+        first = self.count
+        self.count += number
+        return np.arange(first, self.count)
+
+    def bar(self, a: int, b: int, rest: float, row: tuple[float, ...], side: int = -1) -> int:
+        """Add a bar and return its number."""
+        self.ends.append((a, b))
+        self.rows.append(row)
+        self.rest.append(rest)
+        self.side.append(side)
+        return len(self.ends) - 1
+
+    def rope(
+        self,
+        name: str,
+        points: list[int],
+        rests: list[float],
+        row: tuple[float, ...],
+        side: int = -1,
+    ) -> list[int]:
+        """Add the bars of a rope over points and return their numbers."""
+        bars = []
+        for a, b, rest in zip(points, points[1:], rests, strict=False):
+            # A bar at a board starts there: the assembly relies on it.
+            flip = self.BLOCK < b <= self.FASTENING
+            bars.append(self.bar(b if flip else a, a if flip else b, rest, row, side))
+        self.lines.append((name, points, bars))
+        return bars
+
+    def resolve(self, number: int) -> int:
+        """Final number of a point."""
+        if number <= self.BLOCK:
+            return self.count + 6 + (self.BLOCK - number)
+        if number <= self.FASTENING:
+            return self.count + (self.FASTENING - number)
+        return number
+
+
+def rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:
+    """Properties of a rope in the order of `BarProperties`, per metre."""
+    volume = np.pi / 4 * rope.diameter_m**2
+    mass = rope.weight_in_water_n_m / water.gravity + water.density * volume
+    return (
+        rope.stiffness_n,
+        rope.damping_time_s,
+        mass,
+        volume,
+        rope.diameter_m,
+        np.pi * rope.diameter_m,
+        rope.normal_drag,
+        rope.tangential_drag,
+        rope.added_mass_normal,
+        rope.added_mass_tangential,
+        0.0,
+    )
+
+
+def bridle_ends_of(gear: GearRecord, mesh: NetMesh) -> list[int]:
+    """Nodes of the net at which the bridles end, port's first."""
+    ends = []
+    for side in (0, 1):
+        upper, lower = mesh.tips[2 * side : 2 * side + 2]
+        rope = mesh.wing_ends[side]
+        at = {'upper': upper, 'side': rope[len(rope) // 2], 'lower': lower}
+        ends += [at[own.at_net] for own in gear.bridles]
+    return ends
+
+
+def add_bridles(
+    build: GearBuilder, gear: GearRecord, water: Water, ends: list[int]
+) -> list[IntArray]:
+    """All bridles from their boards' points to their ``ends``, port's first."""
+    nodes, points = [], {'upper': 1, 'lower': 2}
+    for number, end in enumerate(ends):
+        side, which = divmod(number, len(gear.bridles))
+        own = gear.bridles[which]
+        record = gear.bridle_of(own)
+        line = build.nodes(record.segments - 1)
+        nodes.append(line)
+        fastening = build.FASTENING - (3 * side + points[own.at_board])
+        rests = [record.length_m / record.segments] * record.segments
+        name = f'{("port", "starboard")[side]}_{own.name}_bridle'
+        build.rope(name, [fastening, *line, end], rests, rope_row(record, water))
+    return nodes
+
+
+def hung_places(build: GearBuilder, item: HungRecord) -> list[tuple[IntArray, FloatArray]]:
+    """Nodes that carry what hangs on a rope, with the share of it on each; one entry per rope."""
+    names = [item.rope]
+    if item.rope == 'side_rope':
+        names = ['port_wing_end', 'starboard_wing_end']
+    elif item.rope.endswith('_bridle'):
+        names = [f'{side}_{item.rope}' for side in ('port', 'starboard')]
+    found = []
+    for name in names:
+        points, bars = next((p, b) for line, p, b in build.lines if line == name)
+        along = np.concatenate([[0.0], np.cumsum([build.rest[bar] for bar in bars])])
+        along /= along[-1]
+        free = np.array([build.BLOCK < point <= build.FASTENING for point in points])
+        # Board and blocks carry nothing: what hangs beside them is their neighbour's.
+        nodes, along = np.array(points)[~free], along[~free]
+        places = np.linspace(item.from_share, item.to_share, HUNG_PIECES)
+        shares = np.zeros(len(nodes))
+        for place in places:
+            k = int(np.clip(np.searchsorted(along, place) - 1, 0, len(along) - 2))
+            part = float(np.clip((place - along[k]) / (along[k + 1] - along[k]), 0.0, 1.0))
+            shares[[k, k + 1]] += np.array([1.0 - part, part]) / HUNG_PIECES
+        found.append((nodes, shares))
+    return found

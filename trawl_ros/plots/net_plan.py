@@ -1,0 +1,111 @@
+"""Figure of a net plan: the pieces of each panel, as a net maker draws them."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
+from trawl_ros.report import style
+
+PANELS = ('upper', 'side', 'lower')
+FACES = {'wing': '#dfeaf2', 'body': '#f4f1e8', 'codend': '#ece4ee'}
+LABEL_LENGTH = 0.03
+"""Pieces shorter than this part of the net get no words of their own."""
+
+ROOM = 0.35
+"""Part of the picture's half width that a piece needs for its words."""
+
+Shape = tuple[PieceRecord, list[tuple[float, float]]]
+"""A piece with the corners (stretched widths across, distance behind the foremost wing, m)."""
+
+
+def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
+    """Draw the upper, side and lower panel of a net plan beside each other.
+
+    Lengths and widths are those of stretched netting, which cannot both be had at once: the picture
+    is the plan, not the net.
+    """
+    panels = [panel for panel in PANELS if panel != 'side' or 'side' in plan.panels]
+    figure = Figure(figsize=(4.4 * len(panels), 10.0), layout='constrained')
+    every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    ahead = max(plan.wing_length(panel) for panel in ('upper', 'lower'))
+    rear = sum(
+        float(np.mean([p.length for p in pieces]))
+        for part in ('body', 'codend')
+        for _, pieces in plan.sections(part)
+    )
+    wide = 0.55 * max(plan.mouth_width(name) for name in panels)
+    for axes, panel in zip(every, panels, strict=True):
+        style.quiet(axes)
+        for piece, corners in _shapes(plan, panel, ahead):
+            axes.add_patch(
+                Polygon(corners, facecolor=FACES[piece.part], edgecolor='#333333', linewidth=0.8)
+            )
+            long = corners[2][1] - corners[0][1]
+            if abs(long) > LABEL_LENGTH * (ahead + rear) or piece.part == 'wing':
+                _label(axes, piece, corners, wide)
+        axes.set_xlim(-wide, wide)
+        axes.set_ylim(1.01 * (ahead + rear), -0.01 * (ahead + rear))
+        axes.set_title(f'{panel} panel', fontsize='medium')
+        axes.set_xlabel('stretched width / m')
+    every[0].set_ylabel('stretched length behind the wing tips / m')
+    figure.suptitle(
+        f'{name}: net plan, {plan.circumference:.4g} m around the mouth', parse_math=False
+    )
+    return figure
+
+
+def _shapes(plan: NetPlanRecord, panel: str, ahead: float) -> list[Shape]:
+    """Pieces of a panel with their corners; of a side, the upper wing is on the left."""
+    found: list[Shape] = []
+    mouth = 0.5 * plan.mouth_width(panel)
+    names = {'side': ('side', 'side_upper', 'side_lower')}.get(panel, (panel,))
+    for name in names:
+        x, signs = ahead, {'side_upper': (-1,), 'side_lower': (1,)}.get(name, (-1, 1))
+        for piece in plan.wing(name):
+            front, back = piece.widths
+            x, behind = x - piece.length, x
+            if name == 'side' or piece.pieces == 1:
+                found.append((piece, _trapeze(front, back, x, behind)))
+                continue
+            for sign in signs:
+                # The seam runs straight, the edge inside it is cut.
+                inner = [(sign * (mouth - back), behind), (sign * (mouth - front), x)]
+                found.append((piece, [(sign * mouth, x), (sign * mouth, behind), *inner]))
+    x, share = ahead, 1.0
+    for part in ('body', 'codend'):
+        for _, pieces in plan.sections(part):
+            own = next(piece for piece in pieces if piece.panel in (panel, 'all'))
+            # As much of what goes all around as the panel was of the netting ahead of it.
+            front, back = (width * (share if own.panel == 'all' else 1.0) for width in own.widths)
+            if own.panel != 'all':
+                share = own.widths[1] / sum(piece.count * piece.widths[1] for piece in pieces)
+            found.append((own, _trapeze(front, back, x, x + own.length)))
+            x += own.length
+    return found
+
+
+def _trapeze(front: float, back: float, x: float, behind: float) -> list[tuple[float, float]]:
+    half, rear = 0.5 * front, 0.5 * back
+    return [(-half, x), (half, x), (rear, behind), (-rear, behind)]
+
+
+def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], wide: float) -> None:
+    across, behind = np.mean(corners, axis=0)
+    # Words that are wider than their piece stand beside it.
+    right = max(corner[0] for corner in corners)
+    fits = piece.part == 'wing' or right > ROOM * wide
+    knots = ', knotless' if piece.knots == 'knotless' else ''
+    whole = ' around' if piece.panel == 'all' else ''
+    axes.text(
+        across if fits else right + 0.02 * wide,
+        behind,
+        f'{piece.mesh_mm:g} mm, {piece.front_meshes:g}–{piece.back_meshes:g} × '
+        f'{piece.long_meshes:g}{whole}\n{piece.material} '
+        f'{1e3 * piece.twine.diameter:.2g} mm{knots}',
+        ha='center' if fits else 'left',
+        va='center',
+        fontsize=5.5,
+        parse_math=False,
+    )

@@ -1,0 +1,91 @@
+"""Figure of a gear as it is rigged: from above, from the side, and from ahead."""
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.model.assembly import points_of
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.state import State, Tow
+from trawl_ros.report import style
+from trawl_ros.solver.first_guess import first_guess
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+
+WARP, SPEED = 200.0, 1.5
+"""Warp length (m) and speed (m/s) at which it is drawn; warps are cut off in the pictures."""
+
+VIEWS = (
+    ('from above', (0, 1), ('astern / m', 'to port / m')),
+    ('from the side', (0, 2), ('astern / m', 'up / m')),
+    ('from ahead', (1, 2), ('to port / m', 'up / m')),
+)
+
+THICK = ('_bridle', 'headrope', 'footrope', '_wing_end')
+COLOURS = {'netting': style.NETTING, 'codend': style.NETTING, '_wing_end': '#7b4ea3'}
+
+
+def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
+    """Draw boards, bridles, frame ropes and netting; warps are left out.
+
+    ``state`` is a shape that was found; without one the net is drawn as it is built, which is how a
+    solution is first looked for and not how the gear will tow.
+    """
+    tow = steady_tow(model, OperatingPoint(WARP, WARP, SPEED))
+    shape = first_guess(model, tow, 0.0) if state is None else state
+    lines = _lines(model, shape, tow)
+    points = np.concatenate([piece.reshape(-1, 3) for _, piece in lines])
+    figure = Figure(figsize=(13.0, 9.0), layout='constrained')
+    grid = figure.add_gridspec(2, 2, width_ratios=(2.3, 1.0))
+    places = grid[0, 0], grid[1, 0], grid[:, 1]
+    for place, (title, plane, labels) in zip(places, VIEWS, strict=True):
+        axes = figure.add_subplot(place)
+        style.quiet(axes)
+        for name, pieces in lines:
+            thick = name.endswith(THICK) or name == 'board'
+            axes.add_collection(
+                LineCollection(
+                    list(pieces[:, :, plane]),
+                    colors=_colour(name),
+                    linewidths=1.8 if thick else 0.4,
+                    zorder=3 if thick else 2,
+                )
+            )
+        low, high = points[:, plane].min(axis=0), points[:, plane].max(axis=0)
+        margin = 0.04 * float((high - low).max())
+        axes.set_xlim(low[0] - margin, high[0] + margin)
+        axes.set_ylim(low[1] - margin, high[1] + margin)
+        axes.set_aspect('equal', adjustable='box')
+        axes.set_title(title, fontsize='medium')
+        axes.set_xlabel(labels[0])
+        axes.set_ylabel(labels[1])
+    state_of = 'as it is built, not solved' if state is None else 'in a steady state'
+    figure.suptitle(f'{model.gear.name}: the rigged gear {state_of}', parse_math=False)
+    return figure
+
+
+def _lines(model: GearModel, state: State, tow: Tow) -> list[tuple[str, FloatArray]]:
+    """Pieces (n, 2, 3) of all lines but the warps, astern of the boards, to port, up of them."""
+    points = points_of(model, state, tow).positions
+    turn = np.array([-1.0, 1.0, 1.0])
+    origin = state.board_positions.mean(axis=0)
+    grouped: dict[str, list[FloatArray]] = {}
+    for name, numbers, _ in model.layout.lines:
+        if not name.endswith('_warp'):
+            along = (points[numbers] - origin) * turn
+            grouped.setdefault(name, []).append(np.stack([along[:-1], along[1:]], axis=1))
+    for place, axes in zip(state.board_positions, state.board_rotations, strict=True):
+        ahead, up = 0.5 * model.board.chord * axes[:, 0], 0.5 * model.board.span * axes[:, 2]
+        ring = place + np.array([ahead + up, ahead - up, -ahead - up, up - ahead, ahead + up])
+        ring = (ring - origin) * turn
+        grouped.setdefault('board', []).append(np.stack([ring[:-1], ring[1:]], axis=1))
+    return [(name, np.concatenate(pieces)) for name, pieces in grouped.items()]
+
+
+def _colour(name: str) -> str:
+    for end, colour in COLOURS.items():
+        if name.endswith(end):
+            return colour
+    if name.startswith('port'):
+        return style.PORT
+    return style.STARBOARD if name.startswith('starboard') else '#222222'
