@@ -64,6 +64,13 @@ def check(gear: str, out: Path | None) -> None:
                 f'{kind} {metres:.4g} m' for kind, metres in plan.hung_netting(rope).items()
             )
             click.echo(f'{rope}: {length:.4g} m of rope on netting of {netting}')
+        for rope, rim in zip(('headrope', 'footrope', 'side_rope'), model.net_mesh.frame or ()):
+            cut = {
+                kind: sum(m for k, m in zip(rim.kinds, rim.netting, strict=True) if k == kind)
+                for kind in plan.hung_netting(rope)
+            }
+            netting = ', '.join(f'{kind} {metres:.4g} m' for kind, metres in cut.items())
+            click.echo(f'{rope} as the meshes of the model are cut: {netting}')
     table = plain_table('weight in water', 'N', right=('N',))
     for name, weight in found.weights.items():
         table.add_row(name, f'{weight:.0f}')
