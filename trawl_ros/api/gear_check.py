@@ -38,6 +38,13 @@ class GearCheck:
         What looks wrong, in the order of the file.
     derived
         Values that the file does not give, by key, as they were taken.
+
+    Examples
+    --------
+    >>> import trawl_ros
+    >>> check = trawl_ros.check_gear('krill_800')
+    >>> check.derived['headrope.length_m']
+    '58.85'
     """
 
     gear: GearRecord
