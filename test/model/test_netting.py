@@ -6,8 +6,8 @@ import pytest
 from trawl_ros.core.errors import GearError
 from trawl_ros.gear.records import GearRecord, NettingRecord, SectionRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.netting import NetMesh, build_net
-from trawl_ros.model.netting_rows import Profile, rows_of
+from trawl_ros.model.net.netting import NetMesh, build_net
+from trawl_ros.model.net.rows import Profile, rows_of
 
 AROUND = (12, 24, 36)
 

@@ -13,7 +13,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.net_plan import NetPlanRecord, cut_slope
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.planned_cloth import shielding
+from trawl_ros.model.net.planned_cloth import shielding
 
 AROUND = (24, 36, 48)
 

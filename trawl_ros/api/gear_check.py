@@ -35,7 +35,7 @@ class GearCheck:
     drag
         Drag of the net (N) by speed (knots) and empirical formula.
     findings
-        What looks wrong, in the order of the file.
+        Findings of what looks wrong, in the order of the file.
     derived
         Values that the file does not give, by key, as they were taken.
 

@@ -1,4 +1,4 @@
-"""What looks wrong in a gear file, found by arithmetic before anything is built or solved."""
+"""Findings in a gear file: what looks wrong, by arithmetic, before anything is built or solved."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

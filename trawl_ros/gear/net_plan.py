@@ -123,7 +123,7 @@ class PieceRecord(Record):
 
     @property
     def count(self) -> int:
-        """How many such pieces the net has, with those that the whole circumference counts as."""
+        """Number of such pieces in the net."""
         if self.part != 'wing':
             return 2 if self.panel == 'side' else 1
         if self.panel in ('side_upper', 'side_lower'):

@@ -28,7 +28,7 @@ class OwnBridleRecord(Record):
 
     @property
     def changes(self) -> dict[str, float]:
-        """What is given here of the make of the bridle."""
+        """Values that are given here of the make of the bridle."""
         places = {'name', 'at_board', 'at_net'}
         return {k: v for k, v in self.model_dump(exclude=places).items() if v is not None}
 

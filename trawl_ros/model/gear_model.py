@@ -16,10 +16,11 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import NodeForce
-from trawl_ros.model.kite import Kite, KiteNodes
+from trawl_ros.model.kite import Kite
 from trawl_ros.model.line import BarProperties
-from trawl_ros.model.net_weave import NetMesh
-from trawl_ros.model.netting import build_net
+from trawl_ros.model.net.kite_nodes import KiteNodes
+from trawl_ros.model.net.netting import build_net
+from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
 from trawl_ros.model.rigging import GearBuilder, add_bridles, bridle_ends_of, hung_places, rope_row
 from trawl_ros.model.water import Water, build_water

@@ -1,11 +1,10 @@
 """The canvas kite on the headrope (eq. 29-33)."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.numerics import angle, dot, length
 from trawl_ros.model.water import Water
 
@@ -23,31 +22,6 @@ class Kite:
     lift: float
     drag_base: float
     drag_growth: float
-
-
-@dataclass(frozen=True)
-class KiteNodes:
-    """Carrying nodes of the kite: ``nodes`` (3,) numbers, one of which may be there twice,
-    and ``weights`` (2, 3) that make its front and rear carrying points of them.
-    """
-
-    nodes: IntArray
-    weights: FloatArray
-
-    @cached_property
-    def shares(self) -> FloatArray:
-        """Share (3,) of the kite's load on each node; both carriers hold half of it."""
-        shares: FloatArray = self.weights.mean(axis=0)
-        return shares
-
-    @cached_property
-    def held(self) -> bool:
-        """True if there is a kite."""
-        return bool(self.weights.any())
-
-
-NO_KITE = KiteNodes(np.zeros(3, int), np.zeros((2, 3)))
-"""For gear without a kite, whose area and mass are zero as well."""
 
 
 def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.gear.records import GearRecord, RopeRecord
 from trawl_ros.gear.rigging import HungRecord
-from trawl_ros.model.net_weave import NetMesh
+from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.water import Water
 
 HUNG_PIECES = 200

@@ -15,8 +15,8 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.kite import NO_KITE
 from trawl_ros.model.line import BarProperties
+from trawl_ros.model.net.kite_nodes import NO_KITE
 from trawl_ros.model.pattern import build_pattern
 from trawl_ros.model.state import State, Tow
 from trawl_ros.model.water import Water

@@ -18,11 +18,11 @@ import numpy as np
 from trawl_ros.core.errors import GearError
 from trawl_ros.gear.net_plan import NetPlanRecord
 from trawl_ros.gear.records import NettingRecord
-from trawl_ros.model.kite import NO_KITE, KiteNodes
-from trawl_ros.model.net_weave import NetMesh, add_codend, weave
-from trawl_ros.model.netting_rows import NettingRow, Profile, rows_of
-from trawl_ros.model.planned_cloth import PlannedCloth, sections_of
-from trawl_ros.model.planned_mouth import Place, PlannedMouth
+from trawl_ros.model.net.kite_nodes import NO_KITE, KiteNodes
+from trawl_ros.model.net.planned_cloth import PlannedCloth, sections_of
+from trawl_ros.model.net.planned_mouth import Place, PlannedMouth
+from trawl_ros.model.net.rows import NettingRow, Profile, rows_of
+from trawl_ros.model.net.weave import NetMesh, add_codend, weave
 
 
 def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:

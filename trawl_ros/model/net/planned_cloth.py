@@ -7,8 +7,8 @@ import numpy as np
 
 from trawl_ros.gear.net_plan import NetPlanRecord, Part, PieceRecord
 from trawl_ros.gear.records import NettingRecord, SectionRecord
-from trawl_ros.model.netting_rows import NettingRow, Profile
-from trawl_ros.model.planned_mouth import PlannedMouth
+from trawl_ros.model.net.planned_mouth import PlannedMouth
+from trawl_ros.model.net.rows import NettingRow, Profile
 
 SEA = 1025.0
 """Density (kg/m³) of the water in the twines."""
@@ -96,7 +96,7 @@ class PlannedCloth:
         return found
 
     def bounds(self, x: float) -> tuple[float, float]:
-        """Where the upper panel ends and the lower begins at a distance (m) behind the mouth, as
+        """Ends of the upper panel and of the side at a distance (m) behind the mouth, as
         parts of the circumference from the top.
         """
         if x <= 0.0:

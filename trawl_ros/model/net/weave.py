@@ -7,9 +7,9 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import NettingRecord
-from trawl_ros.model.kite import KiteNodes
-from trawl_ros.model.netting_rows import NettingRow, Profile
-from trawl_ros.model.planned_mouth import FrameRope
+from trawl_ros.model.net.kite_nodes import KiteNodes
+from trawl_ros.model.net.planned_mouth import FrameRope
+from trawl_ros.model.net.rows import NettingRow, Profile
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def weave(
     net
         Constants of knots and bars.
     body
-        Whose circumferences give the places.
+        Profile whose circumferences give the places.
     wings, rows
         Rows ahead of the mouth, which have negative numbers, and behind it.
     holds

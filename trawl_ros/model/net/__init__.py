@@ -1,0 +1,1 @@
+"""The net as nodes and bars: rows of meshes, the mouth, and its netting."""
