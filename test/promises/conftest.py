@@ -20,7 +20,8 @@ HEAD = f"""\
 Made by `make promises`, which runs every command and block of code of the README and of these
 documents as it stands there, on the default gear. `make test` runs those that, with all that they
 need of others, take up to {SLOW_S:g} s; `make test-slow` runs the rest. Where words stand instead
-of a time, the command is not run, or was not measured yet, which counts as slow. Wall-clock times.
+of a time, the command is not run, or was not measured yet, which counts as slow. Wall-clock times,
+here of two cores that had other work beside.
 
 | command | where | s |
 |---|---|---|
