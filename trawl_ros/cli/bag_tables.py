@@ -32,14 +32,14 @@ def summary_line(path: Path, count: int, start: int | None, end: int | None) -> 
 
 def kind(facts: BagFacts) -> str:
     """Describe the kind of a bag in a line."""
-    parts = [
+    words = [
         f'storage {facts.storage}',
         f'metadata version {facts.version}' if facts.version is not None else 'no metadata',
         f'ROS {facts.distro or UNKNOWN}',
         facts.compression or 'not compressed',
         f'{decimal(sum(facts.sizes.values()))} in {", ".join(facts.sizes)}',
     ]
-    return ', '.join(parts)
+    return ', '.join(words)
 
 
 def print_info(bag: Bag, summary: BagSummary, console: Console) -> None:
@@ -57,14 +57,14 @@ def print_info(bag: Bag, summary: BagSummary, console: Console) -> None:
         'messages', 'Hz', 'kB', 'topic', 'type', 'QoS offered', right=('messages', 'Hz', 'kB')
     )
     offered = bag.offered()
-    for seen in summary.topics:
-        qos = '; '.join(dict.fromkeys(map(describe_qos, offered.get(seen.topic, ()))))
+    for topic in summary.topics:
+        qos = '; '.join(dict.fromkeys(map(describe_qos, offered.get(topic.topic, ()))))
         cells = (
-            str(seen.count),
-            figure(seen.rate),
-            f'{seen.bytes / 1e3:.0f}',
-            seen.topic,
-            seen.type,
+            str(topic.count),
+            figure(topic.rate),
+            f'{topic.bytes / 1e3:.0f}',
+            topic.topic,
+            topic.type,
             qos or UNKNOWN,
         )
         table.add_row(*map(escape, cells))
@@ -75,12 +75,12 @@ def info_as_json(bag: Bag, summary: BagSummary) -> str:
     """Return the content of a bag as JSON; times in ns, sizes in bytes."""
     offered = bag.offered()
     topics = [
-        asdict(seen)
+        asdict(topic)
         | {
-            'rate': seen.rate,
-            'qos': [describe_qos(profile) for profile in offered.get(seen.topic, ())],
+            'rate': topic.rate,
+            'qos': [describe_qos(profile) for profile in offered.get(topic.topic, ())],
         }
-        for seen in summary.topics
+        for topic in summary.topics
     ]
     record: dict[str, Any] = {
         **asdict(summary),
@@ -100,19 +100,21 @@ def print_check(check: BagCheck, console: Console) -> None:
     numbers = ('messages', 'Hz', 'usual Hz', 'longest gap s', 'back', 'same', 'log − stamp s')
     table = plain_table('topic', 'group', *numbers, 'QoS offered', right=numbers)
     marked = {finding.topic for finding in check.findings}
-    for seen in check.topics:
-        lag = '–' if seen.lag_s is None else ' to '.join(f'{bound:.3g}' for bound in seen.lag_s)
+    for checked in check.topics:
+        lag = (
+            '–' if checked.lag_s is None else ' to '.join(f'{bound:.3g}' for bound in checked.lag_s)
+        )
         cells = (
-            seen.topic + (' *' if seen.topic in marked else ''),
-            seen.group or 'other',
-            str(seen.count),
-            figure(seen.rate),
-            figure(seen.usual_rate),
-            figure(seen.longest_gap_s),
-            str(seen.backward),
-            str(seen.duplicates),
+            checked.topic + (' *' if checked.topic in marked else ''),
+            checked.group or 'other',
+            str(checked.count),
+            figure(checked.rate),
+            figure(checked.usual_rate),
+            figure(checked.longest_gap_s),
+            str(checked.backward),
+            str(checked.duplicates),
             lag,
-            seen.qos or UNKNOWN,
+            checked.qos or UNKNOWN,
         )
         table.add_row(*map(escape, cells))
     console.print(table)

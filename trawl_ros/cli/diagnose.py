@@ -54,7 +54,7 @@ def command(
     """
     console = error_console()
     with ProgressDisplay(console) as display:
-        found = trials.diagnose(
+        diagnosis = trials.diagnose(
             bags,
             baseline=baseline,
             gear=gear,
@@ -65,15 +65,15 @@ def command(
             on_note=lambda note: console.print(note, style='yellow', markup=False),
             on_progress=display,
         )
-    _print(found, out)
-    context.exit(EXIT[found.verdict])
+    _print(diagnosis, out)
+    context.exit(EXIT[diagnosis.verdict])
 
 
-def _print(found: Diagnosis, out: Path) -> None:
+def _print(diagnosis: Diagnosis, out: Path) -> None:
     console = Console(highlight=False, soft_wrap=True)
-    console.print(f'{found.verdict}. {headline(found)}', style='bold', markup=False)
-    for sentence in sentences(found):
+    console.print(f'{diagnosis.verdict}. {headline(diagnosis)}', style='bold', markup=False)
+    for sentence in sentences(diagnosis):
         console.print(sentence, markup=False)
     console.print(f'Report: {out / "report.html"}', markup=False)
-    if found.repair is not None:
+    if diagnosis.repair is not None:
         console.print(f'The gear with that in it: {out / MODEL}', markup=False)

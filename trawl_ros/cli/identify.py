@@ -62,7 +62,7 @@ def command(
     """
     console = error_console()
     with ProgressDisplay(console) as display:
-        found = trials.identify(
+        report = trials.identify(
             bags,
             gear=gear,
             out=out,
@@ -75,15 +75,15 @@ def command(
             on_note=lambda note: console.print(note, style='yellow', markup=False),
             on_progress=display,
         )
-    print_report(found)
+    print_report(report)
 
 
-def print_report(found: Report) -> None:
+def print_report(report: Report) -> None:
     """Print the verdict, tables and closing sentences."""
     console = Console(highlight=False, soft_wrap=True)
     width = None if console.is_terminal else TABLE_WIDTH
-    console.print(opening_line(found), style='bold')
-    console.print(coefficient_table(found), width=width)
-    console.print(channel_table(found), width=width)
-    for line in closing_lines(found):
+    console.print(opening_line(report), style='bold')
+    console.print(coefficient_table(report), width=width)
+    console.print(channel_table(report), width=width)
+    for line in closing_lines(report):
         console.print(line)

@@ -30,7 +30,7 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
         """Read the list."""
         if isinstance(value, tuple):
             return value
-        numbers = {float(self._one.convert(one.strip(), param, ctx)) for one in value.split(',')}
+        numbers = {float(self._one.convert(text.strip(), param, ctx)) for text in value.split(',')}
         if len(numbers) > MOST_NUMBERS:
             self.fail(f'{len(numbers)} numbers, expected at most {MOST_NUMBERS}', param, ctx)
         return tuple(sorted(numbers))
@@ -150,7 +150,7 @@ def print_plan(plan: 'TrialPlan') -> None:
             f'{sweep.minutes / 60.0:.2f} h.',
             soft_wrap=True,
         )
-    reasons = ', '.join(sorted({one.reason for one in plan.choice.refused}))
+    reasons = ', '.join(sorted({refused.reason for refused in plan.choice.refused}))
     if reasons:
         console.print(
             f'{len(plan.choice.refused)} of '

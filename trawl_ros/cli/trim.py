@@ -45,7 +45,7 @@ def command(
     from trawl_ros.solver.trim import trim
 
     model = build_model(load_gear(gear))
-    found = trim(
+    trimmed = trim(
         model,
         attack=np.radians(attack),
         inclination=np.radians(inclination),
@@ -55,14 +55,15 @@ def command(
     )
     click.echo('  fastening:')
     for name, point in zip(
-        ('warp_m', 'upper_bridle_m', 'lower_bridle_m'), found.points, strict=True
+        ('warp_m', 'upper_bridle_m', 'lower_bridle_m'), trimmed.points, strict=True
     ):
         click.echo(f'    {name}: [{", ".join(f"{x:.3f}" for x in point)}]')
-    seen = found.steady.observables
+    observables = trimmed.steady.observables
     click.echo(
-        f'# at {warp:g} m and {speed:g} m/s: α {np.degrees(seen.port_attack):.1f}°, '
-        f'δ {np.degrees(seen.port_inclination):.1f}°, β {np.degrees(seen.port_slip):.1f}°, '
-        f'spread {seen.door_spread:.1f} m, door depth {seen.door_depth:.1f} m, '
-        f'tension {seen.warp_tension / 1e3:.1f} kN; the slowest motion settles in '
-        f'{found.steady.stability.settling_time:.0f} s'
+        f'# at {warp:g} m and {speed:g} m/s: α {np.degrees(observables.port_attack):.1f}°, '
+        f'δ {np.degrees(observables.port_inclination):.1f}°, '
+        f'β {np.degrees(observables.port_slip):.1f}°, '
+        f'spread {observables.door_spread:.1f} m, door depth {observables.door_depth:.1f} m, '
+        f'tension {observables.warp_tension / 1e3:.1f} kN; the slowest motion settles in '
+        f'{trimmed.steady.stability.settling_time:.0f} s'
     )

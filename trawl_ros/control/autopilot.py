@@ -195,10 +195,14 @@ class Autopilot:
             begun = len(waypoints) > 1 and np.hypot(*(waypoints[0] - position)) < BEGUN_M
             points = waypoints if begun else np.vstack([position, waypoints])
             self._track = Track(points, look_ahead=self.settings.look_ahead)
-        found = self._track.follow(position, self._way, RESPONSE_S)
-        state = self._against_current(found.course, stamp, self._fix_problems(stamp))
+        guidance = self._track.follow(position, self._way, RESPONSE_S)
+        state = self._against_current(guidance.course, stamp, self._fix_problems(stamp))
         return replace(
-            state, leg=found.leg, across=found.across, left=found.left, ended=found.ended
+            state,
+            leg=guidance.leg,
+            across=guidance.across,
+            left=guidance.left,
+            ended=guidance.ended,
         )
 
     def _to_school(self, position: FloatArray, heading: float, stamp: int) -> AutopilotState:

@@ -63,8 +63,8 @@ class Bearings:
     @property
     def current(self) -> FloatArray:
         """Velocity (2,) of the water, east and north, m/s; 0 before it is known."""
-        found = np.array([part.value for part in self._current])
-        return found if np.isfinite(found).all() else np.zeros(2)
+        velocity = np.array([component.value for component in self._current])
+        return velocity if np.isfinite(velocity).all() else np.zeros(2)
 
     def position(self, stamp: int) -> FloatArray | None:
         """Position (2,), east and north, m, at a stamp (ns); None where it is out of date."""

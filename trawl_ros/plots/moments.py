@@ -53,13 +53,13 @@ def read_moments(
     for topic, raw in last.items():
         for k in range(done[topic], len(wanted)):
             nearest[k][topic] = raw
-    for time, stamp, found in zip(times, wanted, nearest, strict=True):
-        yield Moment(time, _decoded(bag, found, stamp))
+    for time, stamp, messages in zip(times, wanted, nearest, strict=True):
+        yield Moment(time, _decoded(bag, messages, stamp))
 
 
-def _decoded(bag: Bag, found: Mapping[str, RawMessage], wanted: int) -> dict[str, Any]:
+def _decoded(bag: Bag, nearest: Mapping[str, RawMessage], wanted: int) -> dict[str, Any]:
     messages = {}
-    for topic, raw in found.items():
+    for topic, raw in nearest.items():
         if abs(raw.log_time - wanted) <= MOST_AWAY_S[topic] * SECOND:
             messages[topic] = bag.decode(raw)
     return messages

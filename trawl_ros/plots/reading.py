@@ -54,9 +54,9 @@ def _true_winch(topic: str, message: Any) -> Columns:
 def _true_door(topic: str, message: Any) -> Columns:
     side = topic.split('/')[2]
     place, roll, pitch, _ = _pose(topic, message.pose.pose)
-    parts = {f'{side}_{axis}': value for axis, value in zip('xyz', place, strict=True)}
+    coordinates = {f'{side}_{axis}': value for axis, value in zip('xyz', place, strict=True)}
     return {
-        **parts,
+        **coordinates,
         f'{side}_door_depth': -place[2],
         f'{side}_pitch': pitch,
         f'{side}_roll': roll,
@@ -71,8 +71,8 @@ def _true_vessel(topic: str, message: Any) -> Columns:
 
 
 def _true_opening(topic: str, message: Any) -> Columns:
-    seen = message.vector
-    return {'wing_width': seen.x, 'centre_height': seen.y, 'net_depth': seen.z}
+    opening = message.vector
+    return {'wing_width': opening.x, 'centre_height': opening.y, 'net_depth': opening.z}
 
 
 def _true_sonar_opening(topic: str, message: Any) -> Columns:
@@ -247,7 +247,7 @@ def _take(
 
 
 def _series(rows: dict[str, _Rows], topics: tuple[str, ...], start: int) -> dict[str, Series]:
-    found: dict[str, Series] = {}
+    by_name: dict[str, Series] = {}
     for topic in topics:
         table = rows[topic]
         if not table.stamps:
@@ -256,8 +256,8 @@ def _series(rows: dict[str, _Rows], topics: tuple[str, ...], start: int) -> dict
         times = (np.array(table.stamps)[order] - start) / SECOND
         for name in table.columns[0]:
             values = np.array([columns[name] for columns in table.columns], dtype=float)[order]
-            found[name] = Series(times, _continuous(values) if name == 'heading' else values)
-    return found
+            by_name[name] = Series(times, _continuous(values) if name == 'heading' else values)
+    return by_name
 
 
 def _continuous(angles: FloatArray) -> FloatArray:

@@ -128,10 +128,10 @@ def _arrows(
             *places, np.cos(yaw), np.sin(yaw), color='#444444', width=0.004, scale=16.0,
             zorder=4, label='heading',
         )  # fmt: skip
-    found = current(tow)
-    if found is None:
+    currents = current(tow)
+    if currents is None:
         return
-    flow = np.array([[_mean(part, float(moment)) for moment in moments] for part in found])
+    flow = np.array([[_mean(series, float(moment)) for moment in moments] for series in currents])
     speed = np.hypot(*flow)
     if not np.isfinite(speed).any():
         return

@@ -56,18 +56,18 @@ class SteerRecord(Record):
         names = ('heading_deg', 'course_deg', 'track_m', 'track_deg', 'to_school')
         given = [name for name in names if getattr(self, name) is not None]
         if len(given) != 1:
-            found = ' and '.join(given) or 'none'
-            raise ValueError(f'found {found}, expected one of {", ".join(names)}')
+            named = ' and '.join(given) or 'none'
+            raise ValueError(f'found {named}, expected one of {", ".join(names)}')
         return self
 
     @model_validator(mode='after')
     def _waypoints_differ(self) -> 'SteerRecord':
         for name in ('track_m', 'track_deg'):
-            for number, (one, next_one) in enumerate(pairwise(getattr(self, name) or ())):
-                if one == next_one:
+            for number, (waypoint, next_one) in enumerate(pairwise(getattr(self, name) or ())):
+                if waypoint == next_one:
                     raise ValueError(
-                        f'{name}: found waypoint {list(one)} twice in a row (number {number} and '
-                        f'{number + 1}), expected another place'
+                        f'{name}: found waypoint {list(waypoint)} twice in a row (number {number} '
+                        f'and {number + 1}), expected another place'
                     )
         return self
 

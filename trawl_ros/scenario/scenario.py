@@ -238,7 +238,7 @@ def _plant(gear: GearRecord, record: ScenarioRecord, path: Path) -> GearRecord:
     data = finer.model_dump()
     data['board']['coefficients'] |= record.coefficients.model_dump(exclude_none=True)
     data['water'] |= record.water.model_dump(exclude_none=True)
-    data['effects'] = (*data['effects'], *(one.model_dump() for one in record.effects))
+    data['effects'] = (*data['effects'], *(effect.model_dump() for effect in record.effects))
     # Checked again: what differs must fit what stayed.
     return validated(GearRecord, data, path, ScenarioError, prefix='plant')
 

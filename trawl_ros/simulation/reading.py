@@ -60,21 +60,21 @@ def read_truth(
     model: GearModel, stamp: int, ship: Ship, winches: tuple[Winch, Winch], state: State, tow: Tow
 ) -> Truth:
     """Read the truth of a state for the instruments."""
-    seen = observe(model, state, tow)
+    observables = observe(model, state, tow)
     head, foot = model.layout.headrope, model.layout.footrope
     sonar = sonar_axes(model, state)
     return Truth(
         stamp=stamp,
         doors=_doors(model, state),
         winches=(
-            WinchTruth(winches[0].length, winches[0].speed, float(seen.port_tension)),
-            WinchTruth(winches[1].length, winches[1].speed, float(seen.starboard_tension)),
+            WinchTruth(winches[0].length, winches[0].speed, float(observables.port_tension)),
+            WinchTruth(winches[1].length, winches[1].speed, float(observables.starboard_tension)),
         ),
         net=NetTruth(
             mouth=np.concatenate([state.nodes[head], state.nodes[foot[::-1]]]),
-            horizontal_opening=float(seen.horizontal_opening),
-            vertical_opening=float(seen.vertical_opening),
-            headrope_depth=float(seen.net_depth),
+            horizontal_opening=float(observables.horizontal_opening),
+            vertical_opening=float(observables.vertical_opening),
+            headrope_depth=float(observables.net_depth),
             sonar_position=state.nodes[head[len(head) // 2]],
             sonar_orientation=Rotation.from_matrix(sonar).as_quat(canonical=True),
             section=section_of(model, state, sonar),

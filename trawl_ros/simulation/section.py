@@ -41,19 +41,19 @@ def section_of(model: GearModel, state: State, axes: FloatArray) -> FloatArray:
     """
     head, foot = model.layout.headrope, model.layout.footrope
     sonar, middle = head[len(head) // 2], foot[len(foot) // 2]
-    seen = (state.nodes - state.nodes[sonar]) @ axes
+    positions = (state.nodes - state.nodes[sonar]) @ axes
     # Both lie in the plane by its definition, and rounding must not say which bars cross there.
-    seen[[sonar, middle], 2] = 0.0
+    positions[[sonar, middle], 2] = 0.0
     # Bars at boards and ship end beyond the last node: they are far ahead of the mouth.
     inner = np.flatnonzero((model.ends < model.nodes).all(axis=1) & (model.bars.normal_area > 0))
     start, end = model.ends[inner].T
-    behind = seen[:, 2] < 0.0
+    behind = positions[:, 2] < 0.0
     through = (behind[start] != behind[end]) & (start != sonar) & (end != sonar)
-    bars, a, b = inner[through], seen[start[through]], seen[end[through]]
+    bars, a, b = inner[through], positions[start[through]], positions[end[through]]
     share = a[:, 2] / (a[:, 2] - b[:, 2])
     places = (a + share[:, None] * (b - a))[:, :2]
     # n bars of diameter d have the volume n π d² / 4 and the area n d per metre.
     diameters = 4 / np.pi * model.bars.volume[bars] / model.bars.normal_area[bars]
     # The footrope touches the plane with its middle, and need not pass through it anywhere.
-    lowest = [*seen[middle, :2], model.gear.footrope.diameter_m]
+    lowest = [*positions[middle, :2], model.gear.footrope.diameter_m]
     return single(np.vstack([np.column_stack([places, diameters]), lowest]))

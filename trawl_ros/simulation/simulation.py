@@ -121,12 +121,12 @@ class Simulation:
     def _first(self, command: Command, heading: float, stamp: int) -> Instant:
         towed = self._towed(command)
         point = OperatingPoint(towed.port_length, towed.starboard_length, towed.speed, heading)
-        found = require_usable(self.model, find_equilibrium(self.model, point)).equilibrium
+        equilibrium = require_usable(self.model, find_equilibrium(self.model, point)).equilibrium
         return Instant(
             stamp=stamp,
             ship=Ship(np.zeros(3), heading, towed.speed, 0.0),
             winches=(Winch(towed.port_length, 0.0), Winch(towed.starboard_length, 0.0)),
-            motion=at_rest(found.state),
+            motion=at_rest(equilibrium.state),
         )
 
     def reset(self) -> None:
