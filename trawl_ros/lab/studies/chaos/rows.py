@@ -27,7 +27,7 @@ YARDSTICK = (
     'the same in both tows until an instrument is killed; one that is started anew draws noise '
     'and biases anew, and the estimates differ by that.'
 )
-"""What the estimate is compared with, and why."""
+"""Standard that the estimate is compared with, and the reason."""
 
 MOST_GROWTH = 10.0
 """Memory at the end, per cent above that of the undisturbed tow at its end."""

@@ -112,7 +112,7 @@ def _other(value: Any, rng: Generator) -> Any:
 def _other_array(values: NDArray[np.generic], rng: Generator) -> NDArray[np.generic]:
     changed: NDArray[np.generic] = values.copy()
     if changed.size and changed.dtype.kind == 'f' and rng.random() < 0.7:
-        # What is too large for the type becomes infinite.
+        # Numbers too large for the type become infinite.
         with np.errstate(over='ignore'):
             changed[rng.integers(changed.size)] = rng.choice(NUMBERS)
     else:
