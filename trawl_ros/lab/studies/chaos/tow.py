@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.running.chain import Glance, glance, watched_of
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
@@ -23,7 +24,7 @@ from trawl_ros.lab.studies.chaos.plan import (
     Plan,
     write_tow,
 )
-from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, coarse_gear, write_coarse_gear
+from trawl_ros.lab.studies.soak.long_tow import TRUTH_HZ, write_coarse_gear
 
 if TYPE_CHECKING:
     from trawl_ros.lab.running.journal_monitor import JournalMonitor
@@ -132,7 +133,7 @@ def run_tow(
             tow.estimate = dict(monitor.coefficients)
         processes.stop(*(node for node in processes.pids() if node != RECORDER))
         processes.stop(*(node for node in processes.pids()))
-        tow.windows = saved_windows(crew.state, coarse_gear(plan.gear))
+        tow.windows = saved_windows(crew.state, load_gear(gear))
         tow.recordings = [looked_into(recording, monitor) for recording in crew.recordings]
     return tow
 
