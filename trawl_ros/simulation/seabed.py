@@ -53,7 +53,8 @@ def require_clear(seabed: Seabed, model: 'GearModel', state: 'State') -> None:
     # Down to a door's lowest corner.
     edges = np.array([model.board.chord, 0.0, model.board.span])
     heights[:2] -= 0.5 * np.abs(state.board_rotations[:, 2]) @ edges
-    lowest = int(np.argmin(heights))
+    # Of sides that are alike, rounding must not say which is named.
+    lowest = int(np.argmin(np.round(heights, 6)))
     if heights[lowest] > 0.0:
         return
     if lowest < 2:
