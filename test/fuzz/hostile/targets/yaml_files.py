@@ -15,11 +15,22 @@ from trawl_ros.bags.logs.mapping import load_mapping
 from trawl_ros.bags.logs.nmea_mapping import load_nmea_mapping
 from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.plan_table import plan_text, read_plan
+from trawl_ros.gear.polars import load_door
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.scenario.scenario import load_scenario
 
 FILE = 'given.yaml'
+PLAN = 'given.csv'
+
+TABLE = """part,panel,section,mesh_mm,front_meshes,back_meshes,long_meshes,rtex,material,knots,cut
+wing,upper,,800,16,40,25.5,3370,PA,,AB
+wing,lower,,800,16,40,25.5,3370,PA,,AB
+body,upper,front,800,110,,25,3370,PA,,1N4B
+body,lower,front,800,110,,25,3370,PA,,1N4B
+codend,all,end,40,3000,2000,100,2000,PE,knotless,
+"""
 
 TAGS = (
     *('int', 'float', 'bool', 'null', 'str', 'map', 'seq', 'set', 'omap', 'pairs', 'binary'),
@@ -91,6 +102,14 @@ def hostile_yaml(sound: list[str]) -> SearchStrategy[bytes]:
     )
 
 
+def hostile_table() -> SearchStrategy[bytes]:
+    """Content for the reader of net plans, from a table that it takes."""
+    pieces = [scalar.encode() for scalar in SCALARS]
+    pieces += [b',', b';', b'"', b'\n', b'\r', b'\0', b'#', b'\xff\xfe', b'part', b'1N2B', b'all']
+    wide = long(st.sampled_from((b',', b'"', b'1,', b'wing,upper\n', b'"a\n')), 200_000)
+    return st.one_of(mutated(st.just(TABLE.encode()), pieces), st.binary(max_size=64), wide)
+
+
 def _files(folder: str) -> list[str]:
     return [path.read_text() for path in sorted(share_path('config', folder).glob('*.yaml'))]
 
@@ -158,6 +177,14 @@ TARGETS = (
         },
     ),
     _target('gear', 'gear', load_gear, 'name'),
+    _target('door', 'doors', lambda path: load_door(str(path)), 'name'),
+    Target(
+        name='net-plan-table',
+        inputs=one_file(PLAN, hostile_table()),
+        read=lambda given, results: plan_text(read_plan(given / PLAN)),
+        examples=60,
+        known={'a-quote-that-does-not-end': lambda: {PLAN: TABLE.replace('AB', '"AB').encode()}},
+    ),
     _target('scenario', 'scenarios', load_scenario, 'name'),
     _target('instruments', 'instruments', load_instruments, 'winch'),
     _target('csv-mapping', 'logs', load_mapping, 'clock'),
