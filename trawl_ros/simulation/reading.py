@@ -71,7 +71,9 @@ def read_truth(
             WinchTruth(winches[1].length, winches[1].speed, float(observables.starboard_tension)),
         ),
         net=NetTruth(
-            mouth=np.concatenate([state.nodes[head], state.nodes[foot[::-1]]]),
+            mouth=np.concatenate(
+                [state.nodes[head], _resampled(state.nodes[foot[::-1]], len(head))]
+            ),
             horizontal_opening=float(observables.horizontal_opening),
             vertical_opening=float(observables.vertical_opening),
             headrope_depth=float(observables.net_depth),
@@ -87,6 +89,17 @@ def read_truth(
             velocity_water=np.array([ship.speed, 0.0, ship.heave_rate]),
         ),
     )
+
+
+def _resampled(points: FloatArray, number: int) -> FloatArray:
+    """As many points along a rope, its ends and middle among them; a planned net's footrope may
+    have other nodes than its headrope.
+    """
+    if len(points) == number:
+        return points
+    along = np.linspace(0.0, len(points) - 1, number)
+    steps = np.arange(len(points))
+    return np.stack([np.interp(along, steps, axis) for axis in points.T], axis=1)
 
 
 def _means(values: FloatArray, groups: list[IntArray]) -> list[float]:

@@ -6,8 +6,12 @@ import pytest
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import mirrored
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.predict import Predictor
+from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
 
 
 @pytest.fixture(scope='module')
@@ -73,3 +77,41 @@ def test_its_coefficients_are_corrections_that_a_fit_can_move(planned: GearModel
     changed[3] = 0.1
     more_lift = steady_state(planned.with_coefficients(changed), 500.0, 1.2).observables
     assert more_lift.door_spread > steady_state(predictor.model, 500.0, 1.2).observables.door_spread
+
+
+@pytest.mark.parametrize('name', ['c1', 'c2', 'c6', 'speed'])
+def test_sensitivities_hold_for_a_board_that_follows_a_table(
+    planned: GearModel, steady: SteadyState, name: str
+) -> None:
+    """Slopes of spread and depth by a correction to the table, against states solved anew."""
+    column = sensitivities(planned, steady.equilibrium)[:, PARAMETERS.index(name)]
+    h, seen = 1e-3, []
+    for change in (h, -h):
+        values = np.zeros(12)
+        if name != 'speed':
+            values[PARAMETERS.index(name)] = change
+        speed = 1.2 + (change if name == 'speed' else 0.0)
+        model = planned.with_coefficients(values)
+        found = steady_state(model, 500.0, speed, start=steady.equilibrium).observables
+        seen.append(found.array())
+    slope = (seen[0] - seen[1]) / (2 * h)
+    for quantity in ('door_spread', 'port_door_depth', 'port_tension', 'port_attack'):
+        k = OBSERVABLES.index(quantity)
+        assert column[k] == pytest.approx(slope[k], rel=2e-3), quantity
+
+
+def test_it_is_hauled_and_turned_in_time(planned: GearModel) -> None:
+    simulation = Simulation(planned, Command(400.0, 400.0, 1.3))
+    start = simulation.truth()
+    simulation.command = Command(380.0, 380.0, 1.3, turn_rate=np.radians(0.1))
+    for _ in range(600):
+        simulation.advance()
+    later = simulation.truth()
+    assert later.winches[0].length == pytest.approx(380.0)
+    assert later.doors[0].position[2] > start.doors[0].position[2]
+    assert later.vessel.heading == pytest.approx(np.radians(0.1 * 60), rel=0.1)
+    assert 0.5 < later.net.vertical_opening / start.net.vertical_opening < 1.5
+    # Half of the mouth's points are the headrope's, whatever nodes the footrope has.
+    half = len(later.net.mouth) // 2
+    assert len(planned.layout.headrope) == half
+    np.testing.assert_allclose(later.net.mouth[half // 2], later.net.sonar_position)
