@@ -17,6 +17,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'wire': 'One wire in motion',
         'equilibrium': 'Steady states of the full gear',
         'fit': 'One fit of twelve coefficients to fifteen states',
+        'commands': 'From recorded bags to a result',
         'growth': 'Growth with the number of net nodes',
         'start': 'Cold start of the nodes',
         'recording': 'Recording the full chain',

@@ -1,0 +1,132 @@
+"""Processor time of the commands from recorded bags to a result."""
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import psutil
+import yaml
+
+from trawl_ros.api.tows import tow
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.resources import share_path
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.page import Findings
+
+OVER_REAL_TIME, DIAGNOSIS_S = 200.0, 12.0
+
+TOWS = ('hidden_baseline', 'hidden_tow_1', 'hidden_tow_2', 'hidden_tow_3')
+"""Scenarios that are towed for the diagnosis, each with two seeds."""
+
+COARSE = 12
+SHORT_S = 540.0
+"""Length of the tow of the small version."""
+
+
+def measure(small: bool) -> Findings:
+    """Run the commands, each in a process of its own."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        rows = [_identified(folder, small=small)]
+        if not small:
+            rows.append(_diagnosed(folder))
+    return Findings(
+        tuple(rows),
+        text='A command is run as a user runs it, imports, reading, hold-out, figures and page '
+        'included; processor time of its processes together. Its compiled code is in the cache.',
+    )
+
+
+def _identified(folder: Path, *, small: bool) -> MeasuredValue:
+    asked = MeasuredValue(
+        'replay of a trial through trawl identify, with hold-out, figures and page',
+        math.nan,
+        '× real time',
+        at_least(OVER_REAL_TIME),
+    )
+    bag, gear, towed_s = share_path('bags', 'sea_trial'), 'kaifuha', None
+    if small:
+        scenario = _short(folder)
+        towed_s = tow(scenario, folder / 'short').duration_s
+        bag, gear = folder / 'short', str(folder / 'coarse.yaml')
+    else:
+        towed_s = _length_s(bag)
+    seconds = command_s('identify', str(bag), '--gear', gear, '--out', str(folder / 'result'))
+    note = f'{towed_s:.0f} s of tow in {seconds:.1f} s'
+    return replace(asked, value=towed_s / seconds, note=note)
+
+
+def _diagnosed(folder: Path) -> MeasuredValue:
+    bags: dict[str, list[str]] = {'baseline': [], 'suspect': []}
+    for number, name in enumerate(TOWS):
+        for seed in (1, 2):
+            scenario = yaml.safe_load(
+                share_path('config', 'scenarios', f'{name}.yaml').read_text('utf-8')
+            )
+            scenario['seed'] = 10 * number + seed
+            file = folder / f'{name}_{seed}.yaml'
+            file.write_text(yaml.safe_dump(scenario), encoding='utf-8')
+            bag = tow(file, folder / f'{name}_{seed}').path
+            bags['suspect' if number else 'baseline'].append(str(bag))
+    baselines = [word for bag in bags['baseline'] for word in ('--baseline', bag)]
+    out = folder / 'diagnosis'
+    seconds = command_s('diagnose', *bags['suspect'], *baselines, '--out', str(out))
+    verdict = json.loads((out / 'diagnosis.json').read_text(encoding='utf-8'))['verdict']
+    note = f'two of them a baseline, three steady states each, net as it ships; {verdict}'
+    return MeasuredValue('trawl diagnose of eight tows', seconds, 's', at_most(DIAGNOSIS_S), note)
+
+
+def command_s(*words: str) -> float:
+    """Processor time (s) of a command of ``trawl`` with all its processes.
+
+    Raises
+    ------
+    TrawlError
+        If it fails.
+    """
+    code = 'import sys; from trawl_ros.cli.main import main; sys.exit(main())'
+    before = _children_s()
+    done = subprocess.run([sys.executable, '-c', code, *words], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise TrawlError(f'trawl {words[0]}: ended with {done.returncode}: {_last(done.stderr)}')
+    return _children_s() - before
+
+
+def _last(lines: str) -> str:
+    return lines.strip().rpartition('\n')[2]
+
+
+def _children_s() -> float:
+    """Processor time (s) of all child processes that have ended so far, and of theirs."""
+    times = psutil.Process().cpu_times()
+    return float(times.children_user + times.children_system)
+
+
+def _length_s(bag: Path) -> float:
+    """Length (s) of a bag by its metadata."""
+    metadata = yaml.safe_load((bag / 'metadata.yaml').read_text(encoding='utf-8'))
+    return 1e-9 * float(metadata['rosbag2_bagfile_information']['duration']['nanoseconds'])
+
+
+def _short(folder: Path) -> Path:
+    """Write a scenario of one steady state of a coarse gear, and that gear."""
+    gear = yaml.safe_load(share_path('config', 'gear', 'kaifuha.yaml').read_text('utf-8'))
+    gear['netting']['around'] = COARSE
+    (folder / 'coarse.yaml').write_text(yaml.safe_dump(gear), encoding='utf-8')
+    steps: Sequence[dict[str, object]] = [{'name': 'steady', 'minutes': SHORT_S / 60.0}]
+    scenario = {
+        'description': 'One steady state',
+        'gear': 'coarse.yaml',
+        'start': {'warp_length_m': 300.0, 'speed_m_s': 2.3},
+        'steps': steps,
+        'truth_rate_hz': 2.0,
+        'record': ['instruments'],
+    }
+    file = folder / 'short.yaml'
+    file.write_text(yaml.safe_dump(scenario), encoding='utf-8')
+    return file
