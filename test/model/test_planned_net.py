@@ -305,3 +305,16 @@ def test_a_rope_that_is_too_short_for_its_bosom_is_refused(tmp_path: Path) -> No
     data['headrope']['length_m'] = 15.0
     with pytest.raises(GearError, match=r'headrope\.length_m: found 15, expected more than the'):
         build_model(loaded(tmp_path, data))
+
+
+@pytest.mark.parametrize('around', AROUND)
+def test_netting_along_the_wings_is_as_long_as_planned(gear: GearRecord, around: int) -> None:
+    """From each wing tip to the mouth, along the bars, whatever the rows of the mouth."""
+    mesh = cut_to(gear, around).net_mesh
+    assert mesh.frame is not None
+    plan = plan_of(gear)
+    for rim, panel in zip(mesh.frame, ('upper', 'lower'), strict=False):
+        if any(piece.pieces == 1 for piece in plan.wing(panel)):
+            continue
+        edge = sum(m for k, m in zip(rim.kinds, rim.netting, strict=True) if k == 'edge')
+        assert edge == pytest.approx(2 * plan.wing_length(panel), rel=1e-9)

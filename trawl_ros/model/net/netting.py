@@ -104,7 +104,10 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
         back = (2 * other + odd) / (2 * row.columns)
         return cloth.sums(row, front + 0.5 * ((back - front + 0.5) % 1.0 - 0.5))
 
-    made = weave(net, body, wings, rows, lambda k, j: mouth.holds(k, 2 * j + k % 2), sums)
+    def rest(k: int, row: NettingRow, j: int) -> float:
+        return row.rest if k >= 0 else mouth.row_at(2 * j + k % 2)
+
+    made = weave(net, body, wings, rows, lambda k, j: mouth.holds(k, 2 * j + k % 2), sums, rest)
     last, codend = rows[-1], sections_of(net, plan, 'codend', 'upper')
     ring = [made.index[len(rows), j] for j in range(last.columns)]
     add_codend(net, Profile((*body.behind(last.back), *codend.sections)), ring, made)

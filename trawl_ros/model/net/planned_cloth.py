@@ -72,7 +72,7 @@ class PlannedCloth:
 
     net: NettingRecord
     mouth: PlannedMouth
-    known: dict[tuple[str, NettingRow], dict[str, float]] = field(default_factory=dict)
+    known: dict[tuple[str, NettingRow, int], dict[str, float]] = field(default_factory=dict)
 
     @property
     def plan(self) -> NetPlanRecord:
@@ -139,13 +139,16 @@ class PlannedCloth:
             for panel, (start, end) in cuts.items()
         }
         if row.back <= 1e-9:
+            wing = self.mouth.wing_at(2 * self.mouth.around * place)
             inside = self._inside(row, low, high)
             scale = max(inside, LEAST_SHARE) / max(sum(shares.values()), 1e-12)
             shares = {panel: scale * share for panel, share in shares.items()}
+        else:
+            wing = 0
         total: dict[str, float] = {}
         for panel, share in shares.items():
             if share > 0.0:
-                for key, value in self._column(panel, row).items():
+                for key, value in self._column(panel, row, wing).items():
                     total[key] = total.get(key, 0.0) + share * value
         return total
 
@@ -165,11 +168,13 @@ class PlannedCloth:
                 covered += max(min(high, end) - max(low, start), 0.0)
         return min(covered / (high - low), 1.0)
 
-    def _column(self, panel: str, row: NettingRow) -> dict[str, float]:
-        if (panel, row) not in self.known:
+    def _column(self, panel: str, row: NettingRow, wing: int) -> dict[str, float]:
+        if (panel, row, wing) not in self.known:
             if row.back <= 1e-9:
-                sums = self.wings[panel].per_mesh_column(-row.back, -row.front, row.columns)
+                scale = self.mouth.scales[wing]
+                front, back = -scale * row.back, -scale * row.front
+                sums = self.wings[panel].per_mesh_column(front, back, row.columns)
             else:
                 sums = self.bodies[panel].per_mesh_column(row.front, row.back, row.columns)
-            self.known[panel, row] = sums
-        return self.known[panel, row]
+            self.known[panel, row, wing] = sums
+        return self.known[panel, row, wing]

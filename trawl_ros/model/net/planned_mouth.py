@@ -86,6 +86,23 @@ class PlannedMouth:
         upper, lower = (max(1, round(length / self.row)) for length in long)
         return upper, lower
 
+    @cached_property
+    def scales(self) -> tuple[float, float]:
+        """Rows of the upper and of the lower wings over those of the mouth, so that the wings are
+        as long as planned.
+        """
+        long = (self.plan.wing_length(panel) for panel in ('upper', 'lower'))
+        upper, lower = (length / (rows * self.row) for length, rows in zip(long, self.rows))
+        return upper, lower
+
+    def wing_at(self, half: float) -> int:
+        """0 for the upper and 1 for the lower wing, of half pitches from the top."""
+        return int(min(half, 2 * self.around - half) > 0.5 * sum(self.seams))
+
+    def row_at(self, half: float) -> float:
+        """Stretched length (m) of a row ahead of the mouth at these half pitches from the top."""
+        return self.row * self.scales[self.wing_at(half)]
+
     @property
     def foremost(self) -> int:
         """Number of rows ahead of the mouth."""
@@ -94,7 +111,7 @@ class PlannedMouth:
     def reach(self, panel: str, k: float) -> float:
         """Half pitches that the wing of a panel has beside its seam on row ``k`` < 0."""
         pieces = self.plan.wing(panel) or self._side(panel)
-        ahead = (-k) * self.row
+        ahead = (-k) * self.row * self.scales[panel in ('lower', 'side_lower')]
         whole = 2 * self.around / self.plan.circumference
         for number, piece in enumerate(pieces):
             front, back = piece.widths
@@ -260,7 +277,8 @@ class PlannedMouth:
         netting, kinds = [], []
         for number, ((k, h), (row, half)) in enumerate(pairwise(places)):
             rows, across = abs(row - k), min(abs(half - h), 2 * self.around - abs(half - h))
-            netting.append(self.row * max(rows, across))
+            along = rows * self.row_at(0.5 * (h + half))
+            netting.append(along if across <= rows else max(along, self.row * across))
             at_tip = min(number, len(places) - 2 - number) < tips
             kinds.append('tip' if at_tip else 'edge' if rows else 'bosom')
         return FrameRope(tuple(places), tuple(netting), tuple(kinds))

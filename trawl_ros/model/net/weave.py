@@ -80,6 +80,7 @@ def weave(
     rows: tuple[NettingRow, ...],
     holds: Callable[[int, int], bool],
     sums: Callable[[int, NettingRow, int, int], dict[str, float]],
+    rest: Callable[[int, NettingRow, int], float] = lambda _, row, __: row.rest,
 ) -> Weave:
     """Make nodes and bars of the wings' rows and the body's.
 
@@ -96,6 +97,8 @@ def weave(
     sums
         Twine of the bar of a row from one number around to another, as
         `Profile.per_mesh_column` has it.
+    rest
+        Length of the bars of a row from a number around; that of the row unless given.
     """
     made = Weave()
     ahead = wings[0].front if wings else 0.0
@@ -129,7 +132,9 @@ def weave(
                     continue
                 a, b = made.index[k, j], made.index[k + 1, other]
                 own = sums(k, row, j, other)
-                made.bars.append(_bar(a, b, row.rest, own, net.bowing_pressure_pa, 'netting'))
+                made.bars.append(
+                    _bar(a, b, rest(k, row, j), own, net.bowing_pressure_pa, 'netting')
+                )
                 made.knot_area[[a, b]] += 0.5 * own['knots'] * net.knot_diameters**2
                 made.knot_volume[[a, b]] += 0.5 * own['knot_volume'] * net.knot_diameters**3
     return made
