@@ -181,6 +181,22 @@ def test_what_hangs_on_ropes_weighs_what_the_file_says(tmp_path: Path) -> None:
     assert more[with_it.layout.bridle_ends[1]] > 0.6 * per_side / 2 / water.gravity
 
 
+def test_a_chain_weighs_so_much_per_metre_of_its_rope(tmp_path: Path) -> None:
+    data = plan_data()
+    chain = {'name': 'chain', 'rope': 'footrope', 'weight_in_water_n_m': 20.0}
+    data['hung'] = [chain | {'from_share': 0.25, 'to_share': 0.75}]
+    gear = loaded(tmp_path, data)
+    model = build_model(gear)
+    data['hung'] = []
+    more = model.lump_mass - build_model(loaded(tmp_path, data)).lump_mass
+    weight = 20.0 * 0.5 * plan_of(gear).rope_length('footrope')
+    steel = 7800.0 / (7800.0 - model.water.density)
+    assert more.sum() * model.water.gravity == pytest.approx(weight * steel, rel=1e-9)
+    foot = model.layout.footrope
+    assert more[foot].sum() == pytest.approx(more.sum())
+    assert more[foot[0]] == 0.0
+
+
 def test_three_bridles_of_different_length_end_where_the_file_says(tmp_path: Path) -> None:
     data = plan_data()
     data['bridles'] = [

@@ -15,6 +15,7 @@ from trawl_ros.gear.findings import GearFinding, findings
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.rigging import ropes_of
 
 SPEEDS = (2.0, 3.0, 4.0)
 """Knots at which the drag is looked up."""
@@ -122,8 +123,10 @@ def weights_of(model: GearModel) -> dict[str, float]:
         if force:
             found[name] = 2 * force
     for item in gear.hung:
-        sides = 1 if item.rope in ('headrope', 'footrope') else 2
-        found[item.name] = found.get(item.name, 0.0) + sides * item.force
+        for rope in ropes_of(item):
+            own = next(numbers for name, _, numbers in model.layout.lines if name == rope)
+            force = item.force_on(float(model.rest[own].sum()))
+            found[item.name] = found.get(item.name, 0.0) + force
     if gear.kite is not None:
         sunk = gear.kite.mass_kg - water.density * gear.kite.volume_m3
         found['kite'] = water.gravity * sunk

@@ -201,11 +201,8 @@ def _rigging(gear: GearRecord) -> Iterator[GearFinding]:
     if max(long.values()) > 1.15 * min(long.values()):
         told = ', '.join(f'{name} {length:g} m' for name, length in long.items())
         yield GearFinding('bridles', f'found {told}, expected them within 15 % of each other')
-    sinks = 2 * gear.clump.weight_in_water_n + sum(
-        item.weight_in_water_n * (1 if item.rope in ('headrope', 'footrope') else 2)
-        for item in gear.hung
-    )
-    if sinks == 0.0 and gear.footrope.weight_in_water_n_m <= 0.0:
+    sinks = gear.clump.weight_in_water_n > 0.0 or any(item.sinks for item in gear.hung)
+    if not sinks and gear.footrope.weight_in_water_n_m <= 0.0:
         yield GearFinding(
             'hung', 'found no weight on net or bridles, which opens the mouth downward'
         )

@@ -39,6 +39,7 @@ class HungRecord(Record):
     Shares of a bridle count from the board to the net, those of headrope, footrope and the side
     ropes from port to starboard or from the top down. What hangs on a bridle or on a side rope
     hangs there on either side; on headrope and footrope the figures are those of the whole rope.
+    Figures in N/m are those of each metre of rope over which it is spread, as of a chain.
     """
 
     name: str
@@ -47,23 +48,34 @@ class HungRecord(Record):
     to_share: Share = 1.0
     weight_in_water_n: NotNegative = 0.0
     buoyancy_n: NotNegative = 0.0
+    weight_in_water_n_m: NotNegative = 0.0
+    buoyancy_n_m: NotNegative = 0.0
     density_kg_m3: Annotated[float, Field(gt=0, le=20_000)] | None = None
     drag_area_m2: NotNegative = 0.0
 
     @model_validator(mode='after')
     def _sinks_or_floats(self) -> 'HungRecord':
-        if (self.weight_in_water_n > 0) == (self.buoyancy_n > 0):
-            raise ValueError('needs either weight_in_water_n or buoyancy_n, found both or neither')
+        given = [
+            self.weight_in_water_n,
+            self.buoyancy_n,
+            self.weight_in_water_n_m,
+            self.buoyancy_n_m,
+        ]
+        if sum(force > 0 for force in given) != 1:
+            raise ValueError(
+                'needs either weight_in_water_n or buoyancy_n, or one of them per metre (_n_m), '
+                f'found {sum(force > 0 for force in given)} of them'
+            )
         if self.to_share < self.from_share:
             raise ValueError(
                 f'to_share: found {self.to_share:g}, expected from_share, {self.from_share:g}, or '
                 'more'
             )
-        low, high = (1100.0, 20_000.0) if self.weight_in_water_n else (1.0, 950.0)
+        low, high = (1100.0, 20_000.0) if self.sinks else (1.0, 950.0)
         if not low <= self.density <= high:
             raise ValueError(
                 f'density_kg_m3: found {self.density:g}, expected {low:g} to {high:g} for what '
-                f'{"sinks" if self.weight_in_water_n else "floats"}'
+                f'{"sinks" if self.sinks else "floats"}'
             )
         return self
 
@@ -72,9 +84,15 @@ class HungRecord(Record):
         """Density, kg/m³: that of steel, or of a float, where none is given."""
         if self.density_kg_m3 is not None:
             return self.density_kg_m3
-        return 7800.0 if self.weight_in_water_n else 300.0
+        return 7800.0 if self.sinks else 300.0
 
     @property
-    def force(self) -> float:
-        """Weight in water, N; negative for floats."""
-        return self.weight_in_water_n - self.buoyancy_n
+    def sinks(self) -> bool:
+        """True for weights, False for floats."""
+        return self.weight_in_water_n + self.weight_in_water_n_m > 0.0
+
+    def force_on(self, length: float) -> float:
+        """Weight in water (N), negative for floats, on a rope of this length (m)."""
+        per_metre = self.weight_in_water_n_m - self.buoyancy_n_m
+        spread = length * (self.to_share - self.from_share)
+        return self.weight_in_water_n - self.buoyancy_n + per_metre * spread

@@ -278,9 +278,9 @@ def build_model(gear: GearRecord) -> GearModel:
         for tip in (net[rim[0]], net[rim[-1]]):
             lumps[:, tip] += (density * volume, volume, drag_area, 0.5 * volume)
     for item in gear.hung:
-        volume = item.force / water.gravity / (item.density - water.density)
-        body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
-        for nodes, shares in hung_places(build, item):
+        for nodes, shares, force in hung_places(build, item):
+            volume = force / water.gravity / (item.density - water.density)
+            body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
             # A rope passes each node once.
             lumps[:, nodes] += body[:, None] * shares
     guess = np.full((build.count, 3), np.nan)

@@ -114,17 +114,24 @@ def add_bridles(
     return nodes
 
 
-def hung_places(build: GearBuilder, item: HungRecord) -> list[tuple[IntArray, FloatArray]]:
-    """Nodes that carry what hangs on a rope, with the share of it on each; one entry per rope."""
-    names = [item.rope]
+def ropes_of(item: HungRecord) -> list[str]:
+    """Names of the lines on which it hangs."""
     if item.rope == 'side_rope':
-        names = ['port_wing_end', 'starboard_wing_end']
-    elif item.rope.endswith('_bridle'):
-        names = [f'{side}_{item.rope}' for side in ('port', 'starboard')]
+        return ['port_wing_end', 'starboard_wing_end']
+    if item.rope.endswith('_bridle'):
+        return [f'{side}_{item.rope}' for side in ('port', 'starboard')]
+    return [item.rope]
+
+
+def hung_places(build: GearBuilder, item: HungRecord) -> list[tuple[IntArray, FloatArray, float]]:
+    """Nodes that carry what hangs on a rope, the share of it on each, and its weight in water (N);
+    one entry per rope.
+    """
     found = []
-    for name in names:
+    for name in ropes_of(item):
         points, bars = next((p, b) for line, p, b in build.lines if line == name)
         along = np.concatenate([[0.0], np.cumsum([build.rest[bar] for bar in bars])])
+        force = item.force_on(float(along[-1]))
         along /= along[-1]
         free = np.array([build.BLOCK < point <= build.FASTENING for point in points])
         # Board and blocks carry nothing: what hangs beside them is their neighbour's.
@@ -135,5 +142,5 @@ def hung_places(build: GearBuilder, item: HungRecord) -> list[tuple[IntArray, Fl
             k = int(np.clip(np.searchsorted(along, place) - 1, 0, len(along) - 2))
             part = float(np.clip((place - along[k]) / (along[k + 1] - along[k]), 0.0, 1.0))
             shares[[k, k + 1]] += np.array([1.0 - part, part]) / HUNG_PIECES
-        found.append((nodes, shares))
+        found.append((nodes, shares, force))
     return found
