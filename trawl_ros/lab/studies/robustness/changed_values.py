@@ -1,6 +1,5 @@
 """Numbers of a gear file, changed one at a time, and the steady state or refusal that follows."""
 
-import json
 from collections.abc import Iterator
 
 from pydantic import ValidationError
@@ -19,7 +18,7 @@ LEFT_OUT = 'identification', 'effects', 'water.temperature', 'water.salinity_g_k
 
 def numbers(gear: GearRecord) -> Iterator[str]:
     """Keys, joined by dots, of all numbers that are not zero; counts are left alone."""
-    yield from _numbers(gear.model_dump(mode='json'), '')
+    yield from _numbers(gear.model_dump(), '')
 
 
 def _numbers(value: object, key: str) -> Iterator[str]:
@@ -28,7 +27,7 @@ def _numbers(value: object, key: str) -> Iterator[str]:
     if isinstance(value, dict):
         for name, part in value.items():
             yield from _numbers(part, f'{key}.{name}' if key else name)
-    elif isinstance(value, list) and key != 'board.moment_signs':
+    elif isinstance(value, tuple) and key != 'board.moment_signs':
         for place, part in enumerate(value):
             yield from _numbers(part, f'{key}.{place}')
     elif isinstance(value, float) and value:
@@ -43,8 +42,8 @@ def changed(gear: GearRecord, key: str, factor: float) -> GearRecord:
     ValidationError
         If a gear file may not have that number.
     """
-    data = _scaled(gear.model_dump(mode='json'), key.split('.'), factor)
-    return GearRecord.model_validate_json(json.dumps(data))
+    data = _scaled(gear.model_dump(), key.split('.'), factor)
+    return GearRecord.model_validate(data)
 
 
 def _scaled(value: object, way: list[str], factor: float) -> object:
@@ -52,11 +51,11 @@ def _scaled(value: object, way: list[str], factor: float) -> object:
     if not way:
         assert isinstance(value, float)
         return factor * value
-    if isinstance(value, list):
+    if isinstance(value, tuple):
         place = int(way[0])
-        return [
+        return tuple(
             _scaled(part, way[1:], factor) if k == place else part for k, part in enumerate(value)
-        ]
+        )
     assert isinstance(value, dict)
     return {**value, way[0]: _scaled(value[way[0]], way[1:], factor)}
 
