@@ -70,6 +70,23 @@ def coarse_gear(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.fixture(scope='session')
+def pair_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file of the planned net, cut coarsely, between two ships 200 m apart."""
+    data = yaml.safe_load(share_path('config', 'gear', 'krill_800.yaml').read_text())
+    del data['board'], data['ship']['block_spacing_m']
+    data['name'], data['pair'] = 'pair', {'distance_m': 200.0}
+    data['netting']['around'] = 24
+    path = tmp_path_factory.mktemp('pair') / 'pair.yaml'
+    path.write_text(yaml.safe_dump(data))
+    return path
+
+
+@pytest.fixture(scope='session')
+def pair_gear(pair_file: Path) -> GearRecord:
+    return load_gear(pair_file)
+
+
 @dataclass(frozen=True)
 class SteadyTow:
     """Steady states of the coarse gear, and bags of what instruments say in them."""

@@ -82,6 +82,15 @@ def test_a_pause_is_found_with_its_length_and_place(tmp_path):
     assert check.topics[0].gap_start == START + 99 * SECOND
 
 
+@pytest.mark.parametrize(('silent_s', 'kinds'), [(290, []), (310, ['gap'])])
+def test_an_acoustic_sensor_may_be_silent_for_minutes(tmp_path, silent_s, kinds):
+    stamps = [*range(0, 90, 3), *range(90 + silent_s, 600, 3)]
+    spreads = [
+        RangeSample(START + stamp * SECOND, 'spread', 120.0, 0.4, 1.0, 400.0) for stamp in stamps
+    ]
+    assert [kind for kind, _ in found(write(tmp_path / 'bag', spreads))] == kinds
+
+
 def test_pauses_as_short_as_a_lost_message_or_two_are_none(tmp_path):
     stamps = [second for second in range(200) if second % 10 not in (4, 5)]
     assert found(write(tmp_path / 'bag', pressures(stamps))) == []

@@ -105,6 +105,8 @@ def test_a_bag_without_windows_is_named_and_without_the_prior_all_is_less_known(
     done = identify(bag, short, '--out', tmp_path / 'out', '--no-prior')
     assert done.exit_code == 0, done.output
     assert f'Not used: {short}: no steady window was found' in done.stderr
+    # 1.8 times 200 m of warp and as much for the net, at 2.3 m/s.
+    assert 'heading held for up to 313 s here (1.8 gear lengths towed)' in done.stderr
     found = result_in(tmp_path / 'out')
     assert not found['prior_used']
     assert [tow['name'] for tow in found['tows']] == [str(bag)]

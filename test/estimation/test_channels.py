@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED, REQUIRED, readings
 from trawl_ros.records.samples import (
     AttitudeSample,
@@ -91,3 +92,12 @@ def test_a_bias_has_an_absolute_and_a_relative_part():
     depth = CHANNELS['net_depth']
     assert depth.bias_std(0.0) == depth.bias
     assert depth.bias_std(1e5) == pytest.approx(1e5 * depth.bias_fraction, rel=1e-4)
+
+
+def test_the_table_allows_for_the_biases_of_the_default_instruments():
+    ship = load_instruments()
+    for name, errors, usual in (
+        ('port_length', ship.winch.length, 200.0),
+        ('door_spread', ship.door.spread, 80.0),
+    ):
+        assert 0.0 < errors.model().bias_std <= CHANNELS[name].bias_std(usual)

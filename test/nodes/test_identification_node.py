@@ -124,8 +124,10 @@ def test_a_window_brings_estimate_covariance_status_and_innovation(session):
 
 def test_the_status_says_how_well_each_coefficient_is_known_and_what_is_not(session):
     values = session.first_status['coefficients'].values
+    # Data narrow what the prior says, by nothing at worst; a misfit widens all of it.
+    misfit = float(session.first_status['instruments'].values['misfit'])
     for name in COEFFICIENTS:
-        assert 0.0 <= float(values[f'{name} shrink']) <= 1.0
+        assert 1.0 - 1.001 * misfit <= float(values[f'{name} shrink']) <= 1.0
         assert values[f'{name} determined'] in ('true', 'false')
     assert float(values['condition number']) > 1.0
     # One window cannot tell twelve coefficients apart.

@@ -48,6 +48,11 @@ def test_a_winch_turns_round_when_it_is_told_to() -> None:
     assert path[-1] == Winch(500.0, 0.0)
 
 
+def test_a_winch_is_told_a_length_from_an_array() -> None:
+    length = np.array([500.0, 520.0])[1]
+    assert wind(Winch(500.0, 0.0), length, 0.1, 1.0) == wind(Winch(500.0, 0.0), 520.0, 0.1, 1.0)
+
+
 def test_a_ship_changes_speed_within_her_acceleration() -> None:
     ship = Ship(STILL, 0.3, 2.0, 0.0)
     speeds = []

@@ -44,6 +44,15 @@ def test_gear_that_is_towed_too_slowly_is_refused_in_bounded_time(
     assert time.process_time() - before < 10.0
 
 
+def test_a_tow_slowed_down_is_refused_from_where_it_was(
+    model: GearModel, steady: SteadyState
+) -> None:
+    slow = find_equilibrium(model, OperatingPoint(500.0, 500.0, 1.8), steady.equilibrium)
+    with pytest.raises(NoSteadyState, match=r'lean by 5.°.*, at 1.8 m/s with') as caught:
+        find_equilibrium(model, OperatingPoint(500.0, 500.0, 1.4), slow)
+    assert caught.value.reason == 'lift lost'
+
+
 def test_a_collapsed_board_is_refused(model: GearModel) -> None:
     points = np.array([[0.32, -0.25, -0.49], [-0.27, -0.51, 1.71], [-0.33, -0.18, -2.23]])
     with pytest.raises(NoSteadyState, match='only a collapsed state was found'):

@@ -17,6 +17,9 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.rigging import ropes_of
 
+BETWEEN = '_bridle', '_sweep', '_backstrop'
+"""Ends of the names of ropes between boards and net."""
+
 SPEEDS = (2.0, 3.0, 4.0)
 """Knots at which the drag is looked up."""
 
@@ -104,12 +107,14 @@ def weights_of(model: GearModel) -> dict[str, float]:
     water, bars, gear = model.water, model.bars, model.gear
     heavy = water.gravity * (bars.mass - water.density * bars.volume) * model.rest
     found = {
-        'boards': 2 * water.gravity * (gear.board.mass_kg - water.density * gear.board.volume_m3),
+        'boards' if gear.pair is None else 'plates': 2
+        * water.gravity
+        * (gear.board.mass_kg - water.density * gear.board.volume_m3),
     }
     for name, _, numbers in model.layout.lines:
         if name.endswith('_warp'):
             continue
-        part = 'bridles' if name.endswith('_bridle') else name
+        part = 'bridles' if name.endswith(BETWEEN) else name
         part = {'port_wing_end': 'side ropes', 'starboard_wing_end': 'side ropes'}.get(part, part)
         found[part] = found.get(part, 0.0) + float(heavy[numbers].sum())
     mesh = model.net_mesh
@@ -142,7 +147,8 @@ def drag_of_model(model: GearModel, knots: float) -> float:
     from trawl_ros.solver.first_guess import first_guess
     from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 
-    tow = steady_tow(model, OperatingPoint(500.0, 500.0, knots * KNOT))
+    warp = max(500.0, model.gear.block_distance)
+    tow = steady_tow(model, OperatingPoint(warp, warp, knots * KNOT))
     state = first_guess(model, tow, 0.0)
     motion = motion_of(model, points_of(model, state, tow), tow)
     loads = drag(model.bars, motion, tension(model.bars, motion)[1], model.water)
@@ -175,7 +181,9 @@ def draw_gear(check: GearCheck, folder: Path) -> list[Path]:
 
 def _derived(raw: dict[str, object], gear: GearRecord) -> Iterator[tuple[str, str]]:
     """Values of the record that the file does not give, ropes of the frame among them."""
-    yield from _missing('', raw, gear.model_dump(mode='json'))
+    # Plates stand in for boards and are told by their mass.
+    hidden = {'board', 'identification'} if gear.pair is not None else set()
+    yield from _missing('', raw, gear.model_dump(mode='json', exclude=hidden))
     plan = gear.netting.plan
     if plan is None:
         return

@@ -44,7 +44,8 @@ RATE_FACTOR = 12.0
 winches may come from 1 to 10 Hz, other instruments from 0.2 to 1 Hz, each with some jitter."""
 
 GAP_FACTOR = 10.0
-"""A pause is a finding when it is this many times the topic's median interval."""
+"""A pause is a finding when it is this many times the topic's median interval, and longer than
+instruments of its kind are silent at sea."""
 
 LAG_BOUND_S = 5.0
 """A difference between log time and header stamp that is a finding: acoustic links take up to a
@@ -256,11 +257,12 @@ def _against_contract(
         and not 1 / RATE_FACTOR < checked.rate / known.rate < RATE_FACTOR
     ):
         add('rate', f'comes at {checked.rate:.3g} Hz; expected about {known.rate:g} Hz')
-    if known.rate and (gaps := _gaps(record.intervals())):
+    if known.rate and (gaps := _gaps(record.intervals(), known.silence)):
         add(
             'gap',
-            f'pauses {len(gaps)} times for more than {GAP_FACTOR:g} median intervals, longest '
-            f'{max(gaps) / SECOND:.4g} s',
+            f'pauses {len(gaps)} times for more than '
+            + (f'{known.silence:g} s' if known.silence else f'{GAP_FACTOR:g} median intervals')
+            + f', longest {max(gaps) / SECOND:.4g} s',
         )
     if checked.backward:
         add('order', f'has {checked.backward} stamps before the one before; expected none')
@@ -281,11 +283,12 @@ def _against_contract(
     return findings
 
 
-def _gaps(intervals: list[int]) -> list[int]:
+def _gaps(intervals: list[int], silence_s: float) -> list[int]:
     if len(intervals) < 3:
         return []
     usual = median(intervals)
-    return [interval for interval in intervals if interval > GAP_FACTOR * usual > 0]
+    longest = max(GAP_FACTOR * usual, silence_s * SECOND)
+    return [interval for interval in intervals if interval > longest > 0]
 
 
 def _missing(there: set[str], namespace: str) -> dict[str, tuple[str, ...]]:

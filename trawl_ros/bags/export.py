@@ -88,7 +88,7 @@ def export_bag(
     >>> bag = trawl_ros.tow('tow.yaml', 'exported')
     >>> done = trawl_ros.export_bag(bag.path, 'tables', topics=['door/spread'])
     >>> [(table.file.name, table.rows) for table in done.topics]
-    [('trawl.door.spread.csv', 4)]
+    [('trawl.door.spread.csv', 2)]
     """
     folder = new_folder(Path(folder), BagError)
     bag = Bag(path, namespace=namespace, lenient=True)

@@ -86,7 +86,7 @@ def repair_bag(
     >>> (bag.path / 'metadata.yaml').unlink()
     >>> repair = trawl_ros.repair_bag(bag.path, Path('repaired'))
     >>> repair.whole, repair.saved['/trawl/door/spread']
-    (True, 4)
+    (True, 2)
     """
     with reading(path, BagError):
         damaged = _Damaged(path)

@@ -50,7 +50,8 @@ def check(gear: str, out: Path | None) -> None:
                 f'{piece.front_meshes:g}–{piece.back_meshes:g}',
                 f'{piece.long_meshes:g}',
                 f'{piece.length:.2f}',
-                f'{piece.material}{"" if piece.knots == "knotted" else " knotless"}',
+                f'{piece.material}{"" if piece.knots == "knotted" else " knotless"}'
+                f'{"" if piece.orientation == "T0" else f" {piece.orientation}"}',
                 f'{1e3 * piece.twine.diameter:.2f}',
                 f'{piece.twine_area:.1f}',
                 f'{piece.mass:.1f}',

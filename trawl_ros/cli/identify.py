@@ -83,7 +83,8 @@ def print_report(report: Report) -> None:
     console = Console(highlight=False, soft_wrap=True)
     width = None if console.is_terminal else TABLE_WIDTH
     console.print(opening_line(report), style='bold')
-    console.print(coefficient_table(report), width=width)
+    if not report.paired:
+        console.print(coefficient_table(report), width=width)
     console.print(channel_table(report), width=width)
     for line in closing_lines(report):
         console.print(line)

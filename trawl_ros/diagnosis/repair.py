@@ -65,6 +65,8 @@ def with_refitted_effects(gear: GearRecord, refit: Refit, origin: ProvenanceReco
         )
         for name, values in values_of(refit).items()
     )
+    if gear.pair is not None:
+        return gear.model_copy(update={'effects': effects})
     coefficients = CoefficientsRecord(**board)
     return gear.model_copy(
         update={

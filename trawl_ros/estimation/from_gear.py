@@ -1,5 +1,7 @@
 """Construction of predictor, window finder and estimator for a gear, with its file's prior."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from trawl_ros.effects.effect_set import effects_of
@@ -61,8 +63,13 @@ def identification_for(
     gear
         From `load_gear`: the model as it is believed, not the plant.
     window_options, estimator_options
-        Criteria of a steady window; options of the estimator.
+        Criteria of a steady window; options of the estimator. Of a gear without boards drag and
+        weight of the net are estimated in any case.
     """
+    if gear.pair is not None:
+        # Without boards drag and weight of the net are all that there is to estimate.
+        options = estimator_options or EstimatorOptions()
+        estimator_options = replace(options, net_drag=NET_STD, net_weight=NET_STD)
     return Identification(
         predictor_for(gear),
         board_prior(gear),

@@ -129,10 +129,10 @@ class Identification:
         counts = ', '.join(f'{reason} {count}' for reason, count in self.rejected.items())
         options = self.window_options
         return (
-            f'no steady window was found, so nothing is estimated: one needs '
-            f'{options.settle_s:g} s, or {options.settle_passages:g} gear lengths towed, with warp '
-            f'lengths, speed and heading held and then '
-            f'{options.window_s:g} s of steady readings (rejected: {counts or "none"})'
+            f'no steady window was found, so nothing is estimated: one needs warp lengths, speed '
+            f'and heading held for up to {self.finder.settle_s:.0f} s here '
+            f'({options.settle_passages:g} gear lengths towed) and then for {options.window_s:g} s '
+            f'of steady readings (rejected: {counts or "none"})'
         )
 
     def _about_missing(self, missing: Sequence[str]) -> str:

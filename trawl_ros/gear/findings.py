@@ -7,7 +7,8 @@ from math import pi
 
 from trawl_ros.gear.boards import plate_inertia
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
-from trawl_ros.gear.records import GearRecord, NettingRecord
+from trawl_ros.gear.netting import NettingRecord
+from trawl_ros.gear.records import GearRecord
 
 JOIN = 0.15
 """Part by which the stretched circumferences of two joined edges may differ: what a net maker
@@ -145,6 +146,8 @@ def _plan(gear: GearRecord, plan: NetPlanRecord) -> Iterator[GearFinding]:
             )
     rows = [pieces for part in ('body', 'codend') for _, pieces in plan.sections(part)]
     for ahead, behind in pairwise(rows):
+        if (ahead[0].orientation == 'square') != (behind[0].orientation == 'square'):
+            continue  # joined as the net maker counts, stretched meshes to open ones
         key = number[id(behind[0])]
         if {p.panel for p in ahead} == {p.panel for p in behind}:
             back = {p.panel: p.widths[1] for p in ahead}
@@ -209,6 +212,8 @@ def _rigging(gear: GearRecord) -> Iterator[GearFinding]:
 
 
 def _board(gear: GearRecord) -> Iterator[GearFinding]:
+    if gear.pair is not None:
+        return
     board = gear.board
     plate = board.span_m * board.chord_m
     if not 0.7 <= board.area_m2 / plate <= 1.15:

@@ -10,6 +10,7 @@ from trawl_ros.gear.twine import Material, Twine, twine_of
 
 Part = Literal['wing', 'body', 'codend']
 Panel = Literal['upper', 'lower', 'side', 'side_upper', 'side_lower', 'all']
+Orientation = Literal['T0', 'T90', 'square']
 Meshes = Annotated[float, Field(ge=0, le=100_000)]
 
 WING_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower')
@@ -49,7 +50,7 @@ class PieceRecord(Record):
     Counts of a ``wing`` are those of one of its two pieces (or of one, where ``pieces`` is 1: a
     panel that reaches further forward over its whole width), those of a panel of the ``body`` are
     its own, and those of ``all`` go all around. Where the count of one edge is missing it follows
-    from the ``cut``.
+    from the ``cut``. Counts of ``square`` meshes are those of their bars.
     """
 
     part: Part
@@ -66,6 +67,7 @@ class PieceRecord(Record):
     twines: Literal[1, 2] = 1
     pieces: Literal[1, 2] | None = None
     cut: str | None = None
+    orientation: Orientation = 'T0'
 
     @model_validator(mode='before')
     @classmethod
@@ -93,6 +95,11 @@ class PieceRecord(Record):
         allowed = WING_PANELS if self.part == 'wing' else BODY_PANELS
         if self.panel not in allowed:
             raise ValueError(f'panel: found {self.panel}, expected one of {", ".join(allowed)}')
+        if self.orientation == 'square' and self.part != 'codend':
+            raise ValueError(
+                f'orientation: found square in the {self.part}, expected T0 or T90: bars of square '
+                'meshes lie along and across the flow, which is modelled in the codend only'
+            )
         if self.cut is not None:
             try:
                 cut_slope(self.cut)
@@ -106,14 +113,19 @@ class PieceRecord(Record):
         return 1e-3 * self.mesh_mm
 
     @property
+    def pitch(self) -> float:
+        """Distance (m) that is counted: a stretched mesh, or the bar of a square one."""
+        return self.mesh if self.orientation != 'square' else 0.5 * self.mesh
+
+    @property
     def length(self) -> float:
         """Stretched length of the piece, m."""
-        return self.mesh * self.long_meshes
+        return self.pitch * self.long_meshes
 
     @property
     def widths(self) -> tuple[float, float]:
         """Stretched widths (m) of the front and the back edge."""
-        return self.mesh * self.front_meshes, self.mesh * self.back_meshes
+        return self.pitch * self.front_meshes, self.pitch * self.back_meshes
 
     @property
     def twine(self) -> Twine:
@@ -133,9 +145,9 @@ class PieceRecord(Record):
 
     @property
     def twine_length(self) -> float:
-        """Length of twine (m) in all such pieces: two meshes long per mesh."""
+        """Length of twine (m) in all such pieces: two meshes long per mesh, two bars per square."""
         meshes = 0.5 * (self.front_meshes + self.back_meshes) * self.long_meshes
-        return 2 * self.mesh * meshes * self.twines * self.count
+        return 2 * self.pitch * meshes * self.twines * self.count
 
     @property
     def twine_area(self) -> float:

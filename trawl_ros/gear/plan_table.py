@@ -11,7 +11,7 @@ from trawl_ros.core.limits import YAML_BYTES
 from trawl_ros.core.schema import validated
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
 
-TEXT = ('part', 'panel', 'section', 'material', 'knots', 'cut')
+TEXT = ('part', 'panel', 'section', 'material', 'knots', 'cut', 'orientation')
 WHOLE = ('twines', 'pieces')
 
 

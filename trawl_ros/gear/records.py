@@ -1,60 +1,27 @@
 """Records of the gear file: every key carries its unit, every value is checked on load."""
 
-from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
+from trawl_ros.core.errors import GearError
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
 from trawl_ros.gear.boards import CORRECTIONS, BoardRecord, StartRecord
-from trawl_ros.gear.net_plan import NetPlanRecord
+from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.numbers import Degrees, NotNegative, Positive
-from trawl_ros.gear.rigging import HungRecord, OwnBridleRecord
-
-
-class CurrentAt(Record):
-    """Current at a depth, to the east and the north."""
-
-    depth_m: NotNegative
-    east_m_s: Annotated[float, Field(ge=-3, le=3)]
-    north_m_s: Annotated[float, Field(ge=-3, le=3)]
-
-
-class TemperatureAt(Record):
-    """Temperature of the water at a depth."""
-
-    depth_m: NotNegative
-    temperature_deg_c: Annotated[float, Field(ge=-2, le=35)]
-
-
-class WaterRecord(Record):
-    """The sea: density rises linearly with depth; current and temperature follow the given depths.
-
-    Temperature and salinity decide on the speed of sound, and not on the density.
-    """
-
-    density_kg_m3: Annotated[float, Field(ge=990, le=1060)]
-    density_gradient_kg_m4: Annotated[float, Field(ge=0, le=0.1)] = 0.0
-    gravity_m_s2: Annotated[float, Field(ge=9.7, le=9.9)] = 9.80665
-    current: tuple[CurrentAt, ...] = ()
-    temperature: Annotated[tuple[TemperatureAt, ...], Field(min_length=1)] = (
-        TemperatureAt(depth_m=0.0, temperature_deg_c=8.0),
-    )
-    salinity_g_kg: Annotated[float, Field(ge=0, le=42)] = 35.0
-
-    @model_validator(mode='after')
-    def _depths_rise(self) -> 'WaterRecord':
-        for key, levels in (('current', self.current), ('temperature', self.temperature)):
-            depths = [level.depth_m for level in levels]
-            if any(b <= a for a, b in pairwise(depths)):
-                raise ValueError(f'{key}: depths must rise, found {depths}')
-        return self
+from trawl_ros.gear.pair import PairRecord, towing_plate
+from trawl_ros.gear.rigging import ENDS, HungRecord, OwnBridleRecord, SweepRecord
+from trawl_ros.gear.ropes import BridleRecord, FrameRopeRecord, WarpRecord
+from trawl_ros.gear.sea_water import WaterRecord
 
 
 class ShipRecord(Record):
-    """Ship: spacing of the towing blocks, and limits of acceleration and turning."""
+    """Ship: spacing of the towing blocks, and limits of acceleration and turning.
 
-    block_spacing_m: Annotated[float, Field(gt=0, le=50)]
+    The two ships of a pair have a distance in place of the spacing, see `PairRecord`.
+    """
+
+    block_spacing_m: Annotated[float, Field(gt=0, le=50)] | None = None
     max_acceleration_m_s2: Annotated[float, Field(gt=0, le=1)]
     max_turn_acceleration_deg_s2: Annotated[float, Field(gt=0, le=5)]
 
@@ -64,108 +31,6 @@ class WinchRecord(Record):
 
     max_speed_m_s: Annotated[float, Field(gt=0, le=5)]
     max_acceleration_m_s2: Annotated[float, Field(gt=0, le=5)]
-
-
-class RopeRecord(Record):
-    """Rope of one make; ``segments`` is the number of numerical bars it is cut into."""
-
-    diameter_m: Annotated[float, Field(gt=0, le=0.5)]
-    weight_in_water_n_m: float
-    stiffness_n: Positive
-    damping_time_s: NotNegative
-    normal_drag: NotNegative
-    tangential_drag: NotNegative
-    added_mass_normal: NotNegative
-    added_mass_tangential: NotNegative
-
-
-class WarpRecord(RopeRecord):
-    """Warp; its length is commanded to the winch."""
-
-    segments: Annotated[int, Field(ge=2, le=500)]
-
-
-class BridleRecord(RopeRecord):
-    """A bridle from a board to a wing tip."""
-
-    length_m: Positive
-    segments: Annotated[int, Field(ge=2, le=200)]
-
-
-class FrameRopeRecord(RopeRecord):
-    """Rope of the frame, from wing tip to wing tip.
-
-    Without a length it is as long as the hanging ratios of the net plan make it.
-    """
-
-    length_m: Positive | None = None
-
-
-class SectionRecord(Record):
-    """A section of netting, from front to back; its stretched circumference tapers linearly.
-
-    ``shielding`` is the part of the drag of single twines that is left in this netting, ``twines``
-    the number of them side by side in each bar.
-    """
-
-    name: str
-    length_m: Positive
-    front_circumference_m: Positive
-    back_circumference_m: Positive
-    mesh_m: Positive
-    twine_diameter_m: Annotated[float, Field(gt=0, le=0.1)]
-    twine_density_kg_m3: Annotated[float, Field(ge=500, le=8000)]
-    twine_modulus_pa: Positive
-    twines: Literal[1, 2] = 1
-    knotless: bool = False
-    shielding: Annotated[float, Field(gt=0, le=1)] = 1.0
-
-
-class NettingRecord(Record):
-    """The net: sections of diamond mesh, a codend, and how they are grouped; or its plan.
-
-    With a ``plan`` sections, codend and wings are those of its pieces.
-
-    ``around`` numerical meshes stand for the real ones of every row; a numerical row is as long
-    as keeps the angle of the meshes. ``body`` sections become netting, the ``codend`` sections
-    one line of ``codend_segments`` with the drag of its twine at the stated angle. Behind each
-    stretched circumference of ``halved_at_circumference_m`` half as many numerical meshes go
-    around as before it. ``bowing_pressure_pa`` is the load of the water across twine, per
-    projected area, under which it bows between its knots; without it bars are straight.
-    """
-
-    around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
-    halved_at_circumference_m: Annotated[tuple[Positive, ...], Field(max_length=4)] = ()
-    body: Annotated[tuple[SectionRecord, ...], Field(max_length=30)] = ()
-    codend: Annotated[tuple[SectionRecord, ...], Field(max_length=10)] = ()
-    plan: NetPlanRecord | None = None
-    codend_segments: Annotated[int, Field(ge=2, le=100)]
-    codend_mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)]
-    damping_time_s: NotNegative
-    normal_drag: NotNegative
-    friction: NotNegative
-    added_mass_normal: NotNegative
-    knot_diameters: NotNegative
-    knot_drag: NotNegative
-    knot_added_mass: NotNegative
-    wing_end_m: Positive | None = None
-    wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)] | None = None
-    bowing_pressure_pa: NotNegative = 0.0
-
-    @model_validator(mode='after')
-    def _one_form(self) -> 'NettingRecord':
-        outline = {
-            'body': self.body or None,
-            'codend': self.codend or None,
-            'wing_end_m': self.wing_end_m,
-            'wing_edge_hanging': self.wing_edge_hanging,
-        }
-        for key, value in outline.items():
-            if self.plan is None and value is None:
-                raise ValueError(f'{key}: missing, expected it, or a plan')
-            if self.plan is not None and value is not None:
-                raise ValueError(f'{key}: found beside a plan, expected one of them')
-        return self
 
 
 class KiteRecord(Record):
@@ -236,6 +101,9 @@ class GearRecord(Record):
         Ropes: lengths (m), diameters (m), weight in water (N/m), stiffness EA (N), drag.
     board
         Otter board: mass (kg), inertia (kg m²), area (m²), coefficients of eq. 14, fastening (m).
+        Of a pair trawl it is the plate to which warp and bridles are shackled.
+    pair
+        Distance of the two ships (m) that tow a gear without boards; None for one ship.
     netting
         Sections of the net, and how finely it is cut.
     kite, clump, floats
@@ -260,6 +128,7 @@ class GearRecord(Record):
     warp: WarpRecord
     bridle: BridleRecord
     board: BoardRecord
+    pair: PairRecord | None = None
     headrope: FrameRopeRecord
     footrope: FrameRopeRecord
     netting: NettingRecord
@@ -268,6 +137,7 @@ class GearRecord(Record):
     clump: ClumpRecord = ClumpRecord(weight_in_water_n=0.0, density_kg_m3=7800.0, drag_area_m2=0.0)
     floats: FloatRecord = FloatRecord(buoyancy_n=0.0, density_kg_m3=300.0, drag_area_m2=0.0)
     identification: StartRecord
+    sweep: SweepRecord | None = None
     bridles: Annotated[tuple[OwnBridleRecord, ...], Field(max_length=6)] = (
         OwnBridleRecord(name='upper', at_board='upper', at_net='upper'),
         OwnBridleRecord(name='lower', at_board='lower', at_net='lower'),
@@ -280,9 +150,45 @@ class GearRecord(Record):
     def _corrections(cls, data: object) -> object:
         if isinstance(data, dict) and 'identification' not in data:
             board = data.get('board')
-            if isinstance(board, dict) and board.get('law') is not None:
+            lawful = isinstance(board, dict) and board.get('law') is not None
+            if lawful or data.get('pair') is not None:
                 return {**data, 'identification': CORRECTIONS}
         return data
+
+    @model_validator(mode='before')
+    @classmethod
+    def _plates(cls, data: object) -> object:
+        if not isinstance(data, dict) or data.get('pair') is None or 'board' in data:
+            return data
+        try:
+            pair = PairRecord.model_validate(data['pair'])
+        except ValidationError:  # told of the pair's own keys
+            pair = PairRecord(distance_m=100.0)
+        return {**data, 'board': towing_plate(pair)}
+
+    @model_validator(mode='before')
+    @classmethod
+    def _forked(cls, data: object) -> object:
+        if not isinstance(data, dict) or data.get('sweep') is None or 'bridles' in data:
+            return data
+        forks = tuple(OwnBridleRecord(name=end, at_net=end) for end in ENDS)
+        return {**data, 'bridles': forks}
+
+    @model_validator(mode='after')
+    def _one_or_two_ships(self) -> 'GearRecord':
+        spacing = self.ship.block_spacing_m
+        if self.pair is None:
+            if spacing is None:
+                raise ValueError('ship.block_spacing_m: missing, expected a number (metres)')
+            return self
+        if spacing is not None:
+            raise ValueError(
+                f'ship.block_spacing_m: found {spacing:g} beside a pair, expected only '
+                'pair.distance_m'
+            )
+        if self.board != towing_plate(self.pair):
+            raise ValueError('board: found beside a pair, expected one of them')
+        return self
 
     @model_validator(mode='after')
     def _lengths(self) -> 'GearRecord':
@@ -297,13 +203,23 @@ class GearRecord(Record):
         names = [bridle.name for bridle in self.bridles]
         if len(set(names)) < len(names):
             raise ValueError(f'bridles: found the names {", ".join(names)}, expected each once')
-        for end, expected in (('at_board', ('upper', 'lower')), ('at_net', ('upper', 'lower'))):
-            missing = set(expected) - {getattr(bridle, end) for bridle in self.bridles}
+        for number, bridle in enumerate(self.bridles):
+            if self.sweep is None and bridle.at_board is None:
+                raise ValueError(f'bridles[{number}].at_board: missing, expected upper or lower')
+            if self.sweep is not None and bridle.at_board is not None:
+                raise ValueError(
+                    f'bridles[{number}].at_board: found {bridle.at_board} beside a sweep, expected '
+                    'none: all bridles begin at its end'
+                )
+        for end in ('at_net',) if self.sweep is not None else ('at_board', 'at_net'):
+            missing = set(ENDS) - {getattr(bridle, end) for bridle in self.bridles}
             if missing:
                 raise ValueError(
                     f'bridles: found none {end} {", ".join(sorted(missing))}, expected one at least'
                 )
         ropes = ['headrope', 'footrope', 'side_rope', *(f'{name}_bridle' for name in names)]
+        if self.sweep is not None:
+            ropes.append('sweep')
         for number, item in enumerate(self.hung):
             if item.rope not in ropes:
                 raise ValueError(
@@ -311,8 +227,38 @@ class GearRecord(Record):
                 )
         return self
 
-    def bridle_of(self, own: OwnBridleRecord) -> BridleRecord:
-        """Make of one of the bridles."""
+    @property
+    def block_distance(self) -> float:
+        """Distance (m) of the two towing blocks: of one ship's, or of the two ships of a pair."""
+        spacing = self.ship.block_spacing_m if self.pair is None else self.pair.distance_m
+        assert spacing is not None
+        return spacing
+
+    @property
+    def behind_boards(self) -> float:
+        """Length (m) of the longest way along ropes from a board to the net."""
+        ahead = 0.0
+        if self.sweep is not None:
+            backstrops = self.sweep.upper_backstrop_m, self.sweep.lower_backstrop_m
+            ahead = max(backstrops) + self.sweep.length_m
+        return ahead + max(self.bridle_of(own).length_m for own in self.bridles)
+
+    def require_boards(self, what: str) -> None:
+        """Refuse a gear without boards.
+
+        Raises
+        ------
+        GearError
+            For a pair trawl, with ``what`` was wanted of its boards.
+        """
+        if self.pair is not None:
+            raise GearError(
+                f"'{self.name}' is towed by two ships and has no boards, {what}; expected a gear "
+                'with boards'
+            )
+
+    def bridle_of(self, own: OwnBridleRecord | SweepRecord) -> BridleRecord:
+        """Make of one of the bridles, or of the sweep."""
         return self.bridle.model_copy(update=own.changes)
 
     def refined(
@@ -327,6 +273,10 @@ class GearRecord(Record):
                 'warp': self.warp.model_copy(update={'segments': self.warp.segments * warp}),
                 'bridle': self.bridle.model_copy(
                     update={'segments': self.bridle.segments * bridle}
+                ),
+                'sweep': self.sweep
+                and self.sweep.model_copy(
+                    update={'segments': self.bridle_of(self.sweep).segments * bridle}
                 ),
                 'bridles': tuple(
                     own

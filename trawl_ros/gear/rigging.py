@@ -7,24 +7,51 @@ from pydantic import Field, model_validator
 from trawl_ros.core.schema import Record
 from trawl_ros.gear.numbers import NotNegative, Positive, Share
 
+ENDS: tuple[Literal['upper'], Literal['lower']] = 'upper', 'lower'
+"""Wing tips, and points of a board, that have a bridle in any gear."""
+
 Name = Annotated[str, Field(pattern=r'^[a-z][a-z0-9_]{0,30}$')]
 
 
-class OwnBridleRecord(Record):
-    """A bridle on either side: from which of the board's points to which place of the net.
+class OwnMake(Record):
+    """Changes of a rope from the make of the bridles."""
 
-    It is made as ``bridle`` says, but for what is given here. ``side`` is the middle of the rope
-    between upper and lower wing tip.
-    """
-
-    name: Name
-    at_board: Literal['upper', 'lower']
-    at_net: Literal['upper', 'side', 'lower']
-    length_m: Positive | None = None
     diameter_m: Annotated[float, Field(gt=0, le=0.5)] | None = None
     weight_in_water_n_m: float | None = None
     stiffness_n: Positive | None = None
     segments: Annotated[int, Field(ge=2, le=200)] | None = None
+
+
+class SweepRecord(OwnMake):
+    """A rope on either side between backstrops and bridles.
+
+    Two backstrops of these lengths go from the board's upper and lower bridle point to its front
+    end; all bridles begin at its back end. All three are made as ``bridle`` says, but for what is
+    given here.
+    """
+
+    length_m: Positive
+    upper_backstrop_m: Positive
+    lower_backstrop_m: Positive
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """Values that are given here of the make of the bridle."""
+        lengths = {'upper_backstrop_m', 'lower_backstrop_m'}
+        return {k: v for k, v in self.model_dump(exclude=lengths).items() if v is not None}
+
+
+class OwnBridleRecord(OwnMake):
+    """A bridle on either side: from which of the board's points to which place of the net.
+
+    It is made as ``bridle`` says, but for what is given here. ``side`` is the middle of the rope
+    between upper and lower wing tip. Behind a sweep none has a place at the board.
+    """
+
+    name: Name
+    at_board: Literal['upper', 'lower'] | None = None
+    at_net: Literal['upper', 'side', 'lower']
+    length_m: Positive | None = None
 
     @property
     def changes(self) -> dict[str, float]:
@@ -36,9 +63,10 @@ class OwnBridleRecord(Record):
 class HungRecord(Record):
     """Weights, chain or floats on a rope, spread evenly from one share of its length to another.
 
-    Shares of a bridle count from the board to the net, those of headrope, footrope and the side
-    ropes from port to starboard or from the top down. What hangs on a bridle or on a side rope
-    hangs there on either side; on headrope and footrope the figures are those of the whole rope.
+    Shares of a bridle or sweep count from the board to the net, those of headrope, footrope and
+    side ropes from port to starboard or from the top down. What hangs on a bridle, a sweep or a
+    side rope hangs there on either side; on headrope and footrope the figures are those of the
+    whole rope.
     Figures in N/m are those of each metre of rope over which it is spread, as of a chain.
     """
 

@@ -75,7 +75,8 @@ class RangeParameters(LimitedLength, Timed):
     A share ``reflection_share`` of its readings are of echoes that came a longer way, by
     ``reflection_m`` in the mean, ``reflection_run`` of them in a row; a share
     ``ambiguity_share`` is taken for ``ambiguity_m`` more than it is, for it is heard in the
-    next period of the ranging, ``ambiguity_run`` of them in a row.
+    next period of the ranging, ``ambiguity_run`` of them in a row; a share ``double_share`` is
+    that of sound which went there and back twice, ``double_run`` of them in a row.
     """
 
     reflection_share: Share = 0.0
@@ -84,6 +85,8 @@ class RangeParameters(LimitedLength, Timed):
     ambiguity_share: Share = 0.0
     ambiguity_m: NotNegative = 0.0
     ambiguity_run: Annotated[float, Field(ge=1)] = 1.0
+    double_share: Share = 0.0
+    double_run: Annotated[float, Field(ge=1)] = 1.0
 
     @model_validator(mode='after')
     def _false_echoes_have_a_size(self) -> 'RangeParameters':
@@ -104,7 +107,8 @@ class RangeParameters(LimitedLength, Timed):
         ambiguous = FalseEchoModel(
             self.ambiguity_share, self.ambiguity_m, ambiguous=True, run=self.ambiguity_run
         )
-        echoes = tuple(model for model in (reflected, ambiguous) if model.share > 0)
+        double = FalseEchoModel(self.double_share, multiple=2.0, run=self.double_run)
+        echoes = tuple(model for model in (reflected, ambiguous, double) if model.share > 0)
         return replace(super().model(), false_echoes=echoes)
 
 

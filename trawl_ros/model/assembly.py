@@ -21,7 +21,8 @@ from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarMotion
 from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
-from trawl_ros.model.numerics import STEP, cross, outer, skew
+from trawl_ros.model.numerics import STEP, skew
+from trawl_ros.model.point_pass import fill_board_masses, fill_masses, fill_points, gather_loads
 from trawl_ros.model.rotations import rotation
 from trawl_ros.model.state import State, Tow
 
@@ -34,12 +35,6 @@ def rest_lengths(model: GearModel, tow: Tow) -> tuple[FloatArray, FloatArray]:
         rest[bars] = lengths[side]
         rate[bars] = tow.length_rates[side] / model.warp_segments
     return rest, rate
-
-
-def fastening(model: GearModel) -> FloatArray:
-    """Fastening points (2, 3, 3) of both boards in their door frames."""
-    points = model.board.fastening_points
-    return np.stack([points, points * np.array([1.0, -1.0, 1.0])])
 
 
 @dataclass(frozen=True)
@@ -55,14 +50,22 @@ class Points:
 
 def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     """Positions and velocities of all points at which bars can end."""
-    arms = np.einsum('sij,spj->spi', state.board_rotations, fastening(model))
-    positions = state.board_positions[:, None] + arms
-    velocities = state.board_velocities[:, None] + cross(state.board_rates[:, None], arms)
-    return Points(
-        np.concatenate([state.nodes, positions.reshape(6, 3), tow.blocks]),
-        np.concatenate([state.node_velocities, velocities.reshape(6, 3), tow.block_velocities]),
-        arms,
+    fastening, outward, *moving = alike(
+        model.board.fastening_points,
+        OUTWARD,
+        state.nodes,
+        state.node_velocities,
+        state.board_positions,
+        state.board_velocities,
+        state.board_rotations,
+        state.board_rates,
+        tow.blocks,
+        tow.block_velocities,
     )
+    x, v = np.empty((2, model.nodes + 8, 3), fastening.dtype)
+    arms = np.empty((2, 3, 3), fastening.dtype)
+    fill_points(fastening, outward, *moving, x, v, arms)
+    return Points(x, v, arms)
 
 
 def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
@@ -130,15 +133,22 @@ def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
     points = points_of(model, state, tow)
     x, v, rest, rate = alike(points.positions, points.velocities, *rest_lengths(model, tow))
-    n, total = model.nodes, np.zeros_like(x)
+    total = np.zeros_like(x)
     add_bar_forces(model.ends, x, v, rest, rate, model.bars.columns, water_of(model.water), total)
-    total[:n] += lump_forces(model, state)
+    total[: model.nodes] += lump_forces(model, state)
+    boards, kite = board_loads(model, state), kite_load(model, state)
+    return gathered(model, total, points.arms, boards, kite)
+
+
+def gathered(
+    model: GearModel, total: FloatArray, arms: FloatArray, boards: FloatArray, kite: FloatArray
+) -> FloatArray:
+    """Generalised forces (dof,) from the loads of points, boards and kite."""
     held = model.layout.kite
-    np.add.at(total, held.nodes, outer(held.shares, kite_load(model, state)))
-    ropes = total[n : n + 6].reshape(2, 3, 3)
-    boards = board_loads(model, state)
-    boards = boards + np.concatenate([ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1)
-    return np.concatenate([total[:n].ravel(), boards.ravel()])
+    given = alike(total, arms, boards, kite, held.shares)
+    force = np.empty(model.dof, given[0].dtype)
+    gather_loads(*given, held.nodes, force)
+    return force
 
 
 def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
@@ -206,11 +216,8 @@ def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
     pattern.add([c[:hung, 3:, 3:], rig_c, body_c, node_c, kite_c], damping)
 
     total[:n] += lump_forces(model, state)
-    held = model.layout.kite
-    np.add.at(total, held.nodes, outer(held.shares, kite_force))
-    ropes = total[n : n + 6].reshape(2, 3, 3)
-    boards = body_force + np.concatenate([ropes.sum(1), cross(points.arms, ropes).sum(1)], axis=1)
-    return LinearisedForces(np.concatenate([total[:n].ravel(), boards.ravel()]), stiffness, damping)
+    force = gathered(model, total, points.arms, body_force, kite_force)
+    return LinearisedForces(force, stiffness, damping)
 
 
 def _lift(model: GearModel, points: Points) -> FloatArray:
@@ -319,17 +326,23 @@ def mass(model: GearModel, state: State, tow: Tow) -> FloatArray:
         data,
         half,
     )
-    bars = np.zeros((rigged, 6, 6))
-    bars[:, :3, :3] = bars[:, 3:, 3:] = half[hung:]
-    lift = _lift(model, points)
-    rigged_mass = np.swapaxes(lift, 1, 2) @ bars @ lift
-    body = np.zeros((2, 6, 6))
-    turn = state.board_rotations
-    added = turn * model.board.added_mass @ np.swapaxes(turn, 1, 2)
-    body[:, :3, :3] = model.board.mass * np.eye(3) + added
-    body[:, 3:, 3:] = board_physics.world_inertia(model.board, OUTWARD, turn)
+    rigged_mass, body, board = np.empty((rigged, 9, 9)), np.empty((2, 6, 6)), model.board
+    fill_board_masses(
+        float(board.mass),
+        board.inertia,
+        board.added_mass,
+        OUTWARD,
+        state.board_rotations,
+        points.arms,
+        half[hung:],
+        pattern.rig_board,
+        pattern.rig_point,
+        rigged_mass,
+        body,
+    )
+    lumps, canvas, held = np.empty((model.nodes, 3, 3)), np.empty((9, 9)), model.layout.kite
     density = model.water.density_at(state.nodes[:, 2])
-    lumps = (model.lump_mass + density * model.lump_added)[:, None, None] * np.eye(3)
-    canvas = model.kite.mass * np.diag(np.repeat(model.layout.kite.shares, 3))[None]
+    kite = model.kite.mass * held.shares
+    fill_masses(model.lump_mass, model.lump_added, density, kite, lumps, canvas)
     pattern.add([half[:hung], rigged_mass, body, lumps, canvas], data)
     return data

@@ -85,22 +85,39 @@ class Board:
         return LAW_RANGE if self.law is None else self.law.range
 
     @cached_property
+    def installed(self) -> FloatArray:
+        """Rotation (3, 3) of the installation angles: points times it are in the board frame."""
+        yaw, pitch, roll = self.installation
+        return about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
+
+    @cached_property
     def fastening_points(self) -> FloatArray:
         """Fastening points (3, 3) in the outward board frame, installation angles applied."""
-        yaw, pitch, roll = self.installation
-        turn = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
-        return self.points @ turn
+        return self.points @ self.installed
 
-    @property
-    def rotary_areas(self) -> FloatArray:
-        """Second moments of the board's area about its x and z axes, m⁴, none about y."""
+    @cached_property
+    def rotary_resistance(self) -> FloatArray:
+        """Rotary slope times second moments of area about the x and z axes, m⁴; none about y."""
         b, chord = self.span, self.chord
-        return np.array([chord * b**3 / 12, 0.0, b * chord**3 / 12])
+        areas: FloatArray = np.array([chord * b**3 / 12, 0.0, b * chord**3 / 12])
+        return self.rotary_slope * areas
 
     @property
     def levers(self) -> FloatArray:
         """Lever lengths d_x, d_y, d_z of eq. 13, m."""
         return np.array([self.span, np.hypot(self.span, self.chord), self.chord])
+
+    @cached_property
+    def signed_levers(self) -> FloatArray:
+        """Lever lengths with the signs of the moments."""
+        levers: FloatArray = self.levers * np.asarray(self.moment_signs)
+        return levers
+
+    @cached_property
+    def middle(self) -> FloatArray:
+        """Mean (3,) of the fastening points in the outward frame, m, whose velocity eq. 4 takes."""
+        mean: FloatArray = self.fastening_points.sum(0) / 3
+        return mean
 
 
 def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) -> FloatArray:
@@ -173,7 +190,7 @@ def flow_at(
     outward = np.broadcast_to(outward, shape)
     relative = np.broadcast_to(water.current(position[..., 2]) - velocity, (*shape, 3))
     given = (
-        board.fastening_points.sum(0) / 3,
+        board.middle,
         outward.ravel(),
         np.broadcast_to(rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
         relative.reshape(-1, 3),
@@ -201,9 +218,13 @@ def hydrodynamics(
         coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
     given = flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
     loads = np.empty((2, *given[1].shape), complex)
-    levers = board.levers * np.asarray(board.moment_signs)
     fill_loads(
-        float(board.area), levers, board.flow_axes, *as_kind(complex, *given), loads[0], loads[1]
+        float(board.area),
+        board.signed_levers,
+        board.flow_axes,
+        *as_kind(complex, *given),
+        loads[0],
+        loads[1],
     )
     force, moment = _like(given, loads)
     return force.reshape(flow.flow.shape), moment.reshape(flow.flow.shape)
@@ -236,7 +257,7 @@ def own_load(
     )
     given = (
         values,
-        board.fastening_points.sum(0) / 3,
+        board.middle,
         _flat(outward, shape),
         _flat(position, shape, 3),
         _flat(rotation, shape, 3, 3),
@@ -244,7 +265,7 @@ def own_load(
         _flat(rate, shape, 3),
     )
     total = np.empty((len(given[2]), 6), complex)
-    turning = board.inertia, board.rotary_slope * board.rotary_areas
+    turning = board.inertia, board.rotary_resistance
     if board.bend is None and board.law is None:
         fill_own_loads(
             board.flow_axes,
@@ -252,7 +273,7 @@ def own_load(
             float(board.mass),
             float(board.volume),
             float(board.area),
-            board.levers * np.asarray(board.moment_signs),
+            board.signed_levers,
             *turning,
             *as_kind(complex, *given),
             water_of(water),

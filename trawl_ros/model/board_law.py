@@ -41,7 +41,7 @@ def angle_at(y: float, x: float) -> float:
 
 
 @inner
-def _settled(value: float, low: float, high: float) -> float:
+def settled(value: float, low: float, high: float) -> float:
     """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
     if value.real > high:
         if value.real - high < ROUNDING:
@@ -55,13 +55,13 @@ def _settled(value: float, low: float, high: float) -> float:
 
 
 @inner
-def _fading(attack: float) -> float:
-    """Fade factor of the law: 1 inside its range, falling smoothly to 0 at `LAW_END`."""
+def fading(attack: float, low: float, high: float) -> float:
+    """Fade factor of a law: 1 inside its range [low, high], falling smoothly to 0 at `LAW_END`."""
     share = 0 * attack
-    if attack.real > LAW_RANGE[1]:
-        share = (attack - LAW_RANGE[1]) / (LAW_END[1] - LAW_RANGE[1])
-    elif attack.real < LAW_RANGE[0]:
-        share = (attack - LAW_RANGE[0]) / (LAW_END[0] - LAW_RANGE[0])
+    if attack.real > high:
+        share = (attack - high) / (LAW_END[1] - high)
+    elif attack.real < low:
+        share = (attack - low) / (LAW_END[0] - low)
     if share.real > 1.0:
         share = 0 * attack + 1.0
     return 1.0 - share**2 * (3.0 - 2.0 * share)
@@ -93,10 +93,10 @@ def fill_coefficients(
     a1, c1, a2, c2, b3, c3 = values[0], values[1], values[2], values[3], values[4], values[5]
     a4, c4, b5, c5, a6, c6 = values[6], values[7], values[8], values[9], values[10], values[11]
     for n in range(len(attack)):
-        fade = _fading(attack[n])
-        alpha = _settled(attack[n], LAW_RANGE[0], LAW_RANGE[1])
-        beta = _settled(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
-        resistance = a1 * _settled(_folded(attack[n]), LAW_RANGE[0], LAW_RANGE[1]) + c1
+        fade = fading(attack[n], LAW_RANGE[0], LAW_RANGE[1])
+        alpha = settled(attack[n], LAW_RANGE[0], LAW_RANGE[1])
+        beta = settled(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
+        resistance = a1 * settled(_folded(attack[n]), LAW_RANGE[0], LAW_RANGE[1]) + c1
         coefficients[n, 0] = resistance if resistance.real > 0.0 else 0 * resistance
         coefficients[n, 1] = (a2 * alpha + c2) * fade
         coefficients[n, 2] = b3 * beta * fade + c3

@@ -8,18 +8,14 @@ identification refits. Outside the table lift and moments fade and drag stays, a
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import radians
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.polars import Polar
-from trawl_ros.model.board_law import LAW_END, SLIP_LIMIT
-from trawl_ros.model.compiled import alike, compiled
-
-ROUNDING = radians(4.0)
-"""Width (rad) over which an angle comes to rest outside the table."""
+from trawl_ros.model.board_law import SLIP_LIMIT, fading, settled
+from trawl_ros.model.compiled import alike, compiled, inner
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,21 +54,7 @@ class TableLaw:
         return coefficients.reshape(*shape, 6)
 
 
-@compiled
-def _rested(value: float, low: float, high: float) -> float:
-    """The angle inside [low, high], coming to rest smoothly within `ROUNDING` outside."""
-    if value.real > high:
-        if value.real - high < ROUNDING:
-            return value - (value - high) ** 2 / (2 * ROUNDING)
-        return 0 * value + high + ROUNDING / 2
-    if value.real < low:
-        if low - value.real < ROUNDING:
-            return value + (value - low) ** 2 / (2 * ROUNDING)
-        return 0 * value + low - ROUNDING / 2
-    return value
-
-
-@compiled
+@inner
 def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> float:
     """A column of the table at an angle; constant ahead of its first point."""
     place = 0
@@ -96,19 +78,12 @@ def _fill(
 ) -> None:
     low, high = knots[0], knots[-1]
     for n in range(len(attack)):
-        alpha = _rested(attack[n], low, high)
-        beta = _rested(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
-        share = 0 * alpha
-        if attack[n].real > high:
-            share = (attack[n] - high) / (LAW_END[1] - high)
-        elif attack[n].real < low:
-            share = (attack[n] - low) / (LAW_END[0] - low)
-        if share.real > 1.0:
-            share = 0 * alpha + 1.0
-        fade = 1.0 - share**2 * (3.0 - 2.0 * share)
+        alpha = settled(attack[n], low, high)
+        beta = settled(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
+        fade = fading(attack[n], low, high)
         lift = _piece(knots, cubics, 0, alpha) + values[2] * alpha + values[3]
         # Flow on the inner face meets as much board as on the outer.
-        folded = alpha if attack[n].real >= 0.0 else _rested(-attack[n], low, high)
+        folded = alpha if attack[n].real >= 0.0 else settled(-attack[n], low, high)
         drag = _piece(knots, cubics, 1, folded) + values[0] * folded + values[1]
         ahead = _piece(knots, cubics, 2, alpha)
         across = lift * np.cos(alpha) + drag * np.sin(alpha)

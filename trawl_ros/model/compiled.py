@@ -13,7 +13,7 @@ Given = ParamSpec('Given')
 Result = TypeVar('Result')
 Returned = TypeVar('Returned', covariant=True)
 
-# Calls from C, which nobody makes, would take a wrapper more; numba's types lack that option.
+# Calls from C, which nobody makes, would take a wrapper more.
 OPTIONS = {'cache': True, 'error_model': 'numpy', 'no_cfunc_wrapper': True}
 
 
@@ -38,27 +38,31 @@ class Compiled(Protocol[Returned]):
 
 def compiled(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile a function."""
-    return cast(Compiled[Result], njit(**OPTIONS)(function))  # type: ignore[call-overload]
+    return _compiled(function)
 
 
 def inner(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile a function that only compiled ones call: a wrapper for Python would take a fifth of
     its compilation.
     """
-    return cast(Compiled[Result], njit(**OPTIONS, no_cpython_wrapper=True)(function))  # type: ignore[call-overload]
+    return _compiled(function, no_cpython_wrapper=True)
 
 
 def inlined(function: Callable[Given, Result]) -> Compiled[Result]:
     """Write a function into the compiled one that calls it, before that is compiled: done apart,
     its machine code would be optimised once by itself and again in each that calls it.
     """
-    return cast(Compiled[Result], njit(**OPTIONS, inline='always')(function))  # type: ignore[call-overload]
+    return _compiled(function, inline='always')
 
 
 def fused(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile sums of products, which may be fused and taken in any order."""
-    fastmath = {'contract', 'reassoc', 'nsz'}
-    return cast(Compiled[Result], njit(**OPTIONS, fastmath=fastmath)(function))  # type: ignore[call-overload]
+    return _compiled(function, fastmath={'contract', 'reassoc', 'nsz'})
+
+
+def _compiled(function: Callable[Given, Result], **options: object) -> Compiled[Result]:
+    # numba's types lack some of the options.
+    return cast(Compiled[Result], njit(**OPTIONS, **options)(function))  # type: ignore[call-overload]
 
 
 def is_cached(function: Compiled[object]) -> bool:
@@ -79,6 +83,9 @@ def stepped_among(*arrays: FloatArray) -> bool:
 
 def as_kind(kind: type[float] | type[complex], *arrays: FloatArray) -> list[FloatArray]:
     """Arrays of the given kind, as compiled loops take them."""
-    rows = [np.ascontiguousarray(array, kind) for array in arrays]
-    # A loop would be compiled once more for an array that cannot be written to.
-    return [row if row.flags.writeable else row.copy() for row in rows]
+    rows = []
+    for array in arrays:
+        row = np.ascontiguousarray(array, kind)
+        # A loop would be compiled once more for an array that cannot be written to.
+        rows.append(row if row.flags.writeable else row.copy())
+    return rows

@@ -22,7 +22,15 @@ from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
-from trawl_ros.model.rigging import GearBuilder, add_bridles, bridle_ends_of, hung_places, rope_row
+from trawl_ros.model.rigging import (
+    GearBuilder,
+    add_bridles,
+    add_sweeps,
+    bridle_ends_of,
+    hung_places,
+    rigging_nodes,
+    rope_row,
+)
 from trawl_ros.model.water import Water, build_water
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -36,13 +44,15 @@ class NodeLayout:
 
     ``warps`` and ``bridles`` are tuples of node arrays (warps from block to board, port and
     starboard; bridles from board to net in the order of the gear file, port's, then
-    starboard's), ``bridle_ends`` the net's nodes at which these end, ``net`` the net's nodes;
+    starboard's), ``bridle_ends`` the net's nodes at which these end, ``sweeps`` the nodes of the
+    sweeps from backstrops to bridles, none where there are no sweeps, ``net`` the net's nodes;
     ``lines`` (name, point numbers, bar numbers) of everything to be drawn.
     """
 
     warps: tuple[IntArray, IntArray]
     bridles: tuple[IntArray, ...]
     bridle_ends: IntArray
+    sweeps: tuple[IntArray, ...]
     net: IntArray
     headrope: IntArray
     footrope: IntArray
@@ -107,6 +117,11 @@ class GearModel:
     def warp_segments(self) -> int:
         """Bars per warp."""
         return self.gear.warp.segments
+
+    @property
+    def paired(self) -> bool:
+        """True for a gear that two ships tow without boards."""
+        return self.gear.pair is not None
 
     @cached_property
     def warp_bars(self) -> tuple[IntArray, IntArray]:
@@ -238,10 +253,10 @@ def build_model(gear: GearRecord) -> GearModel:
         warps.append(own)
         points = [build.BLOCK - side, *own, build.FASTENING - 3 * side]
         top_bars.append(build.rope(name, points, [1.0] * segments, warp_row, side)[0])
-    bridle_nodes = sum(gear.bridle_of(own).segments - 1 for own in gear.bridles)
-    net_first = build.count + 2 * bridle_nodes
+    net_first = build.count + 2 * rigging_nodes(gear)
     bridle_ends = [net_first + node for node in bridle_ends_of(gear, mesh)]
-    bridles = add_bridles(build, gear, water, bridle_ends)
+    sweeps = add_sweeps(build, gear, water)
+    bridles = add_bridles(build, gear, water, bridle_ends, sweeps)
     net = build.nodes(len(mesh.positions))
 
     record = gear.netting
@@ -305,6 +320,7 @@ def build_model(gear: GearRecord) -> GearModel:
             warps=(warps[0], warps[1]),
             bridles=tuple(bridles),
             bridle_ends=np.array(bridle_ends),
+            sweeps=tuple(sweeps),
             net=net,
             headrope=net[mesh.headrope],
             footrope=net[mesh.footrope],

@@ -1,11 +1,14 @@
-"""The canvas kite on the headrope (eq. 29-33)."""
+"""The canvas kite on the headrope (eq. 29-33), compiled for complex numbers as the boards' law."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.numerics import angle, dot, length
+from trawl_ros.model.bar_pass import WaterTable, water_of
+from trawl_ros.model.board_law import angle_at
+from trawl_ros.model.compiled import as_kind, compiled, stepped_among
+from trawl_ros.model.current import current_at
 from trawl_ros.model.water import Water
 
 
@@ -28,10 +31,25 @@ def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArr
     """Attack angle a_c (rad): pitch of the line through both carrying nodes in the vertical
     plane (eq. 31), plus the rise of the flow (eq. 32), plus the setting angle.
     """
-    chord = front - rear
-    pitch = angle(chord[..., 2], length(chord[..., :2], 1e-9))
-    rise = angle(flow[..., 2], length(flow[..., :2], 1e-9))
-    return pitch + rise + kite.setting
+    given = front, rear, flow
+    attack = np.empty(front.shape[:-1], complex)
+    rows = [row.reshape(-1, 3) for row in as_kind(complex, *given)]
+    fill_attack_angles(float(kite.setting), *rows, attack.reshape(-1))
+    return attack if stepped_among(*given) else attack.real
+
+
+@compiled
+def fill_attack_angles(
+    setting: float, front: FloatArray, rear: FloatArray, flow: FloatArray, attack: FloatArray
+) -> None:
+    """Fill in the attack angles (n,)."""
+    for n in range(len(attack)):
+        chord, level = 1e-18 + 0 * flow[n, 0], 1e-18 + 0 * flow[n, 0]
+        for i in range(2):
+            chord += (front[n, i] - rear[n, i]) ** 2
+            level += flow[n, i] ** 2
+        pitch = angle_at(front[n, 2] - rear[n, 2], np.sqrt(chord))
+        attack[n] = pitch + angle_at(flow[n, 2], np.sqrt(level)) + setting
 
 
 def load(
@@ -48,15 +66,46 @@ def load(
     C_L = ``lift`` sin 2a / 2 and C_D = ``drag_base`` + ``drag_growth`` sin² a: a flat canvas,
     whose constants the gear file states.
     """
-    height = 0.5 * (front[..., 2] + rear[..., 2])
-    density = water.density_at(height)
-    flow = water.current(height) - 0.5 * (front_velocity + rear_velocity)
-    attack = attack_angle(kite, front, rear, flow)
-    speed = length(flow, 1e-9)
-    pressure = 0.5 * density * kite.area
-    lift = pressure * 0.5 * kite.lift * np.sin(2 * attack) * dot(flow, flow)
-    resistance = pressure * (kite.drag_base + kite.drag_growth * np.sin(attack) ** 2) * speed
-    heavy = (kite.mass - density * kite.volume) * water.gravity
-    force: FloatArray = resistance[..., None] * flow
-    force[..., 2] += lift - heavy
-    return force
+    given = front, rear, front_velocity, rear_velocity
+    rows = [row.reshape(-1, 3) for row in as_kind(complex, *given)]
+    force = np.empty_like(rows[0])
+    constants = kite.setting, kite.area, kite.mass, kite.volume, kite.lift
+    fill_loads(
+        (*map(float, (*constants, kite.drag_base, kite.drag_growth)),),
+        *rows,
+        water_of(water),
+        force,
+    )
+    found = force.reshape(front.shape)
+    return found if stepped_among(*given) else found.real
+
+
+@compiled
+def fill_loads(
+    constants: tuple[float, ...],
+    front: FloatArray,
+    rear: FloatArray,
+    front_velocity: FloatArray,
+    rear_velocity: FloatArray,
+    water: WaterTable,
+    force: FloatArray,
+) -> None:
+    """Fill in the forces (n, 3) on kites."""
+    setting, area, mass, volume, lift, drag_base, drag_growth = constants
+    density, gradient, gravity, knots, cubics = water
+    flow, attack = np.empty_like(force), np.empty_like(force[:, 0])
+    shear = np.empty(3)
+    for n in range(len(force)):
+        current_at(knots, cubics, 0.5 * (front[n, 2] + rear[n, 2]), flow[n], shear)
+        for i in range(3):
+            flow[n, i] -= 0.5 * (front_velocity[n, i] + rear_velocity[n, i])
+    fill_attack_angles(setting, front, rear, flow, attack)
+    for n in range(len(force)):
+        here = density - gradient * 0.5 * (front[n, 2] + rear[n, 2])
+        square = flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2
+        pressure = 0.5 * here * area
+        drag = drag_base + drag_growth * np.sin(attack[n]) ** 2
+        for i in range(3):
+            force[n, i] = pressure * drag * np.sqrt(square + 1e-18) * flow[n, i]
+        raised = pressure * 0.5 * lift * np.sin(2 * attack[n]) * square
+        force[n, 2] += raised - (mass - here * volume) * gravity

@@ -15,6 +15,9 @@ COLLAPSED_NORMAL, LYING_SPAN = -0.35, 0.5
 span, below which, inclined by 60°, it lies on its back or hangs upside down.
 """
 
+LYING = np.sin(np.radians(50.0))
+"""Vertical part of a board's outward normal, up or down, from which it lies over."""
+
 
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:
     """Compute the observables of a state; complex states give complex values."""
@@ -78,6 +81,11 @@ def fallen_boards(state: State) -> tuple[bool, bool]:
     up = np.real(state.board_rotations[:, 2, 2])
     port, starboard = (outward_normal_lift(state) < COLLAPSED_NORMAL) | (up < LYING_SPAN)
     return bool(port), bool(starboard)
+
+
+def lies_over(model: GearModel, state: State) -> bool:
+    """True if a board leans by 50° and more; the plates of a pair trawl may lie as they will."""
+    return not model.paired and bool(np.abs(outward_normal_lift(state)).max() > LYING)
 
 
 def highest_point(model: GearModel, state: State) -> float:

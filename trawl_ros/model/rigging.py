@@ -3,8 +3,9 @@
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.gear.records import GearRecord, RopeRecord
-from trawl_ros.gear.rigging import HungRecord
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.gear.rigging import ENDS, HungRecord
+from trawl_ros.gear.ropes import RopeRecord
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.water import Water
 
@@ -96,10 +97,39 @@ def bridle_ends_of(gear: GearRecord, mesh: NetMesh) -> list[int]:
     return ends
 
 
+def rigging_nodes(gear: GearRecord) -> int:
+    """Number of nodes between a board and the net."""
+    bridles = sum(gear.bridle_of(own).segments - 1 for own in gear.bridles)
+    return bridles if gear.sweep is None else bridles + gear.bridle_of(gear.sweep).segments + 1
+
+
+def add_sweeps(build: GearBuilder, gear: GearRecord, water: Water) -> list[IntArray]:
+    """Sweeps with the backstrops that hold them, port's first; none where bridles end at boards."""
+    sweep = gear.sweep
+    if sweep is None:
+        return []
+    record, lines = gear.bridle_of(sweep), []
+    row = rope_row(record, water)
+    for side, name in enumerate(('port', 'starboard')):
+        line = build.nodes(record.segments + 1)
+        lines.append(line)
+        lengths = sweep.upper_backstrop_m, sweep.lower_backstrop_m
+        for point, (end, length) in enumerate(zip(ENDS, lengths, strict=True), 1):
+            fastening = build.FASTENING - (3 * side + point)
+            build.rope(f'{name}_{end}_backstrop', [fastening, int(line[0])], [length], row)
+        rests = [record.length_m / record.segments] * record.segments
+        build.rope(f'{name}_sweep', line.tolist(), rests, row)
+    return lines
+
+
 def add_bridles(
-    build: GearBuilder, gear: GearRecord, water: Water, ends: list[int]
+    build: GearBuilder,
+    gear: GearRecord,
+    water: Water,
+    ends: list[int],
+    sweeps: list[IntArray],
 ) -> list[IntArray]:
-    """All bridles from their boards' points to their ``ends``, port's first."""
+    """All bridles from boards' points or sweeps to their ``ends``, port's first."""
     nodes, points = [], {'upper': 1, 'lower': 2}
     for number, end in enumerate(ends):
         side, which = divmod(number, len(gear.bridles))
@@ -107,10 +137,14 @@ def add_bridles(
         record = gear.bridle_of(own)
         line = build.nodes(record.segments - 1)
         nodes.append(line)
-        fastening = build.FASTENING - (3 * side + points[own.at_board])
+        if sweeps:
+            start = int(sweeps[side][-1])
+        else:
+            assert own.at_board is not None
+            start = build.FASTENING - (3 * side + points[own.at_board])
         rests = [record.length_m / record.segments] * record.segments
         name = f'{("port", "starboard")[side]}_{own.name}_bridle'
-        build.rope(name, [fastening, *line, end], rests, rope_row(record, water))
+        build.rope(name, [start, *line, end], rests, rope_row(record, water))
     return nodes
 
 
@@ -118,7 +152,7 @@ def ropes_of(item: HungRecord) -> list[str]:
     """Names of the lines on which it hangs."""
     if item.rope == 'side_rope':
         return ['port_wing_end', 'starboard_wing_end']
-    if item.rope.endswith('_bridle'):
+    if item.rope.endswith('_bridle') or item.rope == 'sweep':
         return [f'{side}_{item.rope}' for side in ('port', 'starboard')]
     return [item.rope]
 

@@ -1,4 +1,4 @@
-"""Rotation matrices of rotation vectors, compiled."""
+"""Rotation matrices of rotation vectors, and back, compiled."""
 
 import numpy as np
 
@@ -47,3 +47,41 @@ def about_axis(axis: int, radians: float) -> FloatArray:
     vector = np.zeros(3)
     vector[axis] = radians
     return rotation(vector)
+
+
+def rotation_vector(matrices: FloatArray) -> FloatArray:
+    """Rotation vectors of real rotation matrices, the inverse of `rotation` for turns of less
+    than π, shape (..., 3, 3) -> (..., 3).
+    """
+    (flat,) = alike(matrices.reshape(-1, 3, 3))
+    vectors = np.empty((len(flat), 3))
+    _fill_vectors(flat, vectors)
+    return vectors.reshape(matrices.shape[:-1])
+
+
+@compiled
+def _fill_vectors(matrices: FloatArray, vectors: FloatArray) -> None:
+    for n in range(len(matrices)):
+        turn = matrices[n]
+        # Unit quaternion (x, y, z, w), from the largest of its parts (Shepperd 1978).
+        trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
+        best, most = 3, trace
+        for i in range(3):
+            if turn[i, i] > most:
+                best, most = i, turn[i, i]
+        if best == 3:
+            for i in range(3):
+                j, k = (i + 1) % 3, (i + 2) % 3
+                vectors[n, i] = turn[k, j] - turn[j, k]
+            w = 1.0 + trace
+        else:
+            i, j, k = best, (best + 1) % 3, (best + 2) % 3
+            vectors[n, i] = 1.0 + 2.0 * turn[i, i] - trace
+            vectors[n, j] = turn[j, i] + turn[i, j]
+            vectors[n, k] = turn[k, i] + turn[i, k]
+            w = turn[k, j] - turn[j, k]
+            if w < 0.0:
+                w = -w
+                vectors[n] *= -1.0
+        size = np.sqrt(vectors[n, 0] ** 2 + vectors[n, 1] ** 2 + vectors[n, 2] ** 2)
+        vectors[n] *= 2.0 * np.arctan2(size, w) / size if size > 1e-12 * w else 2.0 / w

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.rotations import rotation
+from trawl_ros.model.rotations import rotation, rotation_vector
 
 
 @dataclass(frozen=True)
@@ -103,7 +102,7 @@ def halfway(first: State, last: State, h: float) -> State:
         last.board_velocities,
     )
     turn = last.board_rotations @ np.swapaxes(first.board_rotations, 1, 2)
-    turns = Rotation.from_matrix(turn).as_rotvec(), first.board_rates, last.board_rates
+    turns = rotation_vector(turn), first.board_rates, last.board_rates
     return State(
         nodes=first.nodes + place(*nodes),
         board_positions=first.board_positions + place(*boards),

@@ -85,6 +85,11 @@ class Water:
         """Velocity of the water at heights ``z``, shape (..., 3), m/s in ``map``."""
         return self._currents_at(z)[0]
 
+    @cached_property
+    def surface_current(self) -> FloatArray:
+        """Velocity (3,) of the water at the surface, m/s in ``map``."""
+        return self.current(np.array(0.0))
+
     def current_slope(self, z: FloatArray) -> FloatArray:
         """Derivative of the current by height, shape (..., 3), 1/s."""
         return self._currents_at(z)[1]

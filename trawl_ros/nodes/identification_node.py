@@ -99,7 +99,9 @@ class IdentificationNode(TrawlNode):
         self._sent: Estimate | None = None
         self._telling = Lock()
         self._advice: tuple[Advice | None, str] = None, ''
-        self._adviser = self._advising() if parameters['advise'] else None
+        # Manoeuvres are proposed for what they tell of boards.
+        advised = parameters['advise'] and self._gear.pair is None
+        self._adviser = self._advising() if advised else None
         self._worker = IdentificationWorker(
             identification, self._publish, self._progress.done, self._save, self._report
         )

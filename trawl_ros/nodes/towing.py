@@ -23,7 +23,9 @@ OTHER_STARTS = ((500.0, 2.2), (400.0, 2.3), (300.0, 2.3))
 
 
 def fallen_sides(simulation: Simulation) -> str:
-    """Return the sides whose boards have fallen, in words; '' for none."""
+    """Return the sides whose boards have fallen, in words; '' for none and for a pair trawl."""
+    if simulation.model.paired:
+        return ''
     fallen = fallen_boards(simulation.now.motion.state)
     return ' and '.join(side for side, lies in zip(SIDES, fallen, strict=True) if lies)
 

@@ -17,7 +17,16 @@ from trawl_ros.plots.records import SCHOOLS, GearShape, Strand
 from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
 from trawl_ros.report import style
 
-BOLD = ('_warp', '_bridle', 'headrope', 'footrope', 'mouth', *DOOR_FRAMES.values())
+BOLD = (
+    '_warp',
+    '_bridle',
+    '_sweep',
+    '_backstrop',
+    'headrope',
+    'footrope',
+    'mouth',
+    *DOOR_FRAMES.values(),
+)
 """Ends of the names of what is drawn bold."""
 
 DOOR_COLOURS = {DOOR_FRAMES['port']: style.PORT, DOOR_FRAMES['starboard']: style.STARBOARD}

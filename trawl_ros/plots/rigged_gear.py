@@ -21,7 +21,7 @@ VIEWS = (
     ('from ahead', (1, 2), ('to port / m', 'up / m')),
 )
 
-THICK = ('_bridle', 'headrope', 'footrope', '_wing_end')
+THICK = ('_bridle', '_sweep', '_backstrop', 'headrope', 'footrope', '_wing_end')
 COLOURS = {'netting': style.NETTING, 'codend': style.NETTING, '_wing_end': '#7b4ea3'}
 
 
@@ -31,7 +31,8 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
     ``state`` is a shape that was found; without one the net is drawn as it is built, which is how a
     solution is first looked for and not how the gear will tow.
     """
-    tow = steady_tow(model, OperatingPoint(WARP, WARP, SPEED))
+    warp = max(WARP, model.gear.block_distance)
+    tow = steady_tow(model, OperatingPoint(warp, warp, SPEED))
     shape = first_guess(model, tow, 0.0) if state is None else state
     lines = _lines(model, shape, tow)
     points = np.concatenate([piece.reshape(-1, 3) for _, piece in lines])

@@ -139,7 +139,7 @@ def _from_truth(
         _one_colour('footrope', _chain(mouth[half:]), NETTING),
     ]
     for k, (side, (place, axes)) in enumerate(zip(SIDES, doors, strict=True)):
-        block = origin + (0.5 - k) * gear.ship.block_spacing_m * port
+        block = origin + (0.5 - k) * gear.block_distance * port
         upper, lower = (mouth[0], mouth[-1]) if k == 0 else (mouth[half - 1], mouth[half])
         strands += _side(side, block, place, axes, gear, [upper, lower])
         strands.append(_one_colour(f'{side}_wing_end', _chain(np.array([upper, lower])), NETTING))
@@ -157,7 +157,7 @@ def _from_readings(time: float, tow: TowHistory, gear: GearRecord) -> GearShape 
         return math.nan if series is None else series.near(time, READING_AWAY_S)
 
     # Ahead, to port, up, from between the blocks; turned into the ship's axes at the end.
-    half_spread, half_blocks = 0.5 * reading('door_spread'), 0.5 * gear.ship.block_spacing_m
+    half_spread, half_blocks = 0.5 * reading('door_spread'), 0.5 * gear.block_distance
     strands: list[Strand] = []
     behind, ends = [], []
     for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
@@ -178,9 +178,7 @@ def _from_readings(time: float, tow: TowHistory, gear: GearRecord) -> GearShape 
     depth, height, width = map(reading, ('net_depth', 'opening_height', 'opening_width'))
     height, half_width = (0.0 if not math.isfinite(x) else x for x in (height, 0.5 * width))
     if math.isfinite(depth):
-        x = float(np.mean(behind, axis=0)[0]) - max(
-            gear.bridle_of(own).length_m for own in gear.bridles
-        )
+        x = float(np.mean(behind, axis=0)[0]) - gear.behind_boards
         ring = [[x, s * half_width, -depth - d * height] for s, d in ((1, 0), (-1, 0), (-1, 1))]
         ring = [*ring, [x, half_width, -depth - height], ring[0]]
         strands.append(_one_colour('mouth', _chain(np.array(ring)), NETTING))

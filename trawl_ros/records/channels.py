@@ -48,6 +48,11 @@ class Channel:
         A sensor whose readings always scatter, so identical ones mean that it is frozen.
     settles
         A slow response of the gear: a trend in it means that the state is not steady yet.
+    leap
+        Distance that the quantity cannot move by in a window. A reading of an acoustic range
+        that is further from the median is that of a false echo, which says nothing of the
+        sensor's noise: it is left out before outliers of the noise are looked for. Infinite
+        where false echoes do not occur.
     """
 
     name: str
@@ -63,6 +68,7 @@ class Channel:
     required: bool
     lively: bool = False
     settles: bool = False
+    leap: float = math.inf
 
     @property
     def longest_gap(self) -> float:
@@ -112,7 +118,7 @@ _TABLE = (
     ),
     Channel(
         'door_spread', 'door/spread', 'm', 1.0, 1000.0, 1.0, 0.5, 0.005, 0.2, 10.0,
-        required=True, lively=True, settles=True,
+        required=True, lively=True, settles=True, leap=20.0,
     ),
     Channel(
         'net_depth', 'sonar/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.5, 6.0,

@@ -25,6 +25,7 @@ class Topic:
 
     ``frame`` is ``header.frame_id`` ('' where the type has no header), ``rate`` the usual
     rate in Hz (None: on an event), ``latched`` says that a late subscriber gets the last one.
+    ``silence`` is how long (s) an instrument that works may say nothing at sea.
     """
 
     name: str
@@ -33,6 +34,12 @@ class Topic:
     rate: float | None
     sentence: str
     latched: bool = False
+    silence: float = 0.0
+
+
+ACOUSTIC_SILENCE = 300.0
+"""Longest silence (s) of an acoustic net sensor that works: those of a survey had up to 291 s in a
+haul (public repository afsc-gap-products/trawlmetrics, vessel 94, 2022)."""
 
 
 def _door_truth(side: str) -> tuple[Topic, ...]:
@@ -180,6 +187,7 @@ INSTRUMENTS = (
         DOOR_FRAMES['port'],
         1.0,
         'Acoustic distance from door to door, m.',
+        silence=ACOUSTIC_SILENCE,
     ),
     Topic(
         'sonar/pressure',
@@ -229,6 +237,7 @@ INSTRUMENTS = (
         SONAR,
         1.0,
         "From the headrope's centre down to the seabed, m.",
+        silence=ACOUSTIC_SILENCE,
     ),
     Topic(
         'vessel/velocity_water',

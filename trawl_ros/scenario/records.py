@@ -5,7 +5,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.gear.records import CurrentAt, EffectRecord, TemperatureAt
+from trawl_ros.gear.records import EffectRecord
+from trawl_ros.gear.sea_water import CurrentAt, TemperatureAt
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.faults import FaultRecord
 from trawl_ros.scenario.sea import SeaRecord

@@ -76,7 +76,7 @@ def _settled(steer: SteerRecord, scenario: Scenario, speed: float, model: GearMo
     """Final headings of a ship under this target, as far as they are known."""
     vessel = scenario.instruments.vessel
     target = steer.target(Datum(vessel.datum_lat_deg, vessel.datum_lon_deg))
-    way = Way(speed, model.water.current(np.array(0.0))[:2], math.radians(steer.max_turn_deg_s))
+    way = Way(speed, model.water.surface_current[:2], math.radians(steer.max_turn_deg_s))
     if isinstance(target, HoldHeading):
         return [target.heading]
     if isinstance(target, HoldCourse):

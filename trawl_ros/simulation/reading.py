@@ -85,7 +85,7 @@ def read_truth(
             position=ship.position,
             heading=ship.heading,
             yaw_rate=ship.yaw_rate,
-            velocity_ground=ship.velocity + model.water.current(np.array(0.0)),
+            velocity_ground=ship.velocity + model.water.surface_current,
             velocity_water=np.array([ship.speed, 0.0, ship.heave_rate]),
         ),
     )

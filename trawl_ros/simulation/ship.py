@@ -1,5 +1,6 @@
 """Kinematics of ship and winches within their limits of speed and acceleration."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +28,7 @@ class Ship:
     @property
     def ahead(self) -> FloatArray:
         """Unit vector (3,) of the heading."""
-        return np.array([np.cos(self.heading), np.sin(self.heading), 0.0])
+        return np.array([math.cos(self.heading), math.sin(self.heading), 0.0])
 
     @property
     def velocity(self) -> FloatArray:
@@ -48,15 +49,15 @@ class Ship:
         Her height stays as it was: that is for `heaved`.
         """
         new_speed = _approach(self.speed, speed, limits.max_acceleration_m_s2 * dt)
-        most = np.radians(limits.max_turn_acceleration_deg_s2) * dt
+        most = math.radians(limits.max_turn_acceleration_deg_s2) * dt
         new_rate = _approach(self.yaw_rate, yaw_rate, most)
         turned = self.heading + 0.5 * (self.yaw_rate + new_rate) * dt
         middle = 0.5 * (self.heading + turned)
         mean = 0.5 * (self.speed + new_speed)
-        course = np.array([np.cos(middle), np.sin(middle), 0.0])
+        course = np.array([math.cos(middle), math.sin(middle), 0.0])
         return Ship(
             position=self.position + (mean * course + current) * dt,
-            heading=float(turned),
+            heading=turned,
             speed=new_speed,
             yaw_rate=new_rate,
             heave_rate=self.heave_rate,
@@ -77,8 +78,9 @@ class Winch:
         if abs(left) <= most * dt**2 and abs(self.speed) <= most * dt:
             return Winch(length, 0.0)
         # The speed from which the drum, after this step, still stops in time.
-        way = 2 * abs(left) - np.sign(left) * self.speed * dt
-        root = np.sqrt((0.5 * most * dt) ** 2 + most * max(way, 0.0))
-        wanted = np.sign(left) * min(limits.max_speed_m_s, root - 0.5 * most * dt)
-        speed = _approach(self.speed, float(wanted), most * dt)
+        side = math.copysign(1.0, left) if left else 0.0
+        way = 2 * abs(left) - side * self.speed * dt
+        root = math.sqrt((0.5 * most * dt) ** 2 + most * max(way, 0.0))
+        wanted = side * min(limits.max_speed_m_s, root - 0.5 * most * dt)
+        speed = _approach(self.speed, wanted, most * dt)
         return Winch(self.length + 0.5 * (self.speed + speed) * dt, speed)

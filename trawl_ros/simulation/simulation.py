@@ -8,6 +8,7 @@ from trawl_ros.core.errors import ScenarioError
 from trawl_ros.effects.base.effect import Situation, sense
 from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import cross
 from trawl_ros.model.state import Tow, halfway
 from trawl_ros.records.truth import GearPicture, Truth
 from trawl_ros.simulation.command import Command
@@ -38,11 +39,11 @@ class Instant:
 def tow_of(model: GearModel, ship: Ship, winches: tuple[Winch, Winch]) -> Tow:
     """Towing boundary that ship and winches impose on the gear at one instant."""
     offsets = block_offsets(model, ship.heading)
-    velocity = ship.velocity + model.water.current(np.array(0.0))
+    velocity = ship.velocity + model.water.surface_current
     spin = np.array([0.0, 0.0, ship.yaw_rate])
     return Tow(
         blocks=ship.position + offsets,
-        block_velocities=velocity + np.cross(spin, offsets),
+        block_velocities=velocity + cross(spin, offsets),
         lengths=np.array([winch.length for winch in winches]),
         length_rates=np.array([winch.speed for winch in winches]),
     )
@@ -176,7 +177,7 @@ class Simulation:
     def _boundary(self, now: Instant, dt: float) -> tuple[Ship, tuple[Winch, Winch]]:
         """Ship and winches after ``dt`` seconds under the present command."""
         gear, wanted = self.model.gear, self._towed(self.command)
-        surface = self.model.water.current(np.array(0.0))
+        surface = self.model.water.surface_current
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
         ship = ship.heaved(*self.sea.heave.at(self._seconds(now.stamp) + dt))
         port, starboard = now.winches

@@ -11,6 +11,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import lies_over, outward_normal_lift
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.first_guess import (
     carried_over,
@@ -40,10 +41,18 @@ FALL, LEAST_FALL = 4.0, 1.2
 """Factor by which the load is lowered at once, and the one at which that is given up."""
 
 
-def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, float]:
+def cold_start(
+    model: GearModel, heading: float, tow: Tow, *, lying: bool = False
+) -> tuple[State, int, float]:
     """Find a steady shape from that of a coarser net or, for the coarsest, from a first guess.
 
     Unequal warps are reached from equal ones: the boards' first attitudes are equal too.
+
+    Parameters
+    ----------
+    lying
+        True: boards may lie on their backs. False: the search is given up where they do with bowed
+        twine, whose load then takes long to be taken away.
 
     Returns
     -------
@@ -53,6 +62,8 @@ def cold_start(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, 
     even = replace(tow, lengths=np.full(2, tow.lengths.mean()))
     state, spent, residual = _bowed_shape(model, heading, even)
     if residual <= ROUGH:
+        if not lying and lies_over(model, state) and outward_normal_lift(state).min() > 0.0:
+            return state, spent, ROUGH
         state, more, residual = straightened(model, state, even)
         spent += more
     if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:

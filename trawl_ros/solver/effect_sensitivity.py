@@ -12,13 +12,14 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
-from trawl_ros.model.assembly import forces, linearised
+from trawl_ros.model.assembly import forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
+from trawl_ros.solver.rest_linearisation import rest_linearisation
 
 PART = 1e-4
 """Differences are taken over this part of a parameter's std."""
@@ -152,8 +153,7 @@ def _carried(
     gear = acting.gear(model, at)
     along = np.zeros(direct.shape)
     if pushes.any():
-        stiffness = linearised(gear, found.state, found.tow).stiffness
-        shifts = solve_refined(model.pattern, stiffness, pushes)
+        shifts = solve_refined(rest_linearisation(gear, found.state, found.tow).factor, pushes)
         along = np.column_stack(
             [
                 observe(gear, found.state.moved(1j * STEP * shift), found.tow).array().imag / STEP

@@ -1,6 +1,6 @@
 """Quasi-steady states: usable roots of the forces, and the reasons why there is none."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from trawl_ros.solver.relax import (
     relax,
 )
 from trawl_ros.solver.stability import Stability, stability
+from trawl_ros.solver.warm_start import Tangent, warm_start
 
 FAR = 0.3
 """Part of the warps' length from which a change is drifted through rather than leapt over, which
@@ -53,6 +54,16 @@ class Equilibrium:
     residual: float
     outside_law: bool
     highest: float
+    _tangents: list[Tangent] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    @property
+    def tangent(self) -> Tangent | None:
+        """Displacements per change of coefficients, warp lengths and speed, once they are known."""
+        return self._tangents[0] if self._tangents else None
+
+    def remember(self, tangent: Tangent) -> None:
+        """Keep the tangent for the way to the next state."""
+        self._tangents[:] = [tangent]
 
     @property
     def surfaced(self) -> bool:
@@ -83,22 +94,21 @@ def find_equilibrium(
             model, here, tow, tolerance=TOLERANCE, time_step=DRIFT_TIME_STEP
         )
     elif start is not None:
-        here = shifted_to(model, start.state, start.tow, tow)
-        iterations = 0
-        ways = (WARM_TIME_STEP, WARM_LIMIT), (DRIFT_TIME_STEP, DRIFT_LIMIT)
-        far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR)
-        for time_step, limit in ways[::-1] if far else ways:
-            state, more, residual = relax(
-                model, here, tow, tolerance=TOLERANCE, time_step=time_step, limit=limit
-            )
-            iterations += more
-            if residual <= TOLERANCE:
-                break
+        state, iterations, residual = _from_known(model, start, tow)
     if (near is None and start is None) or (cold and residual > TOLERANCE):
-        state, iterations, residual = cold_start(model, point.heading, tow)
+        state, iterations, residual = cold_start(model, point.heading, tow, lying=near is not None)
     where = _where(point)
     if residual > TOLERANCE and cold and near is None:
-        state, residual = followed(model, point, where), 0.0
+        known = None if start is None else (start.point, start.state)
+        try:
+            state, residual = followed(model, point, where, known), 0.0
+        except NoSteadyState as refusal:
+            if refusal.reason != 'none found':
+                raise
+            # Perhaps there is one with boards on their backs, at this speed and any other.
+            state, iterations, residual = cold_start(model, point.heading, tow, lying=True)
+            if residual > TOLERANCE:
+                raise
     if residual > TOLERANCE:
         raise NoSteadyState(
             f'{where}: no steady state found in {iterations} iterations, {residual:.3g} N left'
@@ -106,7 +116,7 @@ def find_equilibrium(
     seen = observe(model, state, tow)
     attack = np.array([seen.port_attack, seen.starboard_attack])
     lift = outward_normal_lift(state)
-    if any(fallen_boards(state)) or attack.min() < 0.0:
+    if not model.paired and (any(fallen_boards(state)) or attack.min() < 0.0):
         angles = ', '.join(f'{np.degrees(a):.1f}' for a in attack)
         lean = ', '.join(f'{np.degrees(np.arcsin(up)):.1f}' for up in lift)
         raise NoSteadyState(
@@ -122,9 +132,29 @@ def find_equilibrium(
         observables=seen,
         iterations=iterations,
         residual=residual,
-        outside_law=bool(attack.max() > high or attack.min() < low),
+        outside_law=not model.paired and bool(attack.max() > high or attack.min() < low),
         highest=highest_point(model, state),
     )
+
+
+def _from_known(model: GearModel, start: Equilibrium, tow: Tow) -> tuple[State, int, float]:
+    """Search from a known equilibrium: along its tangent, or from it moved along its warps."""
+    iterations = 0
+    far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR)
+    if not far and (found := warm_start(model, start.state, start.tow, tow, start.tangent)):
+        state, iterations, residual = found
+        if residual <= TOLERANCE:
+            return found
+    here = shifted_to(model, start.state, start.tow, tow)
+    ways = (WARM_TIME_STEP, WARM_LIMIT), (DRIFT_TIME_STEP, DRIFT_LIMIT)
+    for time_step, limit in ways[::-1] if far else ways:
+        state, more, residual = relax(
+            model, here, tow, tolerance=TOLERANCE, time_step=time_step, limit=limit
+        )
+        iterations += more
+        if residual <= TOLERANCE:
+            break
+    return state, iterations, residual
 
 
 @dataclass(frozen=True)

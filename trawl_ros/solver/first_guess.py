@@ -7,6 +7,7 @@ import numpy as np
 from scipy.interpolate import RBFInterpolator
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import block_forces, forces, linearised
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_model
@@ -20,6 +21,9 @@ LEAN = np.radians(14.0)
 DEPTH_SHARE, SPREAD_SHARE = 0.22, 0.16
 """Depth and sideways reach of a board as shares of the warp length, roughly as gears tow."""
 
+WIDEST = 0.95
+"""Share of warp and bridle to the side from which ships are too far apart for a first guess."""
+
 COARSE_AROUND = (96, 48, 24)
 """Meshes around the mouth of the coarser nets whose shape is found first."""
 
@@ -30,9 +34,22 @@ NEIGHBOURS = 12
 def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
     """First guess: straight warps, boards at a usual attitude, the net as built behind them."""
     lengths = tow.lengths
-    half = 0.5 * model.gear.ship.block_spacing_m
+    half = 0.5 * model.gear.block_distance
     depth = DEPTH_SHARE * lengths
-    reach = SPREAD_SHARE * lengths
+    bridle = model.gear.behind_boards
+    reach, attack, lean = SPREAD_SHARE * lengths, ATTACK, LEAN
+    if model.paired:
+        # A line from either ship to its wing, on which the plate lies.
+        wing = abs(model.first_guess[model.layout.headrope[0], 1])
+        share = (half - wing) / (lengths + bridle)
+        if share.max() > WIDEST:
+            raise NoSteadyState(
+                f'ships {2 * half:g} m apart with {lengths.min():g} m of warp and bridles of '
+                f'{bridle:g} m: the net between them cannot be {2 * wing:.0f} m wide, expected '
+                'ships closer together or more warp'
+            )
+        reach = -share * lengths
+        attack, lean = float(np.arctan2(-reach.mean(), lengths.mean())), 0.0
     boards = np.stack(
         [-np.sqrt(lengths**2 - depth**2 - reach**2), (half + reach) * OUTWARD, -depth], 1
     )
@@ -42,14 +59,17 @@ def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
     share = np.arange(1, model.warp_segments) / model.warp_segments
     for side, warp in enumerate(layout.warps):
         nodes[warp] = blocks[side] + share[:, None] * (boards[side] - blocks[side])
-    bridle = 0.88 * max(model.gear.bridle_of(own).length_m for own in model.gear.bridles)
-    nodes[layout.net] += [boards[:, 0].mean() - bridle, 0.0, boards[:, 2].mean()]
+    nodes[layout.net] += [boards[:, 0].mean() - 0.88 * bridle, 0.0, boards[:, 2].mean()]
+    starts = boards.copy()
+    for side, sweep in enumerate(layout.sweeps):
+        _lay_sweep(model, nodes, side, boards[side])
+        starts[side] = nodes[sweep[-1]]
     for k, (line, end) in enumerate(zip(layout.bridles, layout.bridle_ends, strict=True)):
         share = np.arange(1, len(line) + 1) / (len(line) + 1)
-        board = boards[2 * k // len(layout.bridles)]
-        nodes[line] = board + share[:, None] * (nodes[end] - board)
+        start = starts[2 * k // len(layout.bridles)]
+        nodes[line] = start + share[:, None] * (nodes[end] - start)
     turn = about_axis(2, heading)
-    port = about_axis(2, ATTACK) @ about_axis(0, LEAN)
+    port = about_axis(2, attack) @ about_axis(0, lean)
     flip = np.array([1.0, -1.0, 1.0])
     attitudes = np.stack([port, flip[:, None] * port * flip])
     return at_velocity(
@@ -63,6 +83,17 @@ def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
         ),
         tow.block_velocities.mean(0),
     )
+
+
+def _lay_sweep(model: GearModel, nodes: FloatArray, side: int, board: FloatArray) -> None:
+    """Lay a sweep on the line from its board to the middle of the bridles' ends."""
+    gear, layout = model.gear, model.layout
+    assert gear.sweep is not None
+    sweep, ends = layout.sweeps[side], np.array_split(layout.bridle_ends, 2)[side]
+    backstrop = max(gear.sweep.upper_backstrop_m, gear.sweep.lower_backstrop_m)
+    places = backstrop + np.linspace(0.0, gear.sweep.length_m, len(sweep))
+    share = places / gear.behind_boards
+    nodes[sweep] = board + share[:, None] * (nodes[ends].mean(axis=0) - board)
 
 
 def coarser_model(model: GearModel) -> GearModel | None:
@@ -103,6 +134,7 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
     for ours, theirs in (
         *zip(model.layout.warps, layout.warps, strict=True),
         *zip(model.layout.bridles, layout.bridles, strict=True),
+        *zip(model.layout.sweeps, layout.sweeps, strict=True),
     ):
         nodes[ours] = found.nodes[theirs]
     return replace(

@@ -12,7 +12,7 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.observables import outward_normal_lift
+from trawl_ros.model.observables import lies_over, outward_normal_lift
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import PRESSURE, bowed, cold_start
 from trawl_ros.solver.continuation import BranchPoint, branch
@@ -41,9 +41,6 @@ STRIDE = 0.1
 MOST = 60
 """Points along a branch after which it is given up."""
 
-LYING = np.sin(np.radians(50.0))
-"""Vertical part of a board's outward normal from which it lies over."""
-
 HELD_TOLERANCE = 1000.0
 """Force (N) left at which the shape of a gear with held boards is good enough."""
 
@@ -55,34 +52,53 @@ AT_REST = 1e-3
 """Point (1/s) around which the eigenvalue that vanishes in a fold is sought."""
 
 
-def followed(model: GearModel, point: OperatingPoint, where: str) -> State:
+def followed(
+    model: GearModel,
+    point: OperatingPoint,
+    where: str,
+    known: tuple[OperatingPoint, State] | None = None,
+) -> State:
     """Follow the steady state from a faster tow to an operating point.
 
     Parameters
     ----------
     where
         The operating point in words, with which messages begin.
+    known
+        Shape at another operating point; if that is the same but for a faster tow, its branch is
+        followed rather than one from a cold start.
 
     Raises
     ------
     NoSteadyState
         If the branch ends before: with the last solved speed and what ends it.
     """
+    if known is not None and point == replace(known[0], speed=point.speed):
+        speed = known[0].speed
+        state, _, residual = relax(
+            model,
+            known[1],
+            steady_tow(model, known[0]),
+            tolerance=TOLERANCE,
+            time_step=WARM_TIME_STEP,
+            limit=WARM_LIMIT,
+        )
+        if speed > point.speed and residual <= TOLERANCE and not lies_over(model, state):
+            return _followed(model, point, where, speed, state)
     tried = []
     for speed in sorted({max(USUAL, FASTER[0] * point.speed), FASTER[1] * point.speed}):
         tow = steady_tow(model, replace(point, speed=speed))
         state, _, residual = cold_start(model, point.heading, tow)
-        if residual <= TOLERANCE and np.abs(outward_normal_lift(state)).max() < LYING:
+        if residual <= TOLERANCE and not lies_over(model, state):
             return _followed(model, point, where, speed, state)
         tried.append(f'{speed:.2g}')
-    if unbalanced := _imbalance(model, point):
+    if not model.paired and (unbalanced := _imbalance(model, point)):
         speeds = ' or '.join(tried)
         raise NoSteadyState(
             f'{where}: boards do not stay upright, nor at {speeds} m/s: {unbalanced}', 'no balance'
         )
-    raise NoSteadyState(
-        f'{where}: no steady state found, nor one with upright boards at {" or ".join(tried)} m/s'
-    )
+    upright = '' if model.paired else ' one with upright boards'
+    raise NoSteadyState(f'{where}: no steady state found, nor{upright} at {" or ".join(tried)} m/s')
 
 
 def _imbalance(model: GearModel, point: OperatingPoint) -> str:
@@ -140,7 +156,7 @@ def _followed(
                 f'{speed:.3g} m/s folds back, smallest eigenvalue {least:.2g} 1/s',
                 'fold',
             )
-        if np.abs(outward_normal_lift(here.state)).max() > LYING:
+        if lies_over(model, here.state):
             raise NoSteadyState(f'{where}: {_lift_lost(first, here)}', 'lift lost')
         if count == MOST:
             break

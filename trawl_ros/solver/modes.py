@@ -11,7 +11,7 @@ from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.factor import Factor, factorised
 
 SUBSPACE = 20
 """Vectors among which modes are sought before the search starts anew with the best of them."""
@@ -27,7 +27,14 @@ class LinearisedMotion:
     stiffness: FloatArray
 
     def nearest(
-        self, shift: complex, number: int, *, tolerance: float, restarts: int | None = None
+        self,
+        shift: complex,
+        number: int,
+        *,
+        tolerance: float,
+        restarts: int | None = None,
+        subspace: int = SUBSPACE,
+        factor: Factor | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Find the modes whose eigenvalues lie nearest to a shift.
 
@@ -44,6 +51,10 @@ class LinearisedMotion:
             Relative to their distance from the shift.
         restarts
             Of the search, after which it ends with those that are found.
+        subspace
+            Number of vectors among which modes are sought before the search starts anew.
+        factor
+            Of s² M + s C + K, where that is known.
 
         Returns
         -------
@@ -53,8 +64,10 @@ class LinearisedMotion:
         # All below takes a complex shift as it takes a real one.
         s = shift.real if shift.imag == 0.0 else cast(float, shift)
         n, times = self.pattern.dof, self.pattern.times
-        data = s**2 * self.mass + s * self.damping + self.stiffness
-        solve = factorised(self.pattern, data).solve
+        if factor is None:
+            data = s**2 * self.mass + s * self.damping + self.stiffness
+            factor = factorised(self.pattern, data)
+        solve, kind = factor.solve, factor.data.dtype
 
         def apply(y: FloatArray) -> FloatArray:
             x, v = y[:n], y[n:]
@@ -62,11 +75,11 @@ class LinearisedMotion:
             new = -solve(times(self.mass, s * x + v) + times(self.damping, x))
             return np.concatenate([new, s * new + x])
 
-        operator = LinearOperator((2 * n, 2 * n), matvec=apply, dtype=data.dtype)
-        start = np.concatenate([np.ones(n), np.zeros(n)]).astype(data.dtype)
+        operator = LinearOperator((2 * n, 2 * n), matvec=apply, dtype=kind)
+        start = np.concatenate([np.ones(n), np.zeros(n)]).astype(kind)
         try:
             values, vectors = eigs(
-                operator, number, v0=start, tol=tolerance, ncv=SUBSPACE, maxiter=restarts
+                operator, number, v0=start, tol=tolerance, ncv=subspace, maxiter=restarts
             )
         except ArpackNoConvergence as partial:
             values, vectors = partial.eigenvalues, partial.eigenvectors

@@ -22,14 +22,14 @@ class OperatingPoint:
 def block_offsets(model: GearModel, heading: float) -> FloatArray:
     """Positions (2, 3) of the towing blocks from midway between them, port first, m."""
     to_port = np.array([-np.sin(heading), np.cos(heading), 0.0])
-    half = 0.5 * model.gear.ship.block_spacing_m
+    half = 0.5 * model.gear.block_distance
     return np.stack([half * to_port, -half * to_port])
 
 
 def steady_tow(model: GearModel, point: OperatingPoint) -> Tow:
     """Towing boundary of a steady tow at an operating point; the ship is at the origin."""
     ahead = np.array([np.cos(point.heading), np.sin(point.heading), 0.0])
-    velocity = point.speed * ahead + model.water.current(np.array(0.0))
+    velocity = point.speed * ahead + model.water.surface_current
     return Tow(
         blocks=block_offsets(model, point.heading),
         block_velocities=np.stack([velocity, velocity]),

@@ -7,7 +7,7 @@ a state it would also reach at sea, rather than to any root near the start.
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray
+from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
@@ -64,7 +64,6 @@ def relax(
         The residual is the largest force or moment left.
     """
     tau = time_step
-    n = model.nodes
     iteration = 0
     last = np.inf
     factor: Factor | None = None
@@ -95,9 +94,7 @@ def relax(
                 tau /= 4.0
                 continue
         step = factor.solve(force)
-        body = step[3 * n :].reshape(2, 6)
-        size = max(np.abs(step[: 3 * n]).max(), np.abs(body[:, :3]).max()) / LIMIT_METRES
-        size = max(size, np.abs(body[:, 3:]).max() / LIMIT_RADIANS)
+        size = step_size(model, step)
         # Bars that flip between slack and taut raise the residual and ask for shorter steps.
         growth = 3.0 if residual < last else max(0.25, last / residual)
         tau = max(tau / 1.5, 0.3) if size > 1.0 else min(max(growth * tau, 0.3), 1e9)
@@ -105,6 +102,14 @@ def relax(
             factor = None
         last = residual
         state = state.moved(step / max(size, 1.0))
+
+
+def step_size(model: GearModel, step: FloatArray) -> float:
+    """Size of a step (dof,) as a share of the limits."""
+    n = model.nodes
+    body = step[3 * n :].reshape(2, 6)
+    metres = max(np.abs(step[: 3 * n]).max(), np.abs(body[:, :3]).max())
+    return float(max(metres / LIMIT_METRES, np.abs(body[:, 3:]).max() / LIMIT_RADIANS))
 
 
 def without_attitude(model: GearModel) -> BoolArray:

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.assembly import board_loads, forces, linearised
+from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, stepped
 from trawl_ros.model.observables import observe
@@ -19,6 +19,8 @@ from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
+from trawl_ros.solver.rest_linearisation import rest_linearisation
+from trawl_ros.solver.warm_start import Tangent
 
 PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
 """Parameters of the derivatives: per unit coefficient, per m, per m, per m/s."""
@@ -56,7 +58,6 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     (n_observables, n_parameters) array
         In the orders of `OBSERVABLES` and `PARAMETERS`.
     """
-    stiffness = linearised(model, found.state, found.tow).stiffness
     moved = [_perturbed(model, found, index) for index in range(len(PARAMETERS))]
     pushes = np.zeros((model.dof, len(PARAMETERS)))
     boards = slice(model.dof - 12, None)
@@ -66,7 +67,8 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
             pushes[boards, index] = board_loads(changed, state).imag.ravel() / STEP
         else:
             pushes[:, index] = forces(changed, state, tow).imag / STEP
-    shifts = solve_refined(model.pattern, stiffness, pushes)
+    shifts = solve_refined(rest_linearisation(model, found.state, found.tow).factor, pushes)
+    found.remember(Tangent(model.coefficients, shifts))
     result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
     for index, (changed, state, tow) in enumerate(moved):
         along = state.moved(stepped(np.zeros(model.dof), shifts[:, index]))
@@ -89,7 +91,7 @@ def net_sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     pushes = np.column_stack(
         [forces(model.with_net(*twice), *at[1:]) - here for twice in ((2.0, 1.0), (1.0, 2.0))]
     )
-    shifts = solve_refined(model.pattern, linearised(*at).stiffness, pushes)
+    shifts = solve_refined(rest_linearisation(*at).factor, pushes)
     return np.column_stack(
         [
             observe(model, found.state.moved(1j * STEP * shift), found.tow).array().imag / STEP

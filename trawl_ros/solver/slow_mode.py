@@ -10,17 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.model.assembly import mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
-from trawl_ros.solver.modes import linearised_motion
+from trawl_ros.solver.modes import LinearisedMotion
+from trawl_ros.solver.rest_linearisation import rest_linearisation
 
-SHIFT = 1e-3
-"""Point (1/s) around which eigenvalues are sought."""
+MODES, SUBSPACE = 4, 14
+"""Modes that are sought, those of the eigenvalues nearest to 0, and vectors for that: with fewer
+the search starts anew, with more it does more than it has to."""
 
-MODES = 4
 NET, PORT, STARBOARD = map(
     OBSERVABLES.index, ('net_depth', 'port_door_depth', 'starboard_door_depth')
 )
@@ -42,8 +44,14 @@ class SlowMode:
 
 def slow_mode(model: GearModel, found: Equilibrium) -> SlowMode:
     """Find the slowest symmetric motion of M ẍ + C ẋ + K x = 0 by shift and invert."""
-    motion = linearised_motion(model, found.state, found.tow)
-    rates, shapes = motion.nearest(SHIFT, MODES, tolerance=1e-4)
+    at = model, found.state, found.tow
+    known = rest_linearisation(*at)
+    motion = LinearisedMotion(
+        model.pattern, mass(*at), known.motion.damping, known.motion.stiffness
+    )
+    rates, shapes = motion.nearest(
+        0.0, MODES, tolerance=1e-4, subspace=SUBSPACE, factor=known.factor
+    )
     best = SlowMode(0.0, np.zeros(len(OBSERVABLES)))
     for rate, vector in zip(rates, shapes.T, strict=True):
         if abs(rate.imag) > 1e-6 * abs(rate) or rate.real >= 0.0:

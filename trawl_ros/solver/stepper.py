@@ -92,14 +92,15 @@ class Stepper:
         start, velocity = motion.state, motion.state.velocity
         old, averaged = motion.acceleration, motion.averaged
         carried = (self._alpha_f * old - self._alpha_m * averaged) / (1 - self._alpha_m)
-        new = old.copy()
+        # With the new acceleration q, places move by `way` + by_position q, and velocities
+        # become `pace` + by_velocity q.
+        way = h * velocity + h * h * ((0.5 - self._beta) * averaged + self._beta * carried)
+        pace = velocity + h * ((1 - self._gamma) * averaged + self._gamma * carried)
+        new = averaged.copy()
         inertia = None
         last = np.inf
         for iteration in range(ITERATIONS):
-            average = carried + share * new
-            moved = h * velocity + h * h * ((0.5 - self._beta) * averaged + self._beta * average)
-            speed = velocity + h * ((1 - self._gamma) * averaged + self._gamma * average)
-            state = start.moved(moved).with_velocity(speed)
+            state = start.moved(way + by_position * new).with_velocity(pace + by_velocity * new)
             if inertia is None:
                 # Added mass turns with the ropes; taking it at the predicted place keeps
                 # the order of the method.
@@ -123,23 +124,10 @@ class Stepper:
                 raise StepFailed('the time step did not converge')
             new = new + correction * (min(1.0, LIMIT / max(size, LIMIT)) / by_position)
             if size < TOLERANCE * h**3:
-                return self._finished(start, velocity, averaged, carried, share, new, h)
+                state = start.moved(way + by_position * new)
+                speed = pace + by_velocity * new
+                return Motion(state.with_velocity(speed), new, carried + share * new)
             if size > keep_rate * last:
                 self._factor = None
             last = size
         raise StepFailed('the time step did not converge')
-
-    def _finished(
-        self,
-        start: State,
-        velocity: FloatArray,
-        averaged: FloatArray,
-        carried: FloatArray,
-        share: float,
-        new: FloatArray,
-        h: float,
-    ) -> Motion:
-        average = carried + share * new
-        moved = h * velocity + h * h * ((0.5 - self._beta) * averaged + self._beta * average)
-        speed = velocity + h * ((1 - self._gamma) * averaged + self._gamma * average)
-        return Motion(start.moved(moved).with_velocity(speed), new, average)

@@ -59,6 +59,24 @@ def attitudes(yaw: float, pitch: float, roll: float) -> FloatArray:
     return np.stack([port, flip[:, None] * port * flip])
 
 
+def roll_for(inclination: float, pitch: float) -> float:
+    """Roll (rad) with which a board has an inclination at a pitch: δ is the tilt of
+    R_y(pitch) R_x(roll), so cos δ = cos pitch cos roll.
+
+    Raises
+    ------
+    NoSteadyState
+        If the board leans less than it is pitched.
+    """
+    tilt = np.cos(inclination) / np.cos(pitch)
+    if not -1.0 <= tilt <= 1.0:
+        raise NoSteadyState(
+            f'an inclination of {np.degrees(inclination):.1f}° cannot have a '
+            f'pitch of {np.degrees(pitch):.1f}°, expected a smaller pitch'
+        )
+    return float(np.copysign(np.arccos(tilt), inclination))
+
+
 def trim(
     model: GearModel,
     *,
@@ -76,7 +94,7 @@ def trim(
         The gear; its points are where the search starts, its installation angles are kept.
         Effects of its gear file act.
     attack, inclination
-        Wanted α and δ, rad; the outward normal leans up.
+        Wanted α and δ, rad; the outward normal leans up, with a negative δ down.
     pitch
         Wanted pitch of the boards, nose down, rad.
     warp_length, speed
@@ -91,6 +109,8 @@ def trim(
     ------
     NoSteadyState
         If no points balance the boards there, or the state they give cannot be used.
+    GearError
+        For a gear without boards.
 
     Examples
     --------
@@ -103,17 +123,11 @@ def trim(
     >>> round(math.degrees(found.steady.observables.port_attack), 3)
     22.0
     """
+    model.gear.require_boards('whose fastening points could be found')
     acting, point = with_effects(model, (warp_length, warp_length), speed)
     tow = steady_tow(acting, point)
     state = first_guess(acting, tow, point.heading)
-    # δ is the tilt of R_y(pitch) R_x(roll): cos δ = cos pitch cos roll.
-    tilt = np.cos(inclination) / np.cos(pitch)
-    if not -1.0 <= tilt <= 1.0:
-        raise NoSteadyState(
-            f'an inclination of {np.degrees(inclination):.1f}° cannot have a '
-            f'pitch of {np.degrees(pitch):.1f}°, expected a smaller pitch'
-        )
-    roll = float(np.arccos(tilt))
+    roll = roll_for(inclination, pitch)
     found = _Search(acting, state, tow)
 
     def excess(yaw: float) -> float:

@@ -97,11 +97,15 @@ def test_the_solver_goes_on_from_the_same_shapes(steady_tow, coarse_gear, tmp_pa
             torn = load_checkpoint(tmp_path / 'state', build(), gear)
         expected, found = used(whole.feed(sample)), used(torn.feed(sample))
         for one, other in zip(found, expected, strict=True):
-            np.testing.assert_array_equal(one.estimate.values, other.estimate.values)
+            # Where factors are at hand the way to the same root is rounded otherwise.
+            np.testing.assert_allclose(one.estimate.values, other.estimate.values, rtol=1e-9)
     assert {window.state for window in whole.estimator.windows} == {0, 1}
     whole.finish()
     torn.finish()
-    np.testing.assert_array_equal(torn.estimate.covariance, whole.estimate.covariance)
+    of_std = np.outer(whole.estimate.std, whole.estimate.std)
+    np.testing.assert_allclose(
+        torn.estimate.covariance / of_std, whole.estimate.covariance / of_std, atol=1e-9
+    )
 
 
 def test_one_that_was_resumed_can_be_reset(fresh, samples, state, gear):

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.estimator import AS_LIKELY, Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import linearise
 
 LONG = 700.0
@@ -80,6 +81,34 @@ def test_the_likelier_of_two_fits_stays(sea, prior, exact):
     assert not estimate.converged
     assert estimator.history[-1].cost == pytest.approx(estimate.cost)
     assert estimate.values[0] < sea.TRUTH[0] + LOW * sea.STD[0]
+
+
+class Stuck(Estimator):
+    """Estimator whose first fit is told to lack a step, and to be a little likelier than it is."""
+
+    first = None
+
+    def _rest_with_all(self):
+        converged, reason = super()._rest_with_all()
+        if self.first is None:
+            self.first = self._fit
+            return False, 'no step lowers the cost'
+        return converged, reason
+
+
+@pytest.mark.parametrize(('ahead', 'taken'), [(0.5, True), (2.0, False)])
+def test_of_two_fits_as_likely_the_one_at_rest_is_taken(
+    sea, model, prior, exact, monkeypatch, ahead, taken
+):
+    estimator = Stuck(model, prior, sea.OBSERVABLES, EstimatorOptions(unsettled=0.0))
+    told = Fit.negative_log_likelihood.fget
+    monkeypatch.setattr(
+        Fit,
+        'negative_log_likelihood',
+        property(lambda fit: told(fit) - ahead * AS_LIKELY * (fit is estimator.first)),
+    )
+    estimator.take(exact)
+    assert estimator.finish().converged == taken
 
 
 def test_intervals_are_widened_by_what_no_error_explains(sea, model, prior, exact):

@@ -11,6 +11,7 @@ from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import linearise
+from trawl_ros.estimation.fit.nuisance import ROUNDS, reweighted
 
 NORMAL = 1e9
 """A limit that no error reaches, so that the loss is that of normal errors."""
@@ -65,6 +66,18 @@ def test_the_triangle_holds_the_information_of_all_readings(fit, dense):
     triangle, right = fit.elimination.triangle, fit.elimination.right
     np.testing.assert_allclose(triangle.T @ triangle, jacobian.T @ weighed, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(triangle.T @ right, weighed.T @ residual, rtol=1e-8, atol=1e-8)
+
+
+def test_extrapolated_weights_are_nearer_to_their_end_than_those_of_plain_reweighting(fit):
+    robust = replace(fit, options=replace(fit.options, huber=1.0))
+    plain = replace(robust, weights=tuple(np.ones(tow.noise.shape) for tow in robust.errors))
+    costs = []
+    for _ in range(2000):
+        plain = replace(robust, weights=reweighted(plain.elimination, 1.0))
+        costs.append(plain.cost)
+    end = costs[-1]
+    assert abs(costs[ROUNDS] - end) > 1e-7 * end
+    assert abs(robust.cost - end) < 0.5 * abs(costs[ROUNDS] - end)
 
 
 def test_the_cost_is_half_the_squared_residual_in_that_covariance(fit, dense):

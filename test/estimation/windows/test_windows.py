@@ -149,6 +149,39 @@ def test_outliers_are_left_out_of_the_mean(sea, calm):
     assert window.means['port_door_depth'] == pytest.approx(clean.means['port_door_depth'], abs=0.3)
 
 
+def echoed(calm, start_ns, nth, longer):
+    """Samples with a spread that is ``longer`` (m) in ``nth`` of ten readings."""
+    spreads = [i for i, s in enumerate(calm) if isinstance(s, RangeSample) and s.stamp >= start_ns]
+    spoilt = list(calm)
+    for number, i in enumerate(spreads):
+        if number % 10 < nth:
+            spoilt[i] = replace(spoilt[i], distance=spoilt[i].distance + longer)
+    return spoilt
+
+
+def test_false_echoes_cast_no_doubt_on_the_others(sea, calm):
+    _, (clean, *_) = run(sea, calm)
+    finder, windows = run(sea, echoed(calm, calm[0].stamp, 3, 210.0))
+    assert [w.start_ns for w in windows][:1] == [clean.start_ns]
+    assert finder.rejected['outlier'] >= 0.25 * clean.counts['door_spread']
+    window = windows[0]
+    assert window.counts['door_spread'] == pytest.approx(0.7 * clean.counts['door_spread'], abs=1)
+    assert abs(window.means['door_spread'] - clean.means['door_spread']) <= 3.0 * math.hypot(
+        window.noise['door_spread'], clean.noise['door_spread']
+    )
+
+
+@pytest.mark.parametrize(('nth', 'longer'), [(3, 15.0), (5, 210.0)])
+def test_a_sensor_with_many_outliers_or_as_many_false_echoes_as_true_is_not_used(
+    sea, calm, nth, longer
+):
+    finder, windows = run(sea, echoed(calm, calm[0].stamp, nth, longer))
+    assert windows == []
+    assert 'outliers in' in finder.rejections.sentences['outlier'] or (
+        'false echoes in' in finder.rejections.sentences['outlier']
+    )
+
+
 def test_a_spike_of_the_counter_does_not_break_the_state(sea, calm):
     at = next(
         i for i, s in enumerate(calm)

@@ -11,9 +11,9 @@ from trawl_ros.instruments.parameters import RangeParameters
 RANGE = {'rate_hz': 1.0, 'min_range_m': 1.0, 'max_range_m': 400.0}
 
 
-def drawn(model, n=50_000, seed=4):
+def drawn(model, n=50_000, seed=4, value=20.0):
     echoes = FalseEchoes(model, np.random.default_rng(seed))
-    return np.array([echoes.draw() for _ in range(n)])
+    return np.array([echoes.draw(value) for _ in range(n)])
 
 
 def test_reflections_come_a_longer_way_and_never_a_shorter_one():
@@ -28,6 +28,13 @@ def test_an_ambiguous_range_is_one_period_too_long():
     longer = drawn(FalseEchoModel(0.09, 210.0, ambiguous=True))
     assert set(np.unique(longer)) == {0.0, 210.0}
     assert np.mean(longer > 0) == pytest.approx(0.09, rel=0.05)
+
+
+def test_an_echo_of_an_echo_is_twice_as_long_whatever_the_distance():
+    for value in (15.0, 150.0):
+        longer = drawn(FalseEchoModel(0.03, multiple=2.0), value=value)
+        assert set(np.unique(longer)) == {0.0, value}
+        assert np.mean(longer > 0) == pytest.approx(0.03, rel=0.1)
 
 
 def test_runs_have_the_mean_length_at_the_same_share():
@@ -57,6 +64,8 @@ def test_false_echoes_leave_the_other_draws_as_they_were():
 def test_a_file_says_share_and_size_together():
     model = RangeParameters(**RANGE, ambiguity_share=0.1, ambiguity_m=210.0).model()
     assert model.false_echoes == (FalseEchoModel(0.1, 210.0, ambiguous=True),)
+    model = RangeParameters(**RANGE, double_share=0.02, double_run=1.5).model()
+    assert model.false_echoes == (FalseEchoModel(0.02, multiple=2.0, run=1.5),)
     assert RangeParameters(**RANGE).model().false_echoes == ()
     with pytest.raises(ValidationError, match=r'reflection_share: found 0\.1 with reflection_m 0'):
         RangeParameters(**RANGE, reflection_share=0.1)

@@ -9,7 +9,7 @@ import pytest
 from trawl_ros.core.errors import InstrumentError
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.instrument import SeedPlan
-from trawl_ros.instruments.parameters import load_instruments
+from trawl_ros.instruments.parameters import BottomParameters, load_instruments
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.model.water import Water
 from trawl_ros.nodes.runtime.partial_truth import partial_truth
@@ -29,19 +29,22 @@ def truth(stamp: int, seabed: float) -> Truth:
     return partial_truth(stamp, net=net, seabed=SeabedTruth(math.inf, seabed))
 
 
+def with_exact_sounder(sound_speed: float) -> SonarInstruments:
+    """The default sonar with a sounder whose only error is its speed of sound (m/s)."""
+    bottom = BottomParameters(
+        rate_hz=1.0, min_range_m=1.0, max_range_m=300.0, assumed_sound_speed_m_s=sound_speed
+    )
+    record = load_instruments().sonar.model_copy(update={'bottom': bottom})
+    return SonarInstruments(record, SeedPlan(1), surroundings=SEA)
+
+
 def sounded(instruments: SonarInstruments, now: Truth) -> list[RangeSample]:
     samples: list[Sample] = instruments.observe(now)
     return [s for s in samples if isinstance(s, RangeSample) and s.what == 'bottom']
 
 
 def test_the_sounder_measures_the_seabed_below_the_headrope() -> None:
-    exact = load_instruments().sonar
-    told = {'noise_m': 0.0, 'assumed_sound_speed_m_s': SEA.mean_sound_speed(DEPTH, 190.0)}
-    instruments = SonarInstruments(
-        exact.model_copy(update={'bottom': exact.bottom.model_copy(update=told)}),
-        SeedPlan(1),
-        surroundings=SEA,
-    )
+    instruments = with_exact_sounder(SEA.mean_sound_speed(DEPTH, 190.0))
     readings = [
         sounded(instruments, truth(k * SECOND, depth))[0].distance
         for k, depth in enumerate((190.0, math.inf, 500.0, DEPTH + 0.5))
@@ -50,12 +53,7 @@ def test_the_sounder_measures_the_seabed_below_the_headrope() -> None:
 
 
 def test_a_set_speed_of_sound_stretches_the_sounding_too() -> None:
-    record = load_instruments().sonar
-    quiet = record.bottom.model_copy(update={'noise_m': 0.0, 'resolution_m': 0.0})
-    instruments = SonarInstruments(
-        record.model_copy(update={'bottom': quiet}), SeedPlan(1), surroundings=SEA
-    )
-    (sample,) = sounded(instruments, truth(0, 190.0))
+    (sample,) = sounded(with_exact_sounder(1500.0), truth(0, 190.0))
     assert sample.distance == pytest.approx(90.0 * 1500.0 / SEA.mean_sound_speed(DEPTH, 190.0))
 
 

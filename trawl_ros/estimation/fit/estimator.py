@@ -16,7 +16,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import Estimate, Innovation
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
-from trawl_ros.estimation.fit.line_search import Step, line_search
+from trawl_ros.estimation.fit.line_search import NEGLIGIBLE_GAIN, Step, line_search
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
@@ -38,8 +38,10 @@ POOR = 1.2
 """Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
 the readings of a tow; with those of one window it may, and then a second fit costs little."""
 
-NEGLIGIBLE_GAIN = 1e-3
-"""A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
+
+AS_LIKELY = 0.1
+"""Difference of log-likelihoods that tells two fits apart no more (as half a std of one
+coefficient does): of such two the one that has come to rest is taken."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +148,8 @@ class Estimator:
             first, without, course = self._fit, self._without, list(self.history)
             self._from_start()
             again, why = self._rest_with_all()
-            if _likelier(self._fit, first):
+            margin = AS_LIKELY if again and not converged else 0.0
+            if _likelier(self._fit, first, margin):
                 converged, reason = again, why
             else:
                 self._fit, self._without, self.history = first, without, course
@@ -313,9 +316,11 @@ class Estimator:
         return self.estimate
 
 
-def _likelier(fit: Fit, other: Fit) -> bool:
-    """True if a fit explains more windows than another, or as many with higher likelihood."""
-    return (-len(fit.windows), fit.negative_log_likelihood) < (
+def _likelier(fit: Fit, other: Fit, margin: float) -> bool:
+    """True if a fit explains more windows than another, or as many with a log-likelihood that is
+    higher, or lower by no more than a margin.
+    """
+    return (-len(fit.windows), fit.negative_log_likelihood - margin) < (
         -len(other.windows),
         other.negative_log_likelihood,
     )

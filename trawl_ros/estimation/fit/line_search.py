@@ -13,6 +13,14 @@ from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.fit.relinearise import comparable, far, moved, with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
 
+NEGLIGIBLE_GAIN = 1e-3
+"""A step that cannot lower the cost by more than this (half a χ²) is not worth taking."""
+
+SMALL = 2.5
+"""Size of such a step, in tolerances, up to which it is not tried: windows would be solved anew for
+readings that first order predicts within a fraction of their noise."""
+
+NO_GAIN = 'the step would lower the cost by next to nothing'
 NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
 
 
@@ -86,6 +94,8 @@ def line_search(
     )
     if size < options.tolerance and known:
         return replace(step, needless=True)
+    if size < SMALL * options.tolerance and step.gain < NEGLIGIBLE_GAIN:
+        return replace(step, obstacle=NO_GAIN)
     for spare, halving in product(spares, range(options.halvings + 1)):
         if spare and step.obstacle != NO_STEADY_STATE:
             break

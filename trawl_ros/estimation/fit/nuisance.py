@@ -25,6 +25,9 @@ ROUNDS = 50
 ALIKE = 1e-5
 """Weights that change by less are the last; they err the cost by the square of that."""
 
+STEADY = 0.9
+"""Factor from one step of the weights to the next up to which their end is extrapolated."""
+
 
 @dataclass(frozen=True)
 class TowPart:
@@ -116,18 +119,36 @@ def eliminate_nuisance(
     """
     if weights is not None:
         return _solved(tows, weights, scales, residual, jacobian, huber)
-    weights = [np.ones(tow.noise.shape) for tow in tows]
+    guess: Sequence[FloatArray] = [np.ones(tow.noise.shape) for tow in tows]
+    before: Sequence[FloatArray] | None = None
     for _ in range(ROUNDS):
-        elimination = _solved(tows, weights, scales, residual, jacobian, huber)
+        elimination = _solved(tows, guess, scales, residual, jacobian, huber)
         updated = reweighted(elimination, huber)
-        change = max(
-            (float(np.max(np.abs(a - b))) for a, b in zip(updated, weights, strict=True)),
-            default=0.0,
-        )
-        if change < ALIKE:
+        steps = [a - b for a, b in zip(updated, guess, strict=True)]
+        if max((float(np.max(np.abs(step))) for step in steps), default=0.0) < ALIKE:
             break
-        weights = updated
+        guess, before = _extrapolated(updated, steps, before)
     return elimination
+
+
+def _extrapolated(
+    updated: Sequence[FloatArray], steps: Sequence[FloatArray], before: Sequence[FloatArray] | None
+) -> tuple[Sequence[FloatArray], Sequence[FloatArray] | None]:
+    """Weights at the end of steps that fall by one factor (Aitken 1926), after two such; and the
+    steps that the next are compared with.
+    """
+    if before is None:
+        return updated, steps
+    square = sum(float(np.vdot(old, old)) for old in before)
+    along = sum(float(np.vdot(new, old)) for new, old in zip(steps, before, strict=True))
+    if not 0.0 < along < STEADY * square:
+        return updated, steps
+    beyond = along / (square - along)
+    ends = [
+        np.clip(weight + beyond * step, 0.5 * weight, 1.0)
+        for weight, step in zip(updated, steps, strict=True)
+    ]
+    return ends, None
 
 
 def reweighted(elimination: NuisanceElimination, huber: float) -> tuple[FloatArray, ...]:

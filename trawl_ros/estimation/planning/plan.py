@@ -126,6 +126,7 @@ def plan_for(
     TrawlError
         If there is nothing to choose from, or no time for two legs.
     """
+    gear.require_boards('for whose coefficients a trial could be planned')
     prior = board_prior(gear)
     predictor = predictor_for(gear)
     explorer = Explorer(predictor, prior.start, limits)

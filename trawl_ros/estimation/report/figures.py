@@ -18,6 +18,12 @@ COURSE = 'How it got there'
 
 def drawings(report: Report) -> list[Drawing]:
     """Return all figures for which the report has the numbers."""
+    if report.paired:
+        return [*_fit(report), _objective(report)]
+    return [*_fit(report), *_known(report), _objective(report), _convergence(report)]
+
+
+def _fit(report: Report) -> list[Drawing]:
     return [
         Drawing(
             'held_out',
@@ -44,6 +50,11 @@ def drawings(report: Report) -> list[Drawing]:
             'either way, in each tow. Shaded: what was known of it before.',
             tow_biases_figure(report), FIT,
         ),
+    ]  # fmt: skip
+
+
+def _known(report: Report) -> list[Drawing]:
+    return [
         Drawing(
             'coefficients',
             'Each coefficient by its departure from the start, in standard deviations of the '
@@ -62,16 +73,24 @@ def drawings(report: Report) -> list[Drawing]:
             '95 % bands. Shaded: where the boards worked, where that is known.',
             lift_drag_figure(report), KNOWN,
         ),
-        Drawing(
-            'objective',
-            "Objective of eq. 35 over the iterations, as in the paper's Fig. 4. Windows are "
-            'taken in as they come, so the start values are drawn for the same windows.',
-            objective_figure(report), COURSE,
-        ),
-        Drawing(
-            'convergence',
-            'Each coefficient with its 95 % interval after each window, and at rest. Grey: the '
-            'prior. Dotted: the truth, where it is known. Upright lines: another tow begins.',
-            convergence_figure(report), COURSE,
-        ),
     ]  # fmt: skip
+
+
+def _objective(report: Report) -> Drawing:
+    return Drawing(
+        'objective',
+        "Objective of eq. 35 over the iterations, as in the paper's Fig. 4. Windows are "
+        'taken in as they come, so the start values are drawn for the same windows.',
+        objective_figure(report),
+        COURSE,
+    )
+
+
+def _convergence(report: Report) -> Drawing:
+    return Drawing(
+        'convergence',
+        'Each coefficient with its 95 % interval after each window, and at rest. Grey: the '
+        'prior. Dotted: the truth, where it is known. Upright lines: another tow begins.',
+        convergence_figure(report),
+        COURSE,
+    )

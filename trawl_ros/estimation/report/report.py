@@ -96,7 +96,9 @@ class Report:
     spectrum
         Information of the data by direction.
     laws
-        Quantities of the boards' laws; None where the gear is not at hand.
+        Quantities of the boards' laws; None where the gear is not at hand, or has no boards.
+    paired
+        True for a gear without boards, whose coefficients do nothing.
 
     Examples
     --------
@@ -125,6 +127,7 @@ class Report:
     history: tuple[Progress, ...]
     spectrum: Spectrum
     laws: KnownLaws | None
+    paired: bool = False
 
     @property
     def inputs(self) -> FloatArray:
@@ -230,7 +233,8 @@ def report(
         course=tuple(identification.course),
         history=tuple(estimator.history),
         spectrum=spectrum(estimate.covariance, estimator.prior, weight),
-        laws=None if gear is None else _laws(at_end, estimate, gear),
+        laws=None if gear is None or gear.pair is not None else _laws(at_end, estimate, gear),
+        paired=gear is not None and gear.pair is not None,
     )
 
 

@@ -4,12 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.units import UNITS
 from trawl_ros.estimation.windows.buffers import ChannelBuffer
 from trawl_ros.estimation.windows.operation import Unheld
 from trawl_ros.estimation.windows.records import WindowOptions
-from trawl_ros.estimation.windows.statistics import error_of_mean, longest_run, outliers, trend
+from trawl_ros.estimation.windows.statistics import (
+    error_of_mean,
+    leaps,
+    longest_run,
+    outliers,
+    trend,
+)
 from trawl_ros.estimation.windows.unit_errors import plausible_unit
 from trawl_ros.estimation.windows.watermark import NANO
 from trawl_ros.records.channels import Channel
@@ -17,8 +23,8 @@ from trawl_ros.records.channels import Channel
 
 @dataclass(frozen=True)
 class ChannelMean:
-    """``mean`` of ``count`` readings, its standard error ``noise``, how many outliers were
-    ``excluded``, and how far it may be from where it will rest.
+    """``mean`` of ``count`` readings, its standard error ``noise``, how many outliers and false
+    echoes were ``excluded``, and how far it may be from where it will rest.
     """
 
     mean: float
@@ -49,11 +55,17 @@ def channel_mean(
     run = longest_run(values)
     if channel.lively and run >= options.frozen_count and 2 * run >= len(values):
         return Unheld('frozen', f'{where} repeats {values[-1]:g} {run} times')
-    off = outliers(values, stated, options.outlier_limit)
-    excluded = int(np.count_nonzero(off))
-    if excluded > options.outlier_fraction * len(values):
-        return Unheld('outlier', f'{where} has {excluded} outliers in {len(values)} readings')
-    seconds, values = seconds[~off], values[~off]
+    # False echoes first: they say nothing of the noise, whose outliers cast doubt on a mean.
+    echoes, off = excluded_readings(values, stated, channel, options)
+    false, excluded = int(np.count_nonzero(echoes)), int(np.count_nonzero(off))
+    if 2 * false >= len(values):
+        return Unheld('outlier', f'{where} has {false} false echoes in {len(values)} readings')
+    if excluded > options.outlier_fraction * (len(values) - false):
+        return Unheld(
+            'outlier', f'{where} has {excluded} outliers in {len(values) - false} readings'
+        )
+    seconds, values = seconds[~(echoes | off)], values[~(echoes | off)]
+    excluded += false
     mean = float(values.mean())
     noise, to_come = error_of_mean(values, stated), 0.0
     if channel.settles:
@@ -68,6 +80,17 @@ def channel_mean(
         # A slow decay has as much still to come as its slope brings in that time.
         to_come = change.beyond_noise * options.slow_s / options.window_s
     return ChannelMean(mean, noise, len(values), excluded, to_come)
+
+
+def excluded_readings(
+    values: FloatArray, stated: float, channel: Channel, options: WindowOptions
+) -> tuple[BoolArray, BoolArray]:
+    """Masks (n,) of a window's false echoes, and of the outliers among the others."""
+    echoes = leaps(values, channel.leap)
+    off = np.zeros(len(values), dtype=np.bool_)
+    if not echoes.all():
+        off[~echoes] = outliers(values[~echoes], stated, options.outlier_limit)
+    return echoes, off
 
 
 def _outside(where: str, channel: Channel, outside: FloatArray) -> Unheld:

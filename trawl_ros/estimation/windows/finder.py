@@ -48,6 +48,8 @@ class SteadyWindowFinder:
         Counts by reason, of what `REASONS` says, and what was found.
     arrived, readings : Counter
         Channel → readings that came, and those of them that were accepted.
+    settle_s : float
+        Longest time (s) of settling that any warp lengths and speed so far asked for.
     """
 
     def __init__(
@@ -65,6 +67,7 @@ class SteadyWindowFinder:
         self.rejections = Rejections()
         self.arrived: Counter[str] = Counter()
         self.readings: Counter[str] = Counter()
+        self.settle_s = self._options.settle_s
         self._windows = 0
         self._state = -1
         self._tow = -1
@@ -111,7 +114,7 @@ class SteadyWindowFinder:
                 continue
             self.arrived[reading.channel] += 1
             self.readings[reading.channel] += self._buffers[reading.channel].add(reading)
-        return self._advance(self._watermark())
+        return self._advance(self._watermark()) if self._block_may_end() else []
 
     def finish(self) -> list[SteadyWindow | RejectedWindow]:
         """Decide the remaining windows: no more samples will come."""
@@ -127,6 +130,13 @@ class SteadyWindowFinder:
             self._begin_tow()
         self._clear()
         return decided
+
+    def _block_may_end(self) -> bool:
+        """True if the winches, which the watermark never passes, are beyond the present block."""
+        lead = self._winch_watermark.lead
+        if lead is None:
+            return False
+        return self._next_block is None or lead // self._block_ns > self._next_block
 
     def _watermark(self) -> int | None:
         """Watermark: stamp (ns) that all channels have passed that are waited for."""
@@ -167,6 +177,7 @@ class SteadyWindowFinder:
         end_ns = (index + 1) * self._block_ns
         self._look_for_tow(end_ns - self._block_ns, end_ns)
         self._operation.add(self._summary(index))
+        self.settle_s = max(self.settle_s, self._operation.settle_s)
         start_ns = end_ns - self._operation.window_blocks * self._block_ns
         decided = self._decide(start_ns, end_ns) if self._operation.full else []
         for buffer in self._buffers.values():

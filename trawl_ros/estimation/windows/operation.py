@@ -54,8 +54,8 @@ class Operation:
         self._blocks.append(block)
 
     @property
-    def settle_blocks(self) -> int:
-        """Number of blocks of settling at the warp lengths and speed of the window."""
+    def settle_s(self) -> float:
+        """Time (s) of settling at the warp lengths and speed of the window."""
         options = self._options
         settle = options.settle_s
         window = [block.inputs for block in list(self._blocks)[-self.window_blocks :]]
@@ -65,7 +65,12 @@ class Operation:
             passage = gear / max(speed, SLOWEST)
             settle = max(settle, options.settle_passages * passage)
             settle = min(settle, max(options.settle_s, options.longest_settle_s))
-        return math.ceil(settle / options.block_s)
+        return float(settle)
+
+    @property
+    def settle_blocks(self) -> int:
+        """Number of blocks of settling at the warp lengths and speed of the window."""
+        return math.ceil(self.settle_s / self._options.block_s)
 
     @property
     def full(self) -> bool:

@@ -109,6 +109,14 @@ def outliers(values: FloatArray, stated: float, limit: float) -> BoolArray:
     return distance > limit * spread
 
 
+def leaps(values: FloatArray, leap: float) -> BoolArray:
+    """Mask (n,) of values further than ``leap`` from the median: no quantity moves so far."""
+    if len(values) == 0:
+        return np.zeros(0, dtype=np.bool_)
+    far: BoolArray = np.abs(values - np.median(values)) > leap
+    return far
+
+
 def wrapped(angles: FloatArray) -> FloatArray:
     """Wrap angles (n,) in rad into ±π."""
     return (angles + math.pi) % (2.0 * math.pi) - math.pi

@@ -138,7 +138,7 @@ class ErrorChannel:
         reading = value * (1.0 + errors.scale) + errors.offset + self._drift_at(stamp)
         reading += self._bias_of(state) + self._correlated_at(stamp)
         reading += self._white.draw(value) + self._outlier()
-        reading += sum(echoes.draw() for echoes in self._false_echoes)
+        reading += sum(echoes.draw(value) for echoes in self._false_echoes)
         reading = self._with_faults(reading, stamp)
         reading = min(max(reading, errors.lowest), errors.highest)
         if errors.resolution > 0 and math.isfinite(reading):

@@ -1,4 +1,4 @@
-"""False echoes of an acoustic range: reflections that came a longer way, and ambiguous ranges."""
+"""False echoes of an acoustic range: ways that are longer, twice as long, or of another period."""
 
 from dataclasses import dataclass
 
@@ -19,6 +19,8 @@ class FalseEchoModel:
         taken for one that is a whole period of the ranging longer.
     ambiguous
         True for an ambiguous range.
+    multiple
+        The quantity this many times: 2 for sound that went there and back twice; 1 for once.
     run
         Mean number of readings in a row; 1 / (1 - share) is that of independent ones, and the
         least.
@@ -27,6 +29,7 @@ class FalseEchoModel:
     share: float = 0.0
     longer: float = 0.0
     ambiguous: bool = False
+    multiple: float = 1.0
     run: float = 1.0
 
 
@@ -52,10 +55,11 @@ class FalseEchoes:
         else:
             self._goes_on = self._begins = model.share
 
-    def draw(self) -> float:
-        """Draw by how much the next reading is too long; 0 for a true echo."""
+    def draw(self, value: float) -> float:
+        """Draw by how much the next reading, of ``value``, is too long; 0 for a true echo."""
         if self._model.share == 0.0:
             return 0.0
         self._on = self._generator.random() < (self._goes_on if self._on else self._begins)
         size = 1.0 if self._model.ambiguous else float(self._generator.standard_exponential())
-        return self._model.longer * size if self._on else 0.0
+        longer = self._model.longer * size + (self._model.multiple - 1.0) * value
+        return longer if self._on else 0.0

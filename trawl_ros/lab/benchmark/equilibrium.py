@@ -13,10 +13,13 @@ from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state
+from trawl_ros.solver.factor import factorised
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
+from trawl_ros.solver.stability import FALLING, SWINGING
 
 WARM_MS, SENSITIVITIES_MS = 12.0, 20.0
 COLD_S, STABLE_S = 0.2, 0.25
@@ -26,6 +29,8 @@ CHANGES = ((20.0, 0.0), (-20.0, 0.0), (0.0, 0.05), (0.0, -0.05), (100.0, 0.0), (
 """Of warp length (m) and speed (m/s), from 500 m and 2.1 m/s."""
 
 COLD_POINTS = ((300.0, 2.1), (500.0, 1.9), (500.0, 2.1), (700.0, 2.1), (900.0, 2.1))
+
+KERNEL_REPEATS = 21
 
 TRAWLKIT_COARSE = 2
 """Divisions per panel of the small version; the default is trawlkit's own."""
@@ -46,6 +51,9 @@ def measure(small: bool) -> Findings:
     cold = [median_s(_cold(model, *point), 1 if small else 3) for point in points]
     usable = [median_s(_usable(model, *point), 1 if small else 3) for point in points]
     near = median_s(lambda: steady_state(model, 520.0, 2.1, start=known), repeats)
+    kernels = _kernels(model, known)
+    counts = [find_equilibrium(model, _point(500.0 + dl, 2.1 + du), known).iterations
+              for dl, du in CHANGES]  # fmt: skip
     size = f'{model.nodes} nodes, {len(model.ends)} bars, two boards in 6-DOF'
     rows = [
         MeasuredValue(
@@ -54,14 +62,18 @@ def measure(small: bool) -> Findings:
             'ms',
             at_most(WARM_MS),
             f'{size}; median over {len(CHANGES)} changes of warp length (±20, ±100 m) and speed '
-            f'(±0.05 m/s), {1e3 * min(warm):.0f} to {1e3 * max(warm):.0f} ms',
+            f'(±0.05 m/s), {1e3 * min(warm):.0f} to {1e3 * max(warm):.0f} ms; '
+            f'{min(counts)} to {max(counts)} iterations, {kernels}; bars that become slack '
+            'or taut on the way ask for derivatives and factorisation anew',
         ),
         MeasuredValue(
             'the same, warm, with the derivatives by all parameters',
             1e3 * median(derived),
             'ms',
             at_most(SENSITIVITIES_MS),
-            f'{len(PARAMETERS)} of them; {1e3 * min(derived):.0f} to {1e3 * max(derived):.0f} ms',
+            f'{len(PARAMETERS)} of them; {1e3 * min(derived):.0f} to {1e3 * max(derived):.0f} ms; '
+            f'{1e3 * (median(derived) - median(warm)):.0f} ms for one factorisation, the solution '
+            'for all of them and the observables along each',
         ),
         MeasuredValue(
             'the same, cold',
@@ -76,7 +88,10 @@ def measure(small: bool) -> Findings:
             median(usable),
             's',
             at_most(STABLE_S),
-            f'slowest {max(usable):.2f} s',
+            f'slowest {max(usable):.2f} s; {median(usable) - median(cold):.2f} s for the '
+            f'eigenvalues around {len(FALLING) + 1 + len(SWINGING)} points, each a '
+            f'factorisation and the solutions of an Arnoldi search, complex ones '
+            f'around {len(SWINGING)} of them',
         ),
         MeasuredValue(
             'the same, warm, with the check of stability', 1e3 * near, 'ms', note='+20 m of warp'
@@ -86,11 +101,27 @@ def measure(small: bool) -> Findings:
     rows += _beside_moorpy(median(warm), small=small)
     return Findings(
         tuple(rows),
-        text='A warm start begins at a known steady state nearby, as a fit or a trial does; a '
-        'cold one begins with straight ropes. All end at the same residual. trawlkit solves '
-        'another and smaller problem, a bottom trawl of its own by dynamic relaxation with doors '
-        'as points, each speed starting from the one before; MoorPy one wire alone.',
+        text='A warm start begins at a known steady state nearby, whose factorisation is at hand '
+        'or, as in a fit, its derivatives; a cold one begins with straight ropes. All end at the '
+        'same residual. trawlkit solves another and smaller problem, a bottom trawl of its own by '
+        'dynamic relaxation with doors as points, each speed starting from the one '
+        'before; MoorPy one wire alone.',
     )
+
+
+def _kernels(model: GearModel, known: Equilibrium) -> str:
+    """Times of what an iteration is made of, in words."""
+    at = model, known.state, known.tow
+    here = linearised(*at)
+    factor = factorised(model.pattern, here.stiffness)
+    works: dict[str, Callable[[], object]] = {
+        'forces': lambda: forces(*at),
+        'their derivatives': lambda: linearised(*at),
+        'a factorisation': lambda: factorised(model.pattern, here.stiffness),
+        'a solution': lambda: factor.solve(here.force),
+    }
+    times = [f'{name} {1e3 * median_s(work, KERNEL_REPEATS):.2f}' for name, work in works.items()]
+    return ', '.join(times) + ' ms'
 
 
 def _warm_s(

@@ -116,6 +116,8 @@ def _simulation(model: GearModel, duration_s: float) -> MeasuredValue:
     """Row on the tow as `sim_node` and `trawl tow` advance it."""
     period_s = 0.1
     simulation = Simulation(model, FROM, period=period_s)
+    # Compiling, at the first start after an installation, is left out.
+    simulation.advance()
     simulation.command = TO
 
     def tow() -> None:

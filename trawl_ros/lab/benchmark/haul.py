@@ -106,7 +106,7 @@ def _tows(model: GearModel, gear: GearRecord, steps: int) -> tuple[Tow, ...]:
     ship = Ship(np.zeros(3), 0.0, FROM.speed, 0.0)
     winches = (Winch(FROM.port_length, 0.0), Winch(FROM.starboard_length, 0.0))
     tows = [tow_of(model, ship, winches)]
-    current = model.water.current(np.array(0.0))
+    current = model.water.surface_current
     for _ in range(steps):
         ship = ship.advanced(gear.ship, TO.speed, TO.turn_rate, current, FINEST_S)
         winches = (

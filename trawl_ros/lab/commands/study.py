@@ -37,10 +37,12 @@ from trawl_ros.lab.studies.identification.report import REPORT as IDENTIFICATION
 from trawl_ros.lab.studies.identification.report import write_identification
 from trawl_ros.lab.studies.identification.study import EstimationStudyPlan as IdentificationPlan
 from trawl_ros.lab.studies.identification.study import run_study
+from trawl_ros.lab.studies.instruments.calibrations import read_calibrations
 from trawl_ros.lab.studies.instruments.report import REPORT as INSTRUMENTS_REPORT
-from trawl_ros.lab.studies.instruments.report import write_instruments
+from trawl_ros.lab.studies.instruments.report import FurtherTables, write_instruments
 from trawl_ros.lab.studies.instruments.study import SEED as INSTRUMENTS_SEED
 from trawl_ros.lab.studies.instruments.study import run_instruments
+from trawl_ros.lab.studies.instruments.wire_steps import read_steps
 from trawl_ros.lab.studies.robustness.report import REPORT as ROBUSTNESS_REPORT
 from trawl_ros.lab.studies.robustness.report import write_robustness
 from trawl_ros.lab.studies.robustness.study import LENGTHS, RobustnessPlan, run_robustness
@@ -188,22 +190,31 @@ def identification(
 @click.option('--table', 'table', type=FILE, required=True,
               help='Readings of a survey, CSV packed by gzip: HAUL, t, CABINET_SENSOR_FLAG, VALUE, '
               'DATUM_CODE.')  # fmt: skip
-@click.option('--instruments', default='measured', show_default=True,
+@click.option('--beside', type=FOLDER,
+              help='Folder with further tables: a sea experiment with stepped lengths of wire, '
+              'counters beside marks on the wire, and distances on a dock.')  # fmt: skip
+@click.option('--instruments', default='default', show_default=True,
               help='File or name of instrument parameters.')  # fmt: skip
 @REPORT_OPTION
 @click.option('--seed', default=INSTRUMENTS_SEED, show_default=True,
               type=click.IntRange(0, 2**31), help='Of the simulated readings.')  # fmt: skip
 @FORCE_OPTION
-def instruments(table: Path, instruments: str, out: Path, seed: int, force: bool) -> None:
+def instruments(
+    table: Path, beside: Path | None, instruments: str, out: Path, seed: int, force: bool
+) -> None:
     """Set simulated range sensors beside those of a survey, haul by haul.
 
     Writes instruments.json, .md, .html and figures; a target that is missed is part of the report.
     """
     ship = load_instruments(instruments)
+    further = (
+        None if beside is None else FurtherTables(read_steps(beside), read_calibrations(beside))
+    )
     empty_folder(out, force=force)
     with stoppable() as (display, _):
         found = run_instruments(table, ship, display, seed)
-    print_outcome(write_instruments(out, found, instruments, seed), out / INSTRUMENTS_REPORT)
+    rows = write_instruments(out, found, instruments, seed, further)
+    print_outcome(rows, out / INSTRUMENTS_REPORT)
 
 
 @command.command('counters')

@@ -60,7 +60,10 @@ class Processes:
             for word in ('-p', f'{key}:={json.dumps(value)}')
         ]
         code = (
-            'import signal, sys; signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT]); '
+            # Until the node hears it, the signal ends the process: an extension that is being
+            # imported makes an ImportError of a KeyboardInterrupt.
+            'import signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); '
+            'signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT]); '
             f"sys.argv[0] = '{node}'; from trawl_ros.nodes.{node} import main; sys.exit(main())"
         )
         command = [sys.executable, '-c', code, '--ros-args', *options]

@@ -25,9 +25,11 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
             'degrees_of_freedom',
             'identified',
             'sentences',
+            'moment_signs',
         ),
         'peers': ('moordyn_wire', 'moorpy_wire'),
-        'branches': ('steady_states',),
+        'branches': ('steady_states', 'fastening_points'),
+        'sea': ('hauls',),
     }
 )
 """Sub-package of `trawl_ros.lab.validation` → its modules, each with a ``CASE`` of that name."""
@@ -39,6 +41,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'paper': 'The paper, section IV',
         'peers': 'Peers',
         'branches': 'Branches',
+        'sea': 'Hauls at sea',
     }
 )
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.gear.net_plan import NetPlanRecord
-from trawl_ros.gear.records import NettingRecord
+from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.model.net.kite_nodes import NO_KITE, KiteNodes
 from trawl_ros.model.net.planned_cloth import PlannedCloth, sections_of
 from trawl_ros.model.net.planned_mouth import Place, PlannedMouth

@@ -6,12 +6,15 @@ from functools import cached_property
 import numpy as np
 
 from trawl_ros.gear.net_plan import NetPlanRecord, Part, PieceRecord
-from trawl_ros.gear.records import NettingRecord, SectionRecord
+from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.planned_mouth import PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile
 
 SEA = 1025.0
 """Density (kg/m³) of the water in the twines."""
+
+WIDEST = np.radians(80.0)
+"""Angle of bars beyond which knots do not keep them."""
 
 LEAST_SHARE = 0.3
 """Part of its column that a bar at the edge of a wing has at least, so that it can bear a load."""
@@ -19,15 +22,31 @@ LEAST_SHARE = 0.3
 PANELS = ('upper', 'side', 'lower')
 
 
+def mesh_angle(piece: PieceRecord, net: NettingRecord) -> float:
+    """Angle (rad) of the bars of a piece against the flow, where they lie as in a codend.
+
+    Of meshes turned by 90° the knots lie across, as a third pair of sides of hexagons (Priour 2014,
+    doi 10.1016/j.oceaneng.2014.09.037), and keep the bars apart: with knots k of a mesh m long its
+    width is m sin θ - 2k sin θ + 2k. Without knots nothing changes.
+    """
+    angle = float(np.radians(net.codend_mesh_angle_deg))
+    if piece.orientation != 'T90' or piece.knots == 'knotless':
+        return angle
+    knots = min(2 * net.knot_diameters * piece.twine.diameter / piece.mesh, 1.0)
+    sine = np.sin(angle) + knots * (1.0 - np.sin(angle))
+    return float(min(np.arcsin(sine), WIDEST))
+
+
 def shielding(piece: PieceRecord, net: NettingRecord) -> float:
     """Part of the drag of single twines that is left in a piece of netting.
 
     As for a porous screen (Taylor 1944): with a resistance K per sheet area the water goes through
     it at 1 / (1 + K / 4) of its speed. K is that of the twines and knots on the area of the meshes
-    at the opening of the gear file.
+    at the opening of the gear file, or that their orientation gives them.
     """
     bar, diameter = 0.5 * piece.mesh, piece.twine.diameter * piece.twines
-    open_area = bar**2 * np.sin(2 * np.radians(net.codend_mesh_angle_deg))
+    angle = np.pi / 4 if piece.orientation == 'square' else mesh_angle(piece, net)
+    open_area = bar**2 * np.sin(2 * angle)
     blocked = net.normal_drag * 2 * bar * diameter
     if piece.knots == 'knotted':
         knot = net.knot_diameters * piece.twine.diameter
@@ -52,6 +71,10 @@ def section_of(
         twines=piece.twines,
         knotless=piece.knots == 'knotless',
         shielding=shielding(piece, net),
+        mesh_angle_deg=(
+            float(np.degrees(mesh_angle(piece, net))) if piece.orientation == 'T90' else None
+        ),
+        square=piece.orientation == 'square',
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.limits import GEAR_NODES
-from trawl_ros.gear.records import SectionRecord
+from trawl_ros.gear.netting import SectionRecord
 
 SLICES = 64
 """Slices along a row over which the sections' properties are summed."""
@@ -81,25 +81,44 @@ class Profile:
         Netting ahead of the mouth is taken to be like that at the mouth.
         """
         sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume', 'felt'
-        total = dict.fromkeys(sums, 0.0)
+        # Of what is felt: that of bars with an angle of their own, and its sine³ and cosine³.
+        total = dict.fromkeys((*sums, 'turned', 'across', 'along'), 0.0)
         dx = (back - front) / SLICES
         for x in front + (np.arange(SLICES) + 0.5) * dx:
             section, circumference = self.at(float(x))
             parallel = circumference / section.mesh_m / around * section.twines
+            if section.square:
+                # A bar along and one across for each bar's length.
+                parallel *= 2.0
             d = section.twine_diameter_m
             twine = np.pi / 4 * d**2
             total['area'] += parallel * d * dx
             # The part of that area which the drag is as large as that of.
             total['felt'] += parallel * d * dx * section.shielding
+            if section.square or section.mesh_angle_deg is not None:
+                felt = parallel * d * dx * section.shielding
+                total['turned'] += felt
+                across, along = _cubes(section)
+                total['across'] += felt * across
+                total['along'] += felt * along
             total['width'] += d * dx
             total['volume'] += parallel * twine * dx
             total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx
-            total['stiffness'] += parallel * twine * section.twine_modulus_pa * dx
+            bearing = 0.5 * parallel if section.square else parallel
+            total['stiffness'] += bearing * twine * section.twine_modulus_pa * dx
             # Two knots per mesh and mesh length, shared by the two bars of a column.
             knots = 0.0 if section.knotless else parallel / (section.mesh_m / 2) * dx / 2
             total['knots'] += knots * np.pi / 4 * d**2 * section.shielding
             total['knot_volume'] += knots * np.pi / 6 * d**3
         return total
+
+
+def _cubes(section: SectionRecord) -> tuple[float, float]:
+    """Means of sine³ and cosine³ of the angle of bars that have one of their own."""
+    if section.square or section.mesh_angle_deg is None:
+        return 0.5, 0.5
+    angle = np.radians(section.mesh_angle_deg)
+    return float(np.sin(angle) ** 3), float(np.cos(angle) ** 3)
 
 
 def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tuple[NettingRow, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.gear.records import NettingRecord
+from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.planned_mouth import FrameRope
 from trawl_ros.model.net.rows import NettingRow, Profile
@@ -184,7 +184,8 @@ def add_codend(net: NettingRecord, codend: Profile, ring: list[int], made: Weave
         # Two bars make a mesh: all bars of the cross-section lie in the line.
         sums = {key: 2 * value for key, value in sums.items()}
         knots = sums['knots'] * net.knot_diameters**2 * net.knot_drag
-        made.line_drag[node] += sums['felt'] * per_area + knots
+        turned = net.normal_drag * sums['across'] + net.friction * np.pi * sums['along']
+        made.line_drag[node] += (sums['felt'] - sums['turned']) * per_area + turned + knots
         share = {key: value / len(previous) for key, value in sums.items()}
         for start in previous:
             made.bars.append(_bar(start, node, step, share, 0.0, 'codend'))

@@ -12,6 +12,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.lab.studies.discrepancy.scoring.costs import cost_rows, keep_cost
 from trawl_ros.lab.studies.discrepancy.scoring.figure import kind_of
 from trawl_ros.lab.studies.discrepancy.scoring.rows import (
     all_sections,
@@ -241,6 +242,18 @@ def test_another_plan_in_the_same_folder_is_refused(tmp_path):
         run_blind(BlindStudyPlan(seed=2), tmp_path, pytest.fail)
 
 
+def test_trials_per_hour_count_all_stages_of_a_trial(tmp_path):
+    assert cost_rows(tmp_path) == []
+    for stage, name, seconds in (
+        ('making trials', 'a', 2.0), ('making trials', 'b', 4.0), ('diagnosing', 'a', 6.0)
+    ):  # fmt: skip
+        keep_cost(tmp_path, stage, name, seconds)
+    (row,) = cost_rows(tmp_path)
+    assert row.value == pytest.approx(2 * 3600.0 * 2 / 12.0)
+    assert row.ok
+    assert 'making trials 3.0 s, diagnosing 3.0 s' in row.note
+
+
 @pytest.mark.slow
 def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
     out = tmp_path / 'report'
@@ -256,6 +269,10 @@ def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
     seen = {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()}
     assert len(seen) == 1
     assert len((out / 'scorings.jsonl').read_text().splitlines()) == 1
+    costs = [json.loads(line) for line in (out / 'costs.jsonl').read_text().splitlines()]
+    assert [cost['stage'] for cost in costs] == ['making trials', 'diagnosing']
+    rate = next(record for record in records if record['what'] == 'trials per hour on 2 cores')
+    assert rate['value'] == pytest.approx(7200.0 / sum(cost['s'] for cost in costs))
     again = CliRunner().invoke(trawl, few)
     assert again.exit_code == 0, again.output
     assert {path: path.stat().st_mtime_ns for path in (out / 'diagnoses').iterdir()} == seen

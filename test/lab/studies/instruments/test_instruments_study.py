@@ -2,6 +2,7 @@
 
 import gzip
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,11 @@ from click.testing import CliRunner
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.instruments.parameters import RangeParameters, load_instruments
+from trawl_ros.lab.studies.instruments.calibrations import read_calibrations
 from trawl_ros.lab.studies.instruments.course import running_median, towing
+from trawl_ros.lab.studies.instruments.disagreements import CLASSES, classified
 from trawl_ros.lab.studies.instruments.guards import gate
+from trawl_ros.lab.studies.instruments.range_noise import EDGES_M, noise_at
 from trawl_ros.lab.studies.instruments.simulated import simulated
 from trawl_ros.lab.studies.instruments.statistics import SPREAD_LIMITS, STATISTICS, statistics
 from trawl_ros.lab.studies.instruments.survey import (
@@ -23,6 +27,7 @@ from trawl_ros.lab.studies.instruments.survey import (
     SurveyHaul,
     read_survey,
 )
+from trawl_ros.lab.studies.instruments.wire_steps import read_steps
 
 MEASURED = Path(__file__).parents[5] / 'shared/data/noaa_trawlmetrics' / FILE
 ABSENT = 'the measured readings are not beside this'
@@ -91,7 +96,9 @@ def test_gates_reject_repeated_seconds_and_far_readings_and_say_what_editors_did
     time = np.insert(series.time, 300, series.time[300])
     value = np.insert(series.value, 301, 16.4)
     code = np.insert(series.code, 301, 2)
-    counts, reasons = gate(Series(time, value, code), 'door_spread', 0.3)
+    found = gate(Series(time, value, code), 'door_spread', 0.3)
+    counts, reasons = found.counts, found.reasons
+    assert found.differing['period'] == counts.off
     assert (counts.readings, counts.by_editors) == (len(time), 1)
     assert (counts.stamps, counts.both) == (1, 1)
     assert counts.agreement(with_outliers=False) == 1.0
@@ -135,8 +142,58 @@ def test_measured_hauls_repeat_seconds_and_are_ambiguous_by_210_metres():
             series = one.series
             repeated = np.append(False, np.diff(series.time) == 0.0)
             assert np.count_nonzero(series.code) == np.count_nonzero(repeated)
-    ship = load_instruments('measured')
+    ship = load_instruments()
     far = [statistics(one.series.kept(), SPREAD_LIMITS)['far'] for one in survey[SPREAD][1::2]]
     made = simulated(survey[SPREAD][0], ship.door.spread, 20)
     low, high = np.percentile(far, [5, 95])
     assert low < statistics(made, SPREAD_LIMITS)['far'] < high
+
+
+def test_disagreements_are_told_by_what_is_wrong_with_the_readings():
+    values = np.full(40, 16.0)
+    wrong = {3: 226.5, 8: 32.5, 12: 50.0, 15: 19.0, 20: 12.0, 30: 18.5, 31: 18.5, 32: 18.6}
+    values[list(wrong)] = list(wrong.values())
+    found = classified(values, values != 16.0)
+    assert found == {'period': 1, 'multiple': 2, 'long': 1, 'short': 1, 'level': 3}
+    assert set(found) < set(CLASSES)
+
+
+def test_silences_and_calibrations_are_read_from_tables_beside_the_survey(tmp_path):
+    (tmp_path / 'scope_steps_2023_treatments.csv').write_text(
+        'HAUL_ID,start,end,WIRE_OUT\n7,0,100,90\n7,200,300,180\n8,0,,200\n'
+    )
+    stamps = [*range(0, 101, 5), *range(200, 231, 5), *range(280, 301, 5)]
+    for name in ('width', 'height'):
+        with gzip.open(tmp_path / f'scope_steps_2023_{name}_pings.csv.gz', 'wt') as file:
+            file.write('t,HAUL_ID\n' + ''.join(f'{t},7\n' for t in stamps))
+    first, second = read_steps(tmp_path)['spread']
+    assert (first.wire_m, first.readings, first.silent_s) == (90.0, 21, 0.0)
+    assert (second.wire_m, second.readings, second.silent_s) == (180.0, 12, 50.0)
+    rows = ''.join(f'{k},{1.03 * k + 7},{1.02 * k + 6}\n' for k in range(25, 500, 25))
+    (tmp_path / 'nwx_wire_vs_counter.csv').write_text(
+        'wire_out_fm,winch_stbd_fm,winch_port_fm\n' + rows
+    )
+    (tmp_path / 'dock_spread_sensor_calibration.csv').write_text(
+        'distance_m,obs_wing_m\n0,2.7\n10,12.5\n20,22.7\n'
+    )
+    starboard, port, dock = read_calibrations(tmp_path)
+    assert (starboard.scale_error, starboard.offset) == pytest.approx((0.03, 7 * 1.8288))
+    assert (port.scale_error, port.offset) == pytest.approx((0.02, 6 * 1.8288))
+    assert dock.scatter == pytest.approx(np.sqrt(4 / 6 * 0.2**2), rel=0.01)
+    with pytest.raises(TrawlError, match='cannot be read, expected'):
+        read_steps(tmp_path / 'nowhere')
+    with pytest.raises(TrawlError, match='cannot be read, expected'):
+        read_calibrations(tmp_path / 'nowhere')
+
+
+def test_noise_against_the_distance_is_that_of_readings_and_not_of_a_steady_change():
+    draw = np.random.default_rng(3).standard_normal
+    time = 3.0 * np.arange(4000.0)
+    far = 10.0 + 0.001 * time
+    series = Series(time, far + 0.3 * draw(4000), np.zeros(4000, dtype=np.int64))
+    for (low, high), (std, number) in zip(pairwise(EDGES_M), noise_at([series]), strict=True):
+        if low >= 12.0 and high <= 20.0:
+            assert (std, number) == (pytest.approx(0.3, rel=0.1), pytest.approx(1333, rel=0.03))
+        if high <= 8.0:
+            assert np.isnan(std)
+            assert number == 0

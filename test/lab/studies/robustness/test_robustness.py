@@ -13,7 +13,12 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.robustness.changed_values import changed, numbers, tow_outcome
 from trawl_ros.lab.studies.robustness.random_commands import commanded_hour
 from trawl_ros.lab.studies.robustness.report import write_robustness
-from trawl_ros.lab.studies.robustness.study import RobustnessPlan, kept, run_robustness
+from trawl_ros.lab.studies.robustness.study import (
+    RobustnessPlan,
+    RobustnessTrial,
+    kept,
+    run_robustness,
+)
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.model.rotations import about_axis
@@ -81,3 +86,19 @@ def test_it_resumes_with_what_is_not_kept_yet(tmp_path: Path) -> None:
     path.write_text('[]\n')
     with pytest.raises(TrawlError, match='line 1 is not a trial'):
         kept(tmp_path)
+
+
+def test_the_report_tells_hours_that_failed_with_their_interval(tmp_path: Path) -> None:
+    hours = [
+        RobustnessTrial('commands', f'hour {seed}', 12, 'towed', '', 9.0, 60.0 * seed)
+        for seed in range(9)
+    ]
+    failed = RobustnessTrial('commands', 'hour 9', 12, 'failed', 'no step', 9.0)
+    rows = {row.what: row for row in write_robustness(tmp_path, [*hours, failed])}
+    share = rows['share of hours that ended before their time']
+    # Clopper and Pearson: 1 of 10.
+    assert (share.low, share.value, share.high) == pytest.approx((0.253, 10.0, 44.50), abs=0.01)
+    assert rows['hours in which a board fell'].value == 8
+    assert not rows['hours that ended before their time'].ok
+    assert (tmp_path / 'robustness.png').is_file()
+    assert 'hour 9: no step' in (tmp_path / 'robustness.md').read_text()

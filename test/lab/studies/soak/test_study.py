@@ -42,7 +42,7 @@ def test_it_may_be_ended_early(coarse_gear, tmp_path):
 @pytest.mark.parametrize(
     ('options', 'sentence'),
     [
-        (['--gear', 'unheard-of'], 'there are: kaifuha.yaml'),
+        (['--gear', 'unheard-of'], 'kaifuha.yaml'),
         (['--hours', '100'], '--hours'),
     ],
 )

@@ -13,6 +13,7 @@ FIGURES = {
     'degrees_of_freedom': ('fig13_to_16', 'all_states'),
     'identified': ('fig4', 'fig5'),
     'sentences': (),
+    'moment_signs': (),
 }
 
 

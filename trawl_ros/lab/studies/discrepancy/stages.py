@@ -13,6 +13,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder, made_folder, write_json
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.lab.studies.discrepancy.diagnosing import DiagnosisTask, diagnose_case
+from trawl_ros.lab.studies.discrepancy.scoring.costs import COSTS, MAKING, Timed, keep_cost
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes, classes, named_right
 from trawl_ros.lab.studies.discrepancy.trials.following import proposed, tow_on
@@ -142,7 +143,9 @@ def run_blind(
 
     def stage(title: str, act: Callable[[Task], Any], tasks: Mapping[str, Task]) -> None:
         done = step_counter(title, len(tasks), on_progress)
-        for _ in run_tasks(act, tasks, scheduler=scheduler, workers=workers):
+        timed = run_tasks(Timed(act), tasks, scheduler=scheduler, workers=workers)
+        for name, seconds in timed:
+            keep_cost(folder, title, name, seconds)
             done()
 
     folder = folder.resolve()
@@ -158,7 +161,7 @@ def run_blind(
     ]
     # Those that take longest first, lest one is left over at the end.
     trials = sorted(trials, key=lambda one: one.spec.form)
-    stage('making trials', make_case, {
+    stage(MAKING, make_case, {
         f'{one.spec.series} {one.spec.number}': one
         for one in trials if not one.at('keys').is_file()
     })  # fmt: skip
@@ -239,7 +242,8 @@ def _prepare(plan: BlindStudyPlan, folder: Path, *, force: bool) -> None:
             )
         return
     empty_folder(folder, force=force)
-    (folder / CLASSES).unlink(missing_ok=True)
+    for name in (CLASSES, COSTS):
+        (folder / name).unlink(missing_ok=True)
     for part in FOLDERS:
         if about.is_file():
             rmtree(folder / part, ignore_errors=True)

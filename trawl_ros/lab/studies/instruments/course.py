@@ -29,8 +29,9 @@ def towing(series: Series) -> tuple[float, float]:
     level = np.median(value[(since > 0.3) & (since < 0.7)])
     course = running_median(time, value, NEAR_S)
     there = time[np.abs(course - level) < STEADY_PART * level]
-    begin, end = float(there[0]) + EDGE_S, float(there[-1]) - EDGE_S
-    return (begin, end) if end > begin else (float(time[0]), float(time[-1]))
+    if len(there) and there[-1] - there[0] > 2.0 * EDGE_S:
+        return float(there[0]) + EDGE_S, float(there[-1]) - EDGE_S
+    return float(time[0]), float(time[-1])
 
 
 def course_of(series: Series) -> tuple[FloatArray, FloatArray]:

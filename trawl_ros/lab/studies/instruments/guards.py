@@ -1,22 +1,25 @@
 """Gates of the estimation, run on measured readings, beside what the survey's editors rejected."""
 
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.windows.buffers import ChannelBuffer
-from trawl_ros.estimation.windows.channel_means import ChannelMean, channel_mean
+from trawl_ros.estimation.windows.channel_means import (
+    ChannelMean,
+    channel_mean,
+    excluded_readings,
+)
 from trawl_ros.estimation.windows.records import Rejections, WindowOptions
-from trawl_ros.estimation.windows.statistics import outliers
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import Watermark
 from trawl_ros.lab.studies.instruments.course import towing
+from trawl_ros.lab.studies.instruments.disagreements import classified
 from trawl_ros.lab.studies.instruments.survey import KEPT, Series
 from trawl_ros.records.channels import CHANNELS, Reading
-
-WORST_RUN = 10
-"""Readings of a haul on which gates and editors may differ without a word."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +33,8 @@ class GateCounts:
     stamps, both
         Readings that the timestamp check rejected, and those of them that the editors did too.
     towed, off, off_kept
-        Readings while towing, those that the outlier gate rejected, and those of them that the
-        editors kept.
+        Readings while towing, those that were rejected as false echoes or outliers, and those of
+        them that the editors kept.
     windows, used
         Windows of a minute while towing, and those with a mean that can be used.
     """
@@ -57,7 +60,18 @@ class GateCounts:
         return 2.0 * both / total if total else np.nan
 
 
-def gate(series: Series, channel: str, stated: float) -> tuple[GateCounts, dict[str, int]]:
+@dataclass(frozen=True)
+class GateFindings:
+    """Findings of the gates on a haul: counts, reason → windows that have no mean for it, and
+    class of `CLASSES` → readings on which gates and editors differ.
+    """
+
+    counts: GateCounts
+    reasons: Mapping[str, int]
+    differing: Mapping[str, int]
+
+
+def gate(series: Series, channel: str, stated: float) -> GateFindings:
     """Run the gates on a haul.
 
     Parameters
@@ -71,8 +85,8 @@ def gate(series: Series, channel: str, stated: float) -> tuple[GateCounts, dict[
 
     Returns
     -------
-    counts, reasons
-        Counts, and reason → number of windows that have no mean for it.
+    GateFindings
+        Counts, by reason and by class.
     """
     options, rejections = WindowOptions(), Rejections()
     of = CHANNELS[channel]
@@ -82,7 +96,7 @@ def gate(series: Series, channel: str, stated: float) -> tuple[GateCounts, dict[
     span = round(options.window_s * SECOND)
     next_end = round(begin) * SECOND + span
     stamps = both = off = off_kept = towed = windows = used = 0
-    reasons: dict[str, int] = {}
+    reasons, differing = Counter[str](), Counter[str]()
     # Of the readings that are in the buffer, by their stamps: none has a stamp twice.
     code_at: dict[int, int] = {}
     for time, value, code in zip(series.time, series.value, series.code, strict=True):
@@ -93,12 +107,15 @@ def gate(series: Series, channel: str, stated: float) -> tuple[GateCounts, dict[
             if isinstance(mean, ChannelMean):
                 used += 1
             else:
-                reasons[mean.reason] = reasons.get(mean.reason, 0) + 1
+                reasons[mean.reason] += 1
             at, values, stds = buffer.window(next_end - span, next_end)
             if len(values):
-                wild = outliers(values, float(np.median(stds)), options.outlier_limit)
+                echoes, wild = excluded_readings(values, float(np.median(stds)), of, options)
+                wild |= echoes
+                kept = wild & np.array([code_at[int(k)] == KEPT for k in at])
                 towed, off = towed + len(values), off + int(np.count_nonzero(wild))
-                off_kept += sum(code_at[int(k)] == KEPT for k in at[wild])
+                off_kept += int(np.count_nonzero(kept))
+                differing += classified(values, kept)
             next_end += span
         before = rejections.counts['duplicate stamp']
         buffer.add(Reading(channel, stamp, float(value), stated))
@@ -118,4 +135,5 @@ def gate(series: Series, channel: str, stated: float) -> tuple[GateCounts, dict[
         windows=windows,
         used=used,
     )
-    return counts, reasons
+    differing['second'] = counts.stamps + counts.by_editors - 2 * counts.both
+    return GateFindings(counts, reasons, differing)

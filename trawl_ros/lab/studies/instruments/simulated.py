@@ -10,13 +10,15 @@ from trawl_ros.lab.studies.instruments.course import course_of
 from trawl_ros.lab.studies.instruments.survey import KEPT, Series, SurveyHaul
 
 TRUTH_S = 0.2
+SHOWN_DECIMALS = 1
+"""Decimals (of m) that the survey's recorder shows."""
 
 
 def simulated(haul: SurveyHaul, parameters: RangeParameters, seed: int) -> Series:
     """Run a sensor through the course of a haul.
 
-    The recorder is that of the survey: whole seconds, and of two readings within one second
-    the first is kept.
+    The recorder is that of the survey: whole seconds, tenths of a metre, and of two readings
+    within one second the first is kept.
 
     Parameters
     ----------
@@ -41,4 +43,5 @@ def simulated(haul: SurveyHaul, parameters: RangeParameters, seed: int) -> Serie
     heard = np.isfinite(readings)
     seconds, first = np.unique(seconds[heard], return_index=True)
     codes = np.full(len(seconds), KEPT, dtype=np.int64)
-    return Series(time[0] + seconds.astype(float), readings[heard][first], codes)
+    shown = np.round(readings[heard][first], SHOWN_DECIMALS)
+    return Series(time[0] + seconds.astype(float), shown, codes)

@@ -11,6 +11,8 @@ from trawl_ros.lab.studies.instruments.survey import Series
 
 SILENCE_S = 10.0
 SLOW_LAG_S = 30.0
+WIDEST_STEP = 0.5
+"""Values (m) further apart are so by the course and not by rounding."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +46,10 @@ STATISTICS: Mapping[str, tuple[str, str]] = {
     'slow': ('correlation of near residuals, half a minute apart', ''),
     'repeated': ('readings equal to the one before', '%'),
     'shooting': ('rate while shooting and hauling, over that of towing', ''),
+    'step': ('mean step from one value that near readings have to the next', 'm'),
 }
-"""Statistics by their keys: sentence and unit. The list was fixed before any value was fitted."""
+"""Statistics by their keys: sentence and unit. The list, but for ``step``, was fixed before any
+value was fitted."""
 
 
 def statistics(series: Series, limits: Limits) -> dict[str, float]:
@@ -91,7 +95,14 @@ def statistics(series: Series, limits: Limits) -> dict[str, float]:
         'slow': _correlation(time[near], residual[near], SLOW_LAG_S),
         'repeated': 100.0 * float(np.mean(np.diff(value) == 0.0)),
         'shooting': np.count_nonzero(~towed) / outside / rate if outside > 0.0 else np.nan,
+        'step': _step(value[near]),
     }
+
+
+def _step(values: FloatArray) -> float:
+    steps = np.diff(np.unique(np.round(values, 6)))
+    steps = steps[steps < WIDEST_STEP]
+    return float(steps.mean()) if len(steps) else np.nan
 
 
 def _median(values: FloatArray) -> float:

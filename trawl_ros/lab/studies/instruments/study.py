@@ -10,7 +10,9 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.instruments.parameters import InstrumentParameters, RangeParameters
+from trawl_ros.lab.studies.instruments.disagreements import HaulDisagreement
 from trawl_ros.lab.studies.instruments.guards import GateCounts, gate
+from trawl_ros.lab.studies.instruments.range_noise import noise_at
 from trawl_ros.lab.studies.instruments.simulated import simulated
 from trawl_ros.lab.studies.instruments.statistics import (
     HEIGHT_LIMITS,
@@ -94,7 +96,8 @@ class Comparison:
 class SensorFindings:
     """Findings on one sensor: comparisons over the hauls of odd numbers, which judge, and of even
     ones, which values were chosen by; gates over all hauls, and reasons of windows without a
-    mean; a measured haul and the simulated one beside it.
+    mean; disagreements of gates and editors, haul by haul; noise of measured and simulated
+    readings per class of distance; a measured haul and the simulated one beside it.
     """
 
     sensor: Sensor
@@ -102,6 +105,8 @@ class SensorFindings:
     fitted: Comparison
     gates: GateCounts
     reasons: Mapping[str, int]
+    disagreements: Sequence[HaulDisagreement]
+    noise: tuple[Sequence[tuple[float, int]], Sequence[tuple[float, int]]]
     pair: tuple[Series, Series]
 
 
@@ -135,17 +140,26 @@ def run_instruments(
         stated = parameters.model().stated_std
         readings: dict[int, tuple[Series, Series]] = {}
         gates, reasons = GateCounts(), Counter[str]()
+        disagreements = []
         for haul in hauls:
             readings[haul.number] = haul.series.kept(), simulated(haul, parameters, seed)
-            counts, why = gate(haul.series, sensor.channel, stated)
-            gates += counts
-            reasons.update(why)
+            gated = gate(haul.series, sensor.channel, stated)
+            gates += gated.counts
+            reasons.update(gated.reasons)
+            disagreements.append(
+                HaulDisagreement(haul.number, len(haul.series.time), gated.differing)
+            )
             done()
         odd = [readings[haul.number] for haul in hauls if haul.number % 2]
         even = [readings[haul.number] for haul in hauls if not haul.number % 2]
+        measured, made = (noise_at(side) for side in zip(*readings.values(), strict=True))
         pair = readings[_typical(hauls)]
         judged, fitted = _compared(odd, sensor.limits), _compared(even, sensor.limits)
-        found.append(SensorFindings(sensor, judged, fitted, gates, reasons, pair))
+        found.append(
+            SensorFindings(
+                sensor, judged, fitted, gates, reasons, disagreements, (measured, made), pair
+            )
+        )
     return found
 
 

@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
-from pydantic import ValidationError
-
-from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.core.errors import GearError, NoSteadyState, TrawlError
+from trawl_ros.core.schema import validated
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
@@ -39,11 +38,11 @@ def changed(gear: GearRecord, key: str, factor: float) -> GearRecord:
 
     Raises
     ------
-    ValidationError
+    GearError
         If a gear file may not have that number.
     """
     data = _scaled(gear.model_dump(), key.split('.'), factor)
-    return GearRecord.model_validate(data)
+    return validated(GearRecord, data, 'changed gear', GearError)
 
 
 def _scaled(value: object, way: list[str], factor: float) -> object:
@@ -66,6 +65,6 @@ def tow_outcome(gear: GearRecord, key: str, factor: float, length: float) -> tup
         steady_state(build_model(changed(gear, key, factor)), length, SPEED)
     except NoSteadyState as refusal:
         return refusal.reason, str(refusal)
-    except (ValidationError, TrawlError) as reason:
+    except TrawlError as reason:
         return 'impossible', str(reason).replace('\n', ' ')
     return 'usable', ''

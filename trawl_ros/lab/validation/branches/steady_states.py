@@ -10,7 +10,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
-from trawl_ros.lab.validation.branches.branch_limits import limit_findings
+from trawl_ros.lab.validation.branches.branch_limits import MIDDLE, limit_findings
 from trawl_ros.lab.validation.branches.collapsed_starts import OutcomeTally, collapsed_shapes, tally
 from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
@@ -87,6 +87,8 @@ def run(small: bool) -> Findings:
         coarse = gear.netting.model_copy(update={'around': 12})
         gear = gear.model_copy(update={'netting': coarse})
     model = build_model(gear)
+    # Compiling at first use is no time of an answer.
+    require_usable(model, find_equilibrium(model, OperatingPoint(MIDDLE, MIDDLE, SPEED)))
     speeds = speed_lattice(model, size.lengths, size.speeds)
     angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
     collapsed_checks, collapsed_table = _collapsed(model, size)

@@ -11,6 +11,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
+from trawl_ros.lab.validation.convergence.bowed_nets import COUNTS, bowed_nets
 from trawl_ros.lab.validation.convergence.gears import (
     AROUND_ZERO,
     REFERENCE,
@@ -74,8 +75,9 @@ def run(small: bool) -> Findings:
     series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
+    bowed_rows, bowed_table = bowed_nets(gear, (own, more) if small else COUNTS)
     return Findings(
-        rows=tuple(_checks(default, finer, lengths, series)),
+        rows=(*_checks(default, finer, lengths, series), *bowed_rows),
         drawings=(
             Drawing(
                 'net',
@@ -85,7 +87,7 @@ def run(small: bool) -> Findings:
                 _figure(series, lengths, own),
             ),
         ),
-        tables=tuple(_tables(default, finer[-1], lengths)),
+        tables=(*_tables(default, finer[-1], lengths), bowed_table),
         text=(
             f'The default gear at {SPEED:g} m/s beside the same gear with warps, bridles and net '
             'cut more finely, one at a time and together: warps and bridles twice, the net with '

@@ -1,5 +1,6 @@
 """Changes of observables by turned boards, in percent and degrees."""
 
+import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -15,8 +16,9 @@ def percent_change(after: Sighting, before: Sighting, quantity: str) -> float:
 
 
 def board_percent(after: Sighting, before: Sighting, quantity: str) -> float:
-    """Relative change of a quantity of the port board, %."""
-    change: float = 100.0 * (getattr(after.board, quantity) / getattr(before.board, quantity) - 1.0)
+    """Relative change of a quantity of the port board, %; NaN where it was zero."""
+    base = getattr(before.board, quantity)
+    change: float = 100.0 * (getattr(after.board, quantity) / base - 1.0) if base else math.nan
     return change
 
 

@@ -15,7 +15,8 @@ from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis import rules
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.measured import MeasuredValue
-from trawl_ros.lab.report.page import Page, write_page
+from trawl_ros.lab.report.page import Page, Section, write_page
+from trawl_ros.lab.studies.discrepancy.scoring.costs import cost_rows
 from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.scoring.rows import all_sections
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes
@@ -51,7 +52,8 @@ def write_discrepancy(
         method=_method(plan, trials, classes),
     )
     drawing = Drawing(page.name, CAPTION, verdicts_figure(trials, classes))
-    rows = write_page(folder, page, all_sections(trials, classes), [drawing])
+    sections = [*all_sections(trials, classes), Section('What it takes', cost_rows(folder))]
+    rows = write_page(folder, page, sections, [drawing])
     log_scoring(folder, plan, len(trials), rows)
     return rows
 

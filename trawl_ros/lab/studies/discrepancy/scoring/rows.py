@@ -9,7 +9,7 @@ import numpy as np
 
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Section
-from trawl_ros.lab.studies.discrepancy.scoring.rates import rate
+from trawl_ros.lab.report.rates import rate
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,

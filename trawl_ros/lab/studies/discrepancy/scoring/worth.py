@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.lab.report.measured import MeasuredValue
-from trawl_ros.lab.studies.discrepancy.scoring.rates import median, rate
+from trawl_ros.lab.report.rates import median, rate
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     chosen,

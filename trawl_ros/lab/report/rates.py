@@ -1,4 +1,4 @@
-"""Rows of the blind tests: rates and medians with their intervals."""
+"""Rates and medians of trials with their intervals, as rows of a report."""
 
 from collections.abc import Sequence
 

@@ -1,0 +1,94 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import trawl_ros
+from trawl_ros.model.assembly import bar_tensions
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.relax import TOLERANCE
+from trawl_ros.solver.sensitivity import sensitivities
+from trawl_ros.solver.warm_start import warm_start
+
+AT = OperatingPoint(500.0, 500.0, 2.1)
+SAME = 1e-5
+"""Distance (m) of nodes and turn of boards within which two searches have found the same root."""
+
+
+@pytest.fixture(scope='module')
+def model() -> GearModel:
+    return build_model(trawl_ros.load_gear('kaifuha').refined(net=0.5))
+
+
+@pytest.fixture(scope='module')
+def known(model: GearModel) -> Equilibrium:
+    return find_equilibrium(model, AT)
+
+
+def apart(one: Equilibrium, other: Equilibrium) -> float:
+    a, b = one.state, other.state
+    return max(
+        float(np.abs(a.nodes - b.nodes).max()),
+        float(np.abs(a.board_rotations - b.board_rotations).max()),
+    )
+
+
+@pytest.mark.parametrize(
+    'point',
+    [
+        OperatingPoint(520.0, 520.0, 2.1),
+        OperatingPoint(400.0, 400.0, 2.1),
+        OperatingPoint(500.0, 500.0, 2.05),
+        OperatingPoint(501.0, 500.0, 2.1),
+    ],
+)
+def test_a_warm_start_finds_the_root_that_a_cold_one_finds(
+    model: GearModel, known: Equilibrium, point: OperatingPoint
+) -> None:
+    found = warm_start(model, known.state, known.tow, steady_tow(model, point))
+    assert found is not None
+    assert found[2] < TOLERANCE
+    assert apart(find_equilibrium(model, point, known), find_equilibrium(model, point)) < SAME
+
+
+def test_another_board_is_reached_along_the_tangent(model: GearModel, known: Equilibrium) -> None:
+    coefficients = model.coefficients * 1.02
+    other = model.with_coefficients(coefficients)
+    cold = find_equilibrium(other, AT)
+    fresh = replace(known)
+    assert fresh.tangent is None
+    without = find_equilibrium(other, AT, fresh)
+    sensitivities(model, fresh)
+    along = find_equilibrium(other, AT, fresh)
+    assert apart(without, cold) < SAME
+    assert apart(along, cold) < SAME
+
+
+def test_the_tangent_is_that_of_states_found_anew(model: GearModel, known: Equilibrium) -> None:
+    sensitivities(model, known)
+    tangent = known.tangent
+    assert tangent is not None
+    step = 1e-3
+    moved = find_equilibrium(model, replace(AT, speed=AT.speed + step), known)
+    slope = (moved.state.nodes - known.state.nodes).ravel() / step
+    expected = tangent.columns[: len(slope), -1]
+    assert np.abs(slope - expected).max() < 0.02 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize('speed', [1.9, 2.3])
+def test_bars_that_become_slack_or_taut_do_not_keep_newton_from_its_root(
+    model: GearModel, known: Equilibrium, speed: float
+) -> None:
+    found = find_equilibrium(model, replace(AT, speed=speed), known)
+    was, is_now = (bar_tensions(model, e.state, e.tow) > 1.0 for e in (known, found))
+    assert (was != is_now).any()
+    assert found.iterations <= 12
+
+
+def test_a_change_too_large_for_the_tangent_is_left_to_others(
+    model: GearModel, known: Equilibrium
+) -> None:
+    tow = steady_tow(model, OperatingPoint(500.0, 700.0, 2.1))
+    assert warm_start(model, known.state, known.tow, tow) is None

@@ -1,0 +1,79 @@
+"""Records of the netting: its sections or its plan, and how finely it is cut."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from trawl_ros.core.schema import Record
+from trawl_ros.gear.net_plan import NetPlanRecord
+from trawl_ros.gear.numbers import NotNegative, Positive
+
+
+class SectionRecord(Record):
+    """A section of netting, from front to back; its stretched circumference tapers linearly.
+
+    ``shielding`` is the part of the drag of single twines that is left in this netting, ``twines``
+    the number of them side by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of
+    their own, or lie along and across (``square``).
+    """
+
+    name: str
+    length_m: Positive
+    front_circumference_m: Positive
+    back_circumference_m: Positive
+    mesh_m: Positive
+    twine_diameter_m: Annotated[float, Field(gt=0, le=0.1)]
+    twine_density_kg_m3: Annotated[float, Field(ge=500, le=8000)]
+    twine_modulus_pa: Positive
+    twines: Literal[1, 2] = 1
+    knotless: bool = False
+    shielding: Annotated[float, Field(gt=0, le=1)] = 1.0
+    mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)] | None = None
+    square: bool = False
+
+
+class NettingRecord(Record):
+    """The net: sections of diamond mesh, a codend, and how they are grouped; or its plan.
+
+    With a ``plan`` sections, codend and wings are those of its pieces.
+
+    ``around`` numerical meshes stand for the real ones of every row; a numerical row is as long
+    as keeps the angle of the meshes. ``body`` sections become netting, the ``codend`` sections
+    one line of ``codend_segments`` with the drag of its twine at the stated angle. Behind each
+    stretched circumference of ``halved_at_circumference_m`` half as many numerical meshes go
+    around as before it. ``bowing_pressure_pa`` is the load of the water across twine, per
+    projected area, under which it bows between its knots; without it bars are straight.
+    """
+
+    around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
+    halved_at_circumference_m: Annotated[tuple[Positive, ...], Field(max_length=4)] = ()
+    body: Annotated[tuple[SectionRecord, ...], Field(max_length=30)] = ()
+    codend: Annotated[tuple[SectionRecord, ...], Field(max_length=10)] = ()
+    plan: NetPlanRecord | None = None
+    codend_segments: Annotated[int, Field(ge=2, le=100)]
+    codend_mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)]
+    damping_time_s: NotNegative
+    normal_drag: NotNegative
+    friction: NotNegative
+    added_mass_normal: NotNegative
+    knot_diameters: NotNegative
+    knot_drag: NotNegative
+    knot_added_mass: NotNegative
+    wing_end_m: Positive | None = None
+    wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)] | None = None
+    bowing_pressure_pa: NotNegative = 0.0
+
+    @model_validator(mode='after')
+    def _one_form(self) -> 'NettingRecord':
+        outline = {
+            'body': self.body or None,
+            'codend': self.codend or None,
+            'wing_end_m': self.wing_end_m,
+            'wing_edge_hanging': self.wing_edge_hanging,
+        }
+        for key, value in outline.items():
+            if self.plan is None and value is None:
+                raise ValueError(f'{key}: missing, expected it, or a plan')
+            if self.plan is not None and value is not None:
+                raise ValueError(f'{key}: found beside a plan, expected one of them')
+        return self

@@ -1,0 +1,48 @@
+"""Records of the sea in which a gear is towed: density, current and temperature by depth."""
+
+from itertools import pairwise
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from trawl_ros.core.schema import Record
+from trawl_ros.gear.numbers import NotNegative
+
+
+class CurrentAt(Record):
+    """Current at a depth, to the east and the north."""
+
+    depth_m: NotNegative
+    east_m_s: Annotated[float, Field(ge=-3, le=3)]
+    north_m_s: Annotated[float, Field(ge=-3, le=3)]
+
+
+class TemperatureAt(Record):
+    """Temperature of the water at a depth."""
+
+    depth_m: NotNegative
+    temperature_deg_c: Annotated[float, Field(ge=-2, le=35)]
+
+
+class WaterRecord(Record):
+    """The sea: density rises linearly with depth; current and temperature follow the given depths.
+
+    Temperature and salinity decide on the speed of sound, and not on the density.
+    """
+
+    density_kg_m3: Annotated[float, Field(ge=990, le=1060)]
+    density_gradient_kg_m4: Annotated[float, Field(ge=0, le=0.1)] = 0.0
+    gravity_m_s2: Annotated[float, Field(ge=9.7, le=9.9)] = 9.80665
+    current: tuple[CurrentAt, ...] = ()
+    temperature: Annotated[tuple[TemperatureAt, ...], Field(min_length=1)] = (
+        TemperatureAt(depth_m=0.0, temperature_deg_c=8.0),
+    )
+    salinity_g_kg: Annotated[float, Field(ge=0, le=42)] = 35.0
+
+    @model_validator(mode='after')
+    def _depths_rise(self) -> 'WaterRecord':
+        for key, levels in (('current', self.current), ('temperature', self.temperature)):
+            depths = [level.depth_m for level in levels]
+            if any(b <= a for a, b in pairwise(depths)):
+                raise ValueError(f'{key}: depths must rise, found {depths}')
+        return self

@@ -1,0 +1,69 @@
+"""Published hauls with their steady states in the model."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.validation.sea.changes import value_of
+from trawl_ros.lab.validation.sea.published import GearHauls, HaulRecord, PointRecord, TrendRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.observables import Observables
+from trawl_ros.solver.equilibrium import Equilibrium, steady_state
+
+
+@dataclass(frozen=True)
+class ModelledHaul:
+    """Haul with the observables of its steady state, or the reason why it has none."""
+
+    gear: GearHauls
+    haul: HaulRecord
+    observables: Observables | None
+    refusal: str = ''
+
+    def value(self, quantity: str) -> float:
+        """Observable of this name; NaN without a steady state."""
+        return value_of(self.observables, quantity)
+
+    def error(self, point: PointRecord) -> float:
+        """Error of the model (%) at a point; infinite without a steady state."""
+        value = self.value(point.quantity)
+        return math.inf if math.isnan(value) else 100.0 * (value / point.value - 1.0)
+
+
+def gear_record(gear: GearHauls, *, small: bool) -> GearRecord:
+    """Gear of these hauls; with ``small``, its net cut coarsely."""
+    record = load_gear(gear.gear)
+    return record.refined(net=0.4) if small else record
+
+
+def modelled(gear: GearHauls, *, small: bool) -> list[ModelledHaul]:
+    """Find the steady state of each haul: cold, and where that fails from the hauls before it."""
+    record = gear_record(gear, small=small)
+    results: list[ModelledHaul] = []
+    known: list[Equilibrium] = []
+    for haul in gear.hauls:
+        model = build_model(haul.rigged(record))
+        refusal = ''
+        for start in (None, *known[::-1]):
+            try:
+                steady = steady_state(model, haul.warp_m, haul.speed, start=start)
+            except NoSteadyState as reason:
+                refusal = refusal or str(reason)
+                continue
+            known.append(steady.equilibrium)
+            results.append(ModelledHaul(gear, haul, steady.observables))
+            break
+        else:
+            results.append(ModelledHaul(gear, haul, None, refusal))
+    return results
+
+
+def right_sign(trend: TrendRecord, hauls: Mapping[tuple[str, str], ModelledHaul]) -> bool:
+    """True if the model changes as the source says; false where a steady state is missing."""
+    first, second = (
+        hauls[trend.gear, name].value(trend.quantity) for name in (trend.first, trend.second)
+    )
+    return bool(trend.sign * (second - first) > 0.0)

@@ -1,0 +1,164 @@
+"""Published hauls as records: sources, points and what may be tuned, from ``config/hauls``."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.resources import share_path
+from trawl_ros.core.schema import FrozenDict, Numbers, Record, load_yaml, validated
+from trawl_ros.gear.drag_bands import KNOT
+from trawl_ros.gear.records import GearRecord
+
+FILE = ('config', 'hauls', 'published.yaml')
+
+Quantity = Literal[
+    'door_depth',
+    'door_spread',
+    'net_depth',
+    'vertical_opening',
+    'horizontal_opening',
+    'warp_tension',
+]
+"""Measured quantity, by its name among the `Observables`; m, and N for the tension of one warp."""
+
+Use = Literal['counts', 'tunes', 'told']
+"""Use of a haul: it counts, one number of the gear was set by it, or it is shown only."""
+
+
+class HaulSource(Record):
+    """Source of hauls: title and address."""
+
+    title: str
+    address: str
+
+
+class PointRecord(Record):
+    """Point: a quantity that was measured in a haul, with the ends of its range where printed."""
+
+    quantity: Quantity
+    value: Annotated[float, Field(gt=0)]
+    low: float | None = None
+    high: float | None = None
+    source: str | None = None
+
+
+class HaulRecord(Record):
+    """Haul: length of each warp, speed through the water, weights in water that were changed."""
+
+    name: str
+    use: Use
+    why: str = ''
+    warp_m: Annotated[float, Field(gt=0)]
+    speed_kn: Annotated[float, Field(gt=0)]
+    hung_weight_in_water_n: Numbers = FrozenDict()
+    points: tuple[PointRecord, ...]
+
+    @property
+    def speed(self) -> float:
+        """Speed through the water, m/s."""
+        return self.speed_kn * KNOT
+
+    def rigged(self, gear: GearRecord) -> GearRecord:
+        """Gear as it was rigged in this haul.
+
+        Raises
+        ------
+        TrawlError
+            If it has no weight of a name that the haul gives.
+        """
+        weights = self.hung_weight_in_water_n
+        missing = set(weights) - {item.name for item in gear.hung}
+        if missing:
+            raise TrawlError(
+                f'{"/".join(FILE)}: haul {self.name} of {gear.name}: hung_weight_in_water_n: found '
+                f'{", ".join(sorted(missing))}, expected names of what is hung in the gear file'
+            )
+        hung = tuple(
+            item.model_copy(
+                update={'weight_in_water_n': weights.get(item.name, item.weight_in_water_n)}
+            )
+            for item in gear.hung
+        )
+        return gear.model_copy(update={'hung': hung})
+
+
+class GearHauls(Record):
+    """Hauls of one gear, what was tuned by them, and what had to be assumed."""
+
+    gear: str
+    source: str
+    plan: Literal['published', 'assumed']
+    tuned: str
+    assumed: str
+    hauls: Annotated[tuple[HaulRecord, ...], Field(min_length=1)]
+
+    @model_validator(mode='after')
+    def _told(self) -> 'GearHauls':
+        names = [haul.name for haul in self.hauls]
+        if len(set(names)) < len(names):
+            raise ValueError(f'hauls: found the names {", ".join(names)}, expected each once')
+        for haul in self.hauls:
+            if haul.use == 'told' and not haul.why:
+                raise ValueError(f'haul {haul.name}: why: missing, expected why it does not count')
+            if haul.use == 'tunes' and self.tuned == 'nothing':
+                raise ValueError(f'haul {haul.name}: use: found tunes, where nothing is tuned')
+        return self
+
+
+class TrendRecord(Record):
+    """Trend: sign of a quantity's change from the first haul to the second, as sources print it."""
+
+    gear: str
+    by: str
+    quantity: Quantity
+    first: str
+    second: str
+    sign: Literal[-1, 1]
+    source: str
+
+
+class UnusedSource(Record):
+    """Source that was looked at and not used, and the reason."""
+
+    source: str
+    why: str
+
+
+class PublishedHauls(Record):
+    """All published hauls: sources by name, hauls by gear, trends, and what was not used."""
+
+    sources: dict[str, HaulSource]
+    gears: Annotated[tuple[GearHauls, ...], Field(min_length=1)]
+    trends: tuple[TrendRecord, ...]
+    not_used: tuple[UnusedSource, ...]
+
+    @model_validator(mode='after')
+    def _named(self) -> 'PublishedHauls':
+        hauls = {(gear.gear, haul.name) for gear in self.gears for haul in gear.hauls}
+        for trend in self.trends:
+            for name in (trend.first, trend.second):
+                if (trend.gear, name) not in hauls:
+                    raise ValueError(
+                        f'trends: found haul {name} of {trend.gear}, expected one of its hauls'
+                    )
+        named = {trend.source for trend in self.trends} | {gear.source for gear in self.gears}
+        for gear in self.gears:
+            named |= {p.source for haul in gear.hauls for p in haul.points if p.source}
+        if named - set(self.sources):
+            raise ValueError(
+                f'sources: found none named {", ".join(sorted(named - set(self.sources)))}'
+            )
+        return self
+
+
+def published_hauls() -> PublishedHauls:
+    """Read the hauls that come with the package.
+
+    Raises
+    ------
+    TrawlError
+        Naming file, key, what was found and what was expected.
+    """
+    path = share_path(*FILE)
+    return validated(PublishedHauls, load_yaml(path, TrawlError), path, TrawlError)

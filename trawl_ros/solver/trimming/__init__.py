@@ -1,0 +1,1 @@
+"""Trim over a range of speeds and warps, and from what was measured."""
