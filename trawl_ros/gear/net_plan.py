@@ -176,10 +176,12 @@ class NetPlanRecord(Record):
     """A net plan: pieces from the wings to the codend, in the order in which the plan has them.
 
     Pieces of the body that share a ``section`` stand beside each other and are equally long; pieces
-    of one panel's wing, and sections of the codend, follow each other.
+    of one panel's wing, and sections of the codend, follow each other. Without ``shielded`` all
+    netting has the drag of its single twines and knots.
     """
 
     hanging: HangingRecord = HangingRecord()
+    shielded: bool = True
     pieces: Annotated[tuple[PieceRecord, ...], Field(min_length=2, max_length=200)]
 
     @model_validator(mode='after')

@@ -42,8 +42,12 @@ def shielding(piece: PieceRecord, net: NettingRecord) -> float:
 
     As for a porous screen (Taylor 1944): with a resistance K per sheet area the water goes through
     it at 1 / (1 + K / 4) of its speed. K is that of the twines and knots on the area of the meshes
-    at the opening of the gear file, or that their orientation gives them.
+    at the opening of the gear file, or that their orientation gives them. It acts on water along
+    the sheet as well: the wakes of twines lie along it, and what goes through a slanting sheet
+    leaves the momentum of that motion too (docs/model.md, Netting).
     """
+    if net.plan is not None and not net.plan.shielded:
+        return 1.0
     bar, diameter = 0.5 * piece.mesh, piece.twine.diameter * piece.twines
     angle = np.pi / 4 if piece.orientation == 'square' else mesh_angle(piece, net)
     open_area = bar**2 * np.sin(2 * angle)

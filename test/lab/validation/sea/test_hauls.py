@@ -110,7 +110,11 @@ def test_the_small_version_tells_its_points_beside_the_model() -> None:
 
 def test_changes_leave_the_gear_file_alone_but_for_what_they_say() -> None:
     gear = load_gear('krill_1600')
-    strumming, drag, faster, _ = CHANGES
+    single, strumming, drag, faster, _ = CHANGES
+    plan = single.gear(gear).netting.plan
+    assert plan is not None
+    assert not plan.shielded
+    assert single.gear(gear).warp == gear.warp
     assert strumming.gear(gear).warp.normal_drag > 1.5 * gear.warp.normal_drag
     assert strumming.gear(gear).bridle == gear.bridle
     assert [effect.name for effect in drag.gear(gear).effects] == ['net_drag']

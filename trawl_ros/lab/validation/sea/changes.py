@@ -41,11 +41,20 @@ def _net_drag(gear: GearRecord) -> GearRecord:
     return gear.model_copy(update={'effects': (*gear.effects, effect)})
 
 
+def _unshielded(gear: GearRecord) -> GearRecord:
+    netting = gear.netting
+    assert netting.plan is not None
+    plan = netting.plan.model_copy(update={'shielded': False})
+    netting = netting.model_copy(update={'plan': plan})
+    return gear.model_copy(update={'netting': netting})
+
+
 CHANGES = (
+    Change('no shielding', _unshielded),
     Change(f'warps that strum, C_N {STRUMMING:g}', _strumming),
     Change(f'net drag × {NET_DRAG:g}', _net_drag),
     Change(f'{100 * (FASTER - 1):.0f} % faster', speed=FASTER),
-    Change('all three', lambda gear: _strumming(_net_drag(gear)), FASTER),
+    Change('the last three', lambda gear: _strumming(_net_drag(gear)), FASTER),
 )
 
 
