@@ -12,7 +12,8 @@ PYTHON ?=
 DEMO := out/demo
 SITE := out/site
 MINUTES := 60
-WORKERS := 2
+# One more than the cores of a small machine: tests of nodes wait for half of their time.
+WORKERS := 3
 
 VENV := .venv
 BIN := $(VENV)/bin
