@@ -9,6 +9,7 @@ from rclpy.executors import SingleThreadedExecutor
 
 from trawl_ros.messages.diagnostics import read_statuses
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
+from trawl_ros.nodes.runtime.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import CONSUMER
 
@@ -17,7 +18,9 @@ AT_REST_S = 0.5
 
 
 class FirstMessage:
-    """Subscriber while entered, as a participant of its own that has seen no earlier node.
+    """Subscriber while entered, a participant of its own that has seen no earlier node.
+
+    It announces itself as the nodes of the package do.
 
     Parameters
     ----------
@@ -34,6 +37,7 @@ class FirstMessage:
         self._at: float | None = None
 
     def __enter__(self) -> 'FirstMessage':
+        announce_often()
         self._context = rclpy.Context()
         rclpy.init(args=[], context=self._context, domain_id=self._domain)
         self._executor = SingleThreadedExecutor(context=self._context)

@@ -1,4 +1,4 @@
-"""Discovery of nodes by each other: Fast DDS announces a node for longer than by default."""
+"""Discovery of nodes by each other: Fast DDS announces a node more often than by default."""
 
 import os
 from collections.abc import MutableMapping
@@ -13,13 +13,14 @@ FILES = ('DEFAULT_FASTDDS_PROFILES.xml', 'DEFAULT_FASTRTPS_PROFILES.xml')
 """Profiles that Fast DDS takes from the working directory."""
 
 
-def announce_for_longer(
+def announce_often(
     environment: MutableMapping[str, str] = os.environ, folder: Path | None = None
 ) -> None:
     """Name the package's profile to Fast DDS, unless the user has one; before ROS is up.
 
     Half of the nodes that start beside others were heard of 3 s later than the rest without it:
-    that is the period after the first announcements, which are lost on a busy machine.
+    that is the period in which one that runs already announces itself again, where its answer to
+    the newcomer was lost.
 
     Parameters
     ----------

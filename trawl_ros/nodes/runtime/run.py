@@ -19,7 +19,7 @@ from rclpy.utilities import remove_ros_args
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import short
-from trawl_ros.nodes.runtime.discovery import announce_for_longer
+from trawl_ros.nodes.runtime.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
 
 try:
@@ -99,7 +99,7 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
 
 
 def _open_ros(arguments: Sequence[str]) -> None:
-    announce_for_longer()
+    announce_often()
     # Its log of wrong arguments is raised as well.
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
