@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import click
+import numpy as np
 
-from trawl_ros.cli.options import FILE, FOLDER
+from trawl_ros.cli.options import FILE, FOLDER, SPEED, WARP
+from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
 
 WRONG = 3
@@ -13,7 +15,7 @@ WRONG = 3
 
 @click.group('gear')
 def command() -> None:
-    """Check gear files and make them from net plans."""
+    """Check gear files, find their steady states, and make them from net plans."""
 
 
 @command.command('check')
@@ -97,6 +99,48 @@ def check(gear: str, out: Path | None) -> None:
         click.echo(picture)
     if found.findings:
         raise SystemExit(WRONG)
+
+
+@command.command('state')
+@click.argument('gear', metavar='GEAR')
+@click.option('--warp', required=True, type=WARP, help='Warp length, m.')
+@click.option('--speed', required=True, type=SPEED, help='Speed through the water, m/s.')
+def state(gear: str, warp: float, speed: float) -> None:
+    """Print the steady state of GEAR, or why there is none and what would help.
+
+    Where the tow is refused, it is said why, from which speed the gear is towed on this warp, and
+    which changes of weights, floats, bridles, fastening points, warp or boards make it usable:
+    each was solved. Ends with code 1.
+    """
+    from trawl_ros.core.errors import NoSteadyState
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.model.gear_model import build_model
+    from trawl_ros.solver.advising.advice import advice
+    from trawl_ros.solver.equilibrium import steady_state
+
+    model = build_model(load_gear(gear))
+    try:
+        steady = steady_state(model, warp, speed)
+    except NoSteadyState:
+        with ProgressDisplay(error_console()) as display:
+            found = advice(model, warp, speed, on_progress=display)
+        for line in found.lines if found is not None else ():
+            click.echo(line)
+        raise SystemExit(1) from None
+    seen = steady.observables
+    if model.gear.pair is None:
+        click.echo(
+            f'α {np.degrees(seen.port_attack):.1f}°, δ {np.degrees(seen.port_inclination):.1f}°, '
+            f'doors {seen.door_spread:.1f} m apart and {seen.door_depth:.1f} m deep'
+        )
+    click.echo(
+        f'mouth {seen.vertical_opening:.1f} m high and {seen.horizontal_opening:.1f} m wide, '
+        f'headrope {seen.net_depth:.1f} m deep'
+    )
+    click.echo(
+        f'{seen.warp_tension / 1e3:.1f} kN on a warp; the slowest motion settles in '
+        f'{steady.stability.settling_time:.0f} s'
+    )
 
 
 @command.command('import')

@@ -10,6 +10,8 @@ SCENARIO = click.Path(path_type=Path)
 BAG = click.Path(path_type=Path)
 FILE = click.Path(path_type=Path, dir_okay=False)
 FOLDER = click.Path(path_type=Path, file_okay=False)
+WARP = click.FloatRange(20.0, 3000.0)
+SPEED = click.FloatRange(0.5, 4.0)
 
 GEAR_OPTION = click.option(
     '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
+from trawl_ros.cli.options import SPEED, WARP
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.arrays import FloatArray
 
@@ -14,8 +15,6 @@ if TYPE_CHECKING:
     from trawl_ros.solver.equilibrium import SteadyState
     from trawl_ros.solver.trimming.over_range import RangeTrim
 
-WARP = click.FloatRange(20.0, 3000.0)
-SPEED = click.FloatRange(0.5, 4.0)
 METRES = click.FloatRange(1.0, 2000.0)
 
 

@@ -22,7 +22,7 @@ DOMAIN = 219
 NODE_STARTS_S = 60.0
 NODE_RUNS_S = 2.0
 NODE_ENDS_S = 30.0
-PROGRESS = re.compile('(exporting|repairing):')
+PROGRESS = re.compile('(exporting|repairing|compared changes|changes):')
 """What is said every ten seconds on a slow machine."""
 
 NOT_RUN = {
@@ -40,6 +40,7 @@ ENDS = {
     'trawl bag check cut.mcap': 3,
     'trawl bag repair cut.mcap': 3,
     'trawl diagnose': 10,
+    'trawl gear state kaifuha': 1,
     'trawl trim broken.yaml': 1,
 }
 """Exit codes that documents state, by the beginning of the command; 0 else."""

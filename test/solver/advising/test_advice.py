@@ -1,0 +1,97 @@
+"""Advice on a refused tow: its least speed and its remedies hold when solved from nothing."""
+
+import doctest
+import sys
+
+import pytest
+from click.testing import CliRunner
+
+from trawl_ros.cli.main import trawl
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.solver.advising.advice import advice
+from trawl_ros.solver.advising.rig_changes import rig_changes
+from trawl_ros.solver.equilibrium import steady_state
+
+
+@pytest.fixture(scope='module')
+def coarse() -> GearModel:
+    return build_model(load_gear('kaifuha').refined(net=0.25))
+
+
+def test_a_tow_that_is_fine_needs_none(coarse: GearModel) -> None:
+    assert advice(coarse, 500.0, 2.1) is None
+
+
+def test_remedies_of_an_unstable_tow_are_stable_from_nothing(coarse: GearModel) -> None:
+    found = advice(coarse, 300.0, 1.7)
+    assert found is not None
+    assert found.refusal.reason == 'unstable'
+    assert found.remedies
+    for remedy in found.remedies:
+        changed, length = remedy.change.applied(coarse, 300.0, remedy.amount)
+        steady = steady_state(changed, length, 1.7)
+        assert steady.stability.growth == pytest.approx(remedy.growth, rel=0.05)
+        # Half as much, the other way round, does not help.
+        worse, length = remedy.change.applied(coarse, 300.0, -0.5 * remedy.amount)
+        with pytest.raises(NoSteadyState):
+            steady_state(worse, length, 1.7)
+    assert 'heave of one board against the other grows' in found.lines[0]
+    assert any('bridles: usable, the slowest motion settles in' in line for line in found.lines)
+
+
+def test_the_least_speed_is_where_steady_states_end(coarse: GearModel) -> None:
+    found = advice(coarse, 500.0, 1.5)
+    assert found is not None
+    assert found.refusal.reason == 'lift lost'
+    assert found.limit_speed is not None
+    near = steady_state(coarse, 500.0, found.limit_speed)
+    with pytest.raises(NoSteadyState):
+        steady_state(coarse, 500.0, 0.98 * found.limit_speed, start=near.equilibrium)
+    assert found.eased is not None
+    assert found.eased[1] < 0.95 * found.limit_speed
+    assert f'with {found.eased[0]} it is towed from' in found.lines[-1]
+
+
+def test_examples_hold() -> None:
+    results = doctest.testmod(sys.modules[advice.__module__])
+    assert results.attempted > 0
+    assert results.failed == 0
+
+
+def test_gear_that_breaks_the_surface_is_told_its_highest_speed(coarse: GearModel) -> None:
+    found = advice(coarse, 200.0, 3.5)
+    assert found is not None
+    assert found.limit_speed is not None
+    assert found.limit_speed < 3.5
+    assert f'on this warp it is towed up to {found.limit_speed:.2f} m/s' in found.lines
+
+
+@pytest.mark.parametrize('name', ['krill_800', 'four_seam', 'pair_368', 'kaifuha'])
+def test_changes_are_those_of_the_gear_and_keep_its_nodes(name: str) -> None:
+    gear: GearRecord = load_gear(name).refined(net=0.5)
+    model = build_model(gear)
+    changes = rig_changes(gear)
+    told = ' '.join(change.told(change.step) for change in changes)
+    assert all(f"'{item.name}'" in told for item in gear.hung)
+    assert ('board' in told) == (gear.pair is None)
+    for change in changes:
+        changed, length = change.applied(model, 100.0, change.step)
+        assert changed.nodes == model.nodes
+        assert changed.pattern is model.pattern
+        assert length != 100.0 or changed is not model
+
+
+def test_the_command_tells_a_state_or_what_would_help(coarse_gear: str) -> None:
+    options = ['gear', 'state', str(coarse_gear), '--warp', '300', '--speed']
+    usable = CliRunner().invoke(trawl, [*options, '2.1'])
+    assert usable.exit_code == 0, usable.output
+    assert 'doors ' in usable.stdout
+    assert 'kN on a warp; the slowest motion settles in' in usable.stdout
+    refused = CliRunner().invoke(trawl, [*options, '1.7'])
+    assert refused.exit_code == 1
+    assert 'the steady state is unstable' in refused.stdout
+    assert 'on this warp it is towed from 1.' in refused.stdout
+    assert ': usable, the slowest motion settles in' in refused.stdout
