@@ -17,7 +17,7 @@ from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
-from trawl_ros.nodes.runtime.parameters import FIXED, Number, Text  # noqa: E402
+from trawl_ros.nodes.runtime.parameters import FIXED, OWN_TO_ROS, Number, Text, misspelt  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 from trawl_ros.records.samples import HeadingSample  # noqa: E402
@@ -26,7 +26,6 @@ from trawl_ros.records.topics import absolute  # noqa: E402
 pytestmark = pytest.mark.ros
 
 DOMAIN = 101
-OWN_TO_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
 
 
 def executables():
@@ -117,6 +116,14 @@ def test_every_parameter_changes_or_says_why_not(add, kind):
         assert node.get_parameter(name).value == held
         if answer.successful:
             assert node.parameters[name] == held
+
+
+def test_a_name_that_no_parameter_has_is_told_with_the_nearest(add):
+    node = add(SimNode, sped_m_s=2.0, whatever=1)
+    first, second = misspelt(node)
+    assert first == 'parameter sped_m_s: this node has none of that name; expected speed_m_s'
+    assert second.startswith('parameter whatever: this node has none of that name; expected one of')
+    assert not misspelt(add(SimNode, speed_m_s=2.0, use_sim_time=False))
 
 
 def test_what_is_as_it_was_is_no_change(add):

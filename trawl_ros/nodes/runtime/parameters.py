@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Any
 
 from rcl_interfaces.msg import (
@@ -18,6 +19,9 @@ from rclpy.parameter import Parameter
 from trawl_ros.core.errors import TrawlError
 
 FIXED = 'read at the start; restart the node to change it'
+
+OWN_TO_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
+"""Beginnings of the names of parameters that every node has from ROS itself."""
 
 
 class ParameterError(TrawlError):
@@ -212,6 +216,23 @@ class Parameters:
             if spec is not None:
                 self._values[spec.name] = spec.checked(parameter.value)
                 self._changed(spec.name)
+
+
+def misspelt(node: Node) -> list[str]:
+    """Return a sentence on each parameter given at the start that the node does not have.
+
+    ROS leaves it unread, for one file of parameters may serve many nodes.
+    """
+    # rclpy has no public way to what was given and not declared.
+    unread = [name for name in node._parameter_overrides if not node.has_parameter(name)]
+    known = [name for name in node._parameters if not name.startswith(OWN_TO_ROS)]
+    found = []
+    for name in unread:
+        if not name.startswith(OWN_TO_ROS):
+            close = get_close_matches(name, known, n=1)
+            meant = close[0] if close else f'one of {", ".join(sorted(known))}'
+            found.append(f'parameter {name}: this node has none of that name; expected {meant}')
+    return found
 
 
 def _descriptor(sentence: str, live: bool) -> ParameterDescriptor:

@@ -21,6 +21,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import short
 from trawl_ros.nodes.runtime.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
+from trawl_ros.nodes.runtime.parameters import misspelt
 
 try:
     # Takes a message in a tenth of the time, since it makes no list of all that it waits for.
@@ -132,6 +133,8 @@ def _spin(make: Callable[[], TrawlNode], stop: _StopSignals) -> int:
     with _refusals():
         node = make()
     node.introduce()
+    for sentence in misspelt(node):
+        node.get_logger().warning(sentence)
     executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
     executor.add_node(node)
     try:
