@@ -1,21 +1,45 @@
 """``trawl trim``."""
 
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 import numpy as np
+from click.core import ParameterSource
 
-from trawl_ros.cli.options import SPEED, WARP
+from trawl_ros.cli.options import FILE, SPEED, WARP
 from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.cli.trim_lines import (
+    closing_line,
+    points_lines,
+    range_lines,
+    state_line,
+    wish_lines,
+)
 from trawl_ros.core.arrays import FloatArray
 
 if TYPE_CHECKING:
+    from trawl_ros.gear.records import GearRecord
     from trawl_ros.model.gear_model import GearModel
-    from trawl_ros.records.observables import Observables
-    from trawl_ros.solver.equilibrium import SteadyState
+    from trawl_ros.solver.advising.rig_changes import RigChange
     from trawl_ros.solver.trimming.over_range import RangeTrim
+    from trawl_ros.solver.trimming.traded import Traded
+
+KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
+"""Kinds of changes, those of `trawl_ros.solver.advising.rig_changes`, which is slow to load."""
 
 METRES = click.FloatRange(1.0, 2000.0)
+
+
+def _kinds(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> tuple[str, ...]:
+    kinds = tuple(kind.strip() for kind in (value or '').split(',') if kind.strip())
+    for kind in kinds:
+        if kind not in KINDS:
+            raise click.BadParameter(f"found '{kind}', expected of {', '.join(KINDS)}")
+    return kinds
 
 
 @click.command('trim')
@@ -56,7 +80,16 @@ METRES = click.FloatRange(1.0, 2000.0)
 )
 @click.option('--warps', nargs=2, type=WARP, help='Shortest and longest warp of a range, m.')
 @click.option('--speeds', nargs=2, type=SPEED, help='Lowest and highest speed of a range, m/s.')
+@click.option(
+    '--free',
+    callback=_kinds,
+    help=f'What may be changed where fastening points do not meet the wish: {", ".join(KINDS)}; '
+    'several with commas.',
+)
+@click.option('--out', type=FILE, help='New file for a copy of GEAR with what was found.')
+@click.pass_context
 def command(
+    context: click.Context,
     gear: str,
     attack: float | None,
     inclination: float | None,
@@ -68,138 +101,164 @@ def command(
     speed: float,
     warps: tuple[float, float] | None,
     speeds: tuple[float, float] | None,
+    free: tuple[str, ...],
+    out: Path | None,
 ) -> None:
     """Find fastening points that give the boards of GEAR wanted angles.
 
     GEAR is a gear file or the name of one that comes with the package. The search starts from
     the file's own points and changes them as little as it can. The result is printed as the
-    file has it; nothing is written.
+    file has it; nothing is written but for --out.
 
     In place of angles it takes the --spread and --depth of the doors as measured at --warp and
     --speed, and says which angles come nearest. With --warps or --speeds all coordinates are used
-    so that the angles change little over the range.
+    so that the angles change little over the range. With --free the rigging is changed too, where
+    the wish is not met or not all of the range is usable.
     """
+    from trawl_ros.gear.edit import require_new, write_changed
     from trawl_ros.gear.load import load_gear
     from trawl_ros.model.gear_model import build_model
+    from trawl_ros.solver.advising.rig_changes import changes_of
+    from trawl_ros.solver.trimming.traded import Traded
+
+    angles = None
+    if attack is not None and inclination is not None and spread is None and depth is None:
+        angles = float(np.radians(attack)), float(np.radians(inclination))
+        _refuse_ignored(context, {'warp': warps, 'speed': speeds})
+    elif spread is None or depth is None or attack is not None or inclination is not None:
+        raise click.UsageError('expected either --attack and --inclination or --spread and --depth')
+    if tension_kn is not None and angles is not None:
+        raise click.UsageError('--tension-kn: expected beside --spread and --depth')
+    if out is not None:
+        require_new(out)
+    record = load_gear(gear)
+    model, changes, traded = build_model(record), changes_of(record, free), Traded()
+    if angles is None:
+        assert spread is not None
+        assert depth is not None
+        angles, traded = _measured(model, changes, spread, depth, tension_kn, (warp, speed), pitch)
+        model, changes = traded.model(model), ()
+    low, high = speeds or (speed, speed)
+    wish = Wish(*angles, float(np.radians(pitch)), warps or (warp, warp), (low, high))
+    points, usable, more = _trimmed(model, changes, wish)
+    traded = Traded((*traded.changes, *more.changes))
+    if out is not None:
+        write_changed(gear, out, _with_points(traded.gear(record), points))
+        click.echo(f'# written: {out}')
+    if not usable:
+        raise SystemExit(1)
+
+
+def _refuse_ignored(context: click.Context, ranges: dict[str, tuple[float, float] | None]) -> None:
+    """Refuse an option that a range takes the place of."""
+    for name, given in ranges.items():
+        if given is not None and context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+            raise click.UsageError(f'--{name}: found beside --{name}s, expected one of them')
+
+
+@dataclass(frozen=True)
+class Wish:
+    """Wanted angles (rad), and shortest and longest warp (m), lowest and highest speed (m/s)."""
+
+    attack: float
+    inclination: float
+    pitch: float
+    warps: tuple[float, float]
+    speeds: tuple[float, float]
+
+    @property
+    def angles(self) -> dict[str, float]:
+        """The angles as searches take them."""
+        return {'attack': self.attack, 'inclination': self.inclination, 'pitch': self.pitch}
+
+    @property
+    def places(self) -> tuple[list[float], list[float]]:
+        """Warps and speeds of the range."""
+        low, high = self.speeds
+        return sorted(set(self.warps)), sorted({low, float(np.sqrt(low * high)), high})
+
+
+def _trimmed(
+    model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: Wish
+) -> 'tuple[FloatArray, bool, Traded]':
+    """Points, whether all of the range is usable, and what was changed; printed."""
+    from trawl_ros.core.errors import NoSteadyState
     from trawl_ros.solver.trim import trim
     from trawl_ros.solver.trimming.over_range import trim_over_range
+    from trawl_ros.solver.trimming.traded import Traded, trade_for_range
 
-    model = build_model(load_gear(gear))
-    if spread is not None and depth is not None and attack is None and inclination is None:
-        alpha, delta = _measured(model, spread, depth, tension_kn, (warp, speed), pitch)
-    elif attack is not None and inclination is not None and spread is None and depth is None:
-        alpha, delta = np.radians([attack, inclination])
-    else:
-        raise click.UsageError('expected either --attack and --inclination or --spread and --depth')
-    if tension_kn is not None and spread is None:
-        raise click.UsageError('--tension-kn: expected beside --spread and --depth')
-    if warps is None and speeds is None:
-        trimmed = trim(
-            model,
-            attack=alpha,
-            inclination=delta,
-            pitch=np.radians(pitch),
-            warp_length=warp,
-            speed=speed,
-        )
-        _points(trimmed.points)
-        click.echo(f'# {_state(warp, speed, trimmed.steady)}')
-        return
-    low, high = speeds or (speed, speed)
+    warps, speeds = wish.places
+    if len(warps) == len(speeds) == 1:
+        try:
+            trimmed = trim(model, **wish.angles, warp_length=warps[0], speed=speeds[0])
+        except NoSteadyState as reason:
+            click.echo(f'# with the nearest points: {reason}; all coordinates are free now')
+        else:
+            click.echo('\n'.join(points_lines(trimmed.points)))
+            click.echo(f'# {state_line(warps[0], speeds[0], trimmed.steady)}')
+            return trimmed.points, True, Traded()
+    traded = Traded()
     with ProgressDisplay(error_console()) as display:
         found = trim_over_range(
-            model,
-            attack=alpha,
-            inclination=delta,
-            pitch=np.radians(pitch),
-            warp_lengths=sorted(set(warps or (warp,))),
-            speeds=sorted({low, float(np.sqrt(low * high)), high}),
-            on_progress=display,
+            model, **wish.angles, warp_lengths=warps, speeds=speeds, on_progress=display
         )
-    _points(found.points)
-    for line in (*_range_lines(found), *_wish_lines(found, alpha, delta), _closing(found)):
+        if found.usable < len(found.found) and changes:
+            found, traded = trade_for_range(
+                model, changes, found, **wish.angles, on_progress=display
+            )
+    click.echo('\n'.join(points_lines(found.points)))
+    lines = [*range_lines(found), *wish_lines(found, wish.attack, wish.inclination)]
+    if traded.changes:
+        lines.append(f'with {traded.told}')
+    elif changes and found.usable < len(found.found):
+        lines.append('no change of what is free makes more of the range usable')
+    for line in (*lines, closing_line(found), *_advice_lines(found)):
         click.echo(f'# {line}')
-    if found.usable < len(found.found):
-        raise SystemExit(1)
+    return found.points, found.usable == len(found.found), traded
+
+
+def _advice_lines(found: 'RangeTrim') -> tuple[str, ...]:
+    """Lines of advice on the first operating point that is not usable."""
+    from trawl_ros.solver.advising.advice import advice
+
+    refused = next((point for point in found.found if point.steady is None), None)
+    if refused is None:
+        return ()
+    with ProgressDisplay(error_console()) as display:
+        told = advice(found.model, refused.warp_length, refused.speed, on_progress=display)
+    return told.lines[1:] if told is not None else ()
+
+
+def _with_points(gear: 'GearRecord', points: FloatArray) -> 'GearRecord':
+    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
+    rounded = {
+        name: tuple(round(float(x), 3) for x in point)
+        for name, point in zip(names, points, strict=True)
+    }
+    board = gear.board.model_copy(
+        update={'fastening': gear.board.fastening.model_copy(update=rounded)}
+    )
+    return gear.model_copy(update={'board': board})
 
 
 def _measured(
     model: 'GearModel',
+    changes: 'tuple[RigChange, ...]',
     spread: float,
     depth: float,
     tension_kn: float | None,
     place: tuple[float, float],
     pitch: float,
-) -> tuple[float, float]:
+) -> 'tuple[tuple[float, float], Traded]':
     from trawl_ros.solver.trimming.measured import angles_from
+    from trawl_ros.solver.trimming.traded import Traded, trade_for_place
 
-    found = angles_from(
-        model,
-        spread=spread,
-        depth=depth,
-        warp_length=place[0],
-        speed=place[1],
-        pitch=np.radians(pitch),
-    )
+    at = {'warp_length': place[0], 'speed': place[1], 'pitch': float(np.radians(pitch))}
+    found, traded = angles_from(model, spread=spread, depth=depth, **at), Traded()
+    if changes and not found.met:
+        click.echo(f'# {found.told()}')
+        found, traded = trade_for_place(model, changes, found, **at)
     click.echo(f'# {found.told(None if tension_kn is None else 1e3 * tension_kn)}')
-    return found.attack, found.inclination
-
-
-def _points(points: FloatArray) -> None:
-    click.echo('  fastening:')
-    for name, point in zip(('warp_m', 'upper_bridle_m', 'lower_bridle_m'), points, strict=True):
-        click.echo(f'    {name}: [{", ".join(f"{x:.3f}" for x in point)}]')
-
-
-def _state(warp: float, speed: float, steady: 'SteadyState') -> str:
-    observables: Observables = steady.observables
-    return (
-        f'at {warp:g} m and {speed:g} m/s: α {np.degrees(observables.port_attack):.1f}°, '
-        f'δ {np.degrees(observables.port_inclination):.1f}°, '
-        f'β {np.degrees(observables.port_slip):.1f}°, '
-        f'spread {observables.door_spread:.1f} m, door depth {observables.door_depth:.1f} m, '
-        f'tension {observables.warp_tension / 1e3:.1f} kN; the slowest motion settles in '
-        f'{steady.stability.settling_time:.0f} s'
-    )
-
-
-def _range_lines(found: 'RangeTrim') -> list[str]:
-    lines = []
-    for point in found.found:
-        if point.steady is None:
-            lines.append(
-                f'not at {point.warp_length:g} m and {point.speed:.3g} m/s: {point.reason}'
-            )
-        else:
-            lines.append(_state(point.warp_length, round(point.speed, 3), point.steady))
-    return lines
-
-
-def _wish_lines(found: 'RangeTrim', attack: float, inclination: float) -> list[str]:
-    """Wanted angles beside those that the range has, where a state is usable."""
-    seen = [point.steady.observables for point in found.found if point.steady is not None]
-    if not seen:
-        return []
-    # δ is told without a sign: boards that lean inward are wanted and found with it alike.
-    angles = np.degrees([[o.port_attack, o.port_inclination] for o in seen])
-    (alpha, delta), (most_alpha, most_delta) = angles.min(axis=0), angles.max(axis=0)
-    return [
-        f'wanted α {np.degrees(attack):.1f}° and δ {np.degrees(abs(inclination)):.1f}°; nearest '
-        f'over the range: α {alpha:.1f}° to {most_alpha:.1f}°, δ {delta:.1f}° to {most_delta:.1f}°'
-    ]
-
-
-def _closing(found: 'RangeTrim') -> str:
-    speeds = sorted({point.speed for point in found.found})
-    percent = 100.0 * np.log(speeds[-1] / speeds[0])
-    attack, lean = np.degrees(found.by_speed)
-    closing = f'{found.usable} of {len(found.found)} are usable'
-    if percent > 0.0 and found.usable > 1:
-        closing += (
-            f'; with speed α changes by {attack:.1f}° and δ by {lean:.1f}°, '
-            f'{attack / percent:.2f}° and {lean / percent:.2f}° per % of speed'
-        )
-    if len({point.warp_length for point in found.found}) > 1 and found.usable > 1:
-        attack, lean = np.degrees(found.by_warp)
-        closing += f'; with warp length by {attack:.1f}° and {lean:.1f}°'
-    return closing
+    if traded.changes:
+        click.echo(f'# with {traded.told}')
+    return (found.attack, found.inclination), traded

@@ -13,23 +13,22 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.advising.limit_speed import (
+    closer_usable,
+    nearest_usable,
+    shown_speed,
+    state_near,
+    usable_state,
+)
 from trawl_ros.solver.advising.rig_changes import RigChange, rig_changes
 from trawl_ros.solver.equilibrium import (
     Equilibrium,
     SteadyState,
     find_equilibrium,
-    require_usable,
     steady_state,
     with_effects,
 )
 from trawl_ros.solver.stability import stability
-
-FASTER, SLOWER = (1.1, 1.3, 1.7), (0.9, 0.75, 0.6)
-"""Multiples of a refused speed at which a usable state is looked for; slower ones for a gear that
-breaks the surface."""
-
-NEAR = 0.01
-"""Part of the speed to which the least or highest usable one is found."""
 
 SHARES = 0.2, 0.5, 1.0
 """Parts of a change's largest amount that are tried in turn."""
@@ -148,15 +147,15 @@ def advice(
     else:
         return None
     root = _root(model, warp_length, speed) if refusal.reason == 'unstable' else None
-    edge = _edge(model, warp_length, speed, refusal, root)
-    limit, beyond = (None, '') if edge is None else (_shown_speed(edge[0], speed), edge[1])
+    edge = nearest_usable(model, warp_length, speed, refusal, root)
+    limit, beyond = (None, '') if edge is None else (shown_speed(edge[0], speed), edge[1])
     reference = root or (edge[0].equilibrium if edge is not None else None)
     if reference is None or refusal.reason == 'surfaced':
         return Advice(refusal, limit, beyond, ())
     ranked = _ranked(model, warp_length, reference, on_progress)
     remedies = []
     for done, (change, sign, _) in enumerate(ranked[:PROMISING]):
-        on_progress(WorkProgress('changes', done, PROMISING, change.name))
+        on_progress(WorkProgress('changes', done, PROMISING, change.kind))
         if remedy := _tried(model, (warp_length, speed), change, sign, reference):
             remedies.append(remedy)
         if len(remedies) == WANTED:
@@ -175,61 +174,6 @@ def _root(model: GearModel, warp_length: float, speed: float) -> Equilibrium | N
         return None
 
 
-def _near(model: GearModel, warp_length: float, speed: float, start: Equilibrium) -> Equilibrium:
-    acting, point = with_effects(model, (warp_length, warp_length), speed)
-    return find_equilibrium(acting, point, start, cold=False)
-
-
-def _usable(
-    model: GearModel, warp_length: float, speed: float, start: Equilibrium
-) -> SteadyState | NoSteadyState:
-    acting, _ = with_effects(model, (warp_length, warp_length), speed)
-    try:
-        return require_usable(acting, _near(model, warp_length, speed, start))
-    except NoSteadyState as reason:
-        return reason
-
-
-def _edge(
-    model: GearModel,
-    warp_length: float,
-    speed: float,
-    refusal: NoSteadyState,
-    root: Equilibrium | None,
-) -> tuple[SteadyState, str] | None:
-    """Usable state nearest in speed to the refused one, and what is refused next to it."""
-    bad, beyond = speed, str(refusal)
-    for factor in SLOWER if refusal.reason == 'surfaced' else FASTER:
-        if root is not None:
-            found = _usable(model, warp_length, factor * speed, root)
-        else:
-            try:
-                found = steady_state(model, warp_length, factor * speed)
-            except NoSteadyState as reason:
-                found = reason
-        if isinstance(found, SteadyState):
-            return _closer(model, warp_length, found, bad, beyond)
-        bad, beyond = factor * speed, str(found)
-    return None
-
-
-def _closer(
-    model: GearModel, warp_length: float, found: SteadyState, bad: float, beyond: str
-) -> tuple[SteadyState, str]:
-    """Usable state as near as `NEAR` to where there is none, between a known one and a speed, and
-    what is refused there.
-    """
-    good = found.equilibrium.point.speed
-    while abs(good - bad) > NEAR * bad:
-        middle = round(0.5 * (good + bad), 3)
-        nearer = _usable(model, warp_length, middle, found.equilibrium)
-        if isinstance(nearer, SteadyState):
-            found, good = nearer, middle
-        else:
-            bad, beyond = middle, str(nearer)
-    return found, beyond
-
-
 def _eased(
     model: GearModel,
     place: tuple[float, float],
@@ -241,20 +185,14 @@ def _eased(
     for change, sign, _ in ranked:
         start, speed = edge.equilibrium, edge.equilibrium.point.speed
         for amount, changed, length in _amounts(model, place[0], change, sign):
-            steady = _usable(changed, length, speed, start)
+            steady = usable_state(changed, length, speed, start)
             if not isinstance(steady, SteadyState):
                 break
-            least, _ = _closer(changed, length, steady, place[1], '')
+            least, _ = closer_usable(changed, length, steady, place[1], '')
             start, speed = least.equilibrium, least.equilibrium.point.speed
             if speed < enough:
-                best, enough = (change.told(amount), _shown_speed(least, place[1])), speed
+                best, enough = (change.told(amount), shown_speed(least, place[1])), speed
     return best
-
-
-def _shown_speed(edge: SteadyState, speed: float) -> float:
-    """Speed of a state rounded to cm/s, away from what is refused."""
-    own = edge.equilibrium.point.speed
-    return float((np.ceil if own > speed else np.floor)(100.0 * own - 1e-6) / 100.0)
 
 
 def _ranked(
@@ -267,10 +205,10 @@ def _ranked(
     changes = rig_changes(model.gear)
     found = []
     for done, change in enumerate(changes):
-        on_progress(WorkProgress('compared changes', done, len(changes), change.name))
+        on_progress(WorkProgress('compared changes', done, len(changes), change.kind))
         changed, length = change.applied(model, warp_length, change.step)
         try:
-            here = _near(changed, length, reference.point.speed, reference)
+            here = state_near(changed, length, reference.point.speed, reference)
         except NoSteadyState:
             continue
         more = stability(changed, here.state, here.tow).growth - before
@@ -289,11 +227,11 @@ def _tried(
     """The smallest of some amounts of a change with which the tow is usable."""
     for amount, changed, length in _amounts(model, place[0], change, sign):
         try:
-            there = _near(changed, length, reference.point.speed, reference)
+            there = state_near(changed, length, reference.point.speed, reference)
             reference = there
         except NoSteadyState:
             return None
-        steady = _usable(changed, length, place[1], there)
+        steady = usable_state(changed, length, place[1], there)
         if isinstance(steady, SteadyState):
             return Remedy(change, amount, steady.stability.growth)
     return None

@@ -1,15 +1,19 @@
 """Changes of a rigging: fastening points, weights, floats, bridles, warp, and lighter boards."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.errors import GearError
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 
 POINTS = "the warp's point", "the upper bridle's point", "the lower bridle's point"
 """Fastening points of a board in the order of the gear file."""
+
+KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
+"""Kinds of changes that a trim may be allowed: weights and floats on ropes, clump at the tips."""
 
 MOVES = {0: ('forward', 'aft'), 2: ('up', 'down')}
 """Directions of a point's coordinates, with their sign; those off the face are the board's make."""
@@ -21,8 +25,8 @@ class RigChange:
 
     Attributes
     ----------
-    name
-        Of what is changed, as ``--free`` of ``trawl trim`` has it.
+    kind
+        Of what is changed: `KINDS`, ``points`` or ``warp``.
     step
         A small amount, for derivatives.
     most
@@ -33,7 +37,7 @@ class RigChange:
         Words for an amount.
     """
 
-    name: str
+    kind: str
     step: float
     most: float
     told: Callable[[float], str]
@@ -51,6 +55,14 @@ class RigChange:
             return model, self.warp(warp_length, amount)
         assert self.gear is not None
         return rebuilt(model, self.gear(model.gear, amount)), warp_length
+
+    def recorded(self, gear: GearRecord, amount: float) -> GearRecord:
+        """The gear file after a change of what hangs, of bridles or of the boards' mass."""
+        if self.kind == 'boards':
+            board = gear.board.model_copy(update={'mass_kg': gear.board.mass_kg + amount})
+            return gear.model_copy(update={'board': board})
+        assert self.gear is not None
+        return self.gear(gear, amount)
 
 
 def rebuilt(model: GearModel, gear: GearRecord) -> GearModel:
@@ -75,12 +87,32 @@ def rig_changes(gear: GearRecord) -> tuple[RigChange, ...]:
     )
 
 
+def changes_of(gear: GearRecord, kinds: Sequence[str]) -> tuple[RigChange, ...]:
+    """Changes of these `KINDS`.
+
+    Raises
+    ------
+    GearError
+        If the gear has none of a kind.
+    """
+    every = rig_changes(gear)
+    there = [kind for kind in KINDS if any(change.kind == kind for change in every)]
+    for kind in kinds:
+        if kind not in there:
+            raise GearError(
+                f"'{gear.name}' has no {kind} that could be changed, expected of {', '.join(there)}"
+            )
+    return tuple(change for change in every if change.kind in kinds)
+
+
 def hung_changes(gear: GearRecord) -> tuple[RigChange, ...]:
     """Changes of what hangs on ropes and wing tips, as shares of what is there."""
     found = []
     for number, item in enumerate(gear.hung):
         kind = 'weight' if item.sinks else 'buoyancy'
-        found.append(_share(item.name, f"{kind} of '{item.name}'", _hung(number)))
+        found.append(
+            _share('weights' if item.sinks else 'floats', f"{kind} of '{item.name}'", _hung(number))
+        )
     if gear.clump.weight_in_water_n > 0.0:
         found.append(_share('clump', 'weight of the clump', _at_tips('clump', 'weight_in_water_n')))
     if gear.floats.buoyancy_n > 0.0:
@@ -106,7 +138,7 @@ def bridle_changes(gear: GearRecord) -> tuple[RigChange, ...]:
             )
             return gear.model_copy(update={'bridles': bridles})
 
-        found.append(RigChange(f'{own.name}_bridle', 0.002 * length, 0.05 * length, told, change))
+        found.append(RigChange('bridles', 0.002 * length, 0.05 * length, told, change))
     return tuple(found)
 
 
@@ -148,11 +180,11 @@ def board_change(gear: GearRecord) -> RigChange:
     return RigChange('boards', 0.005 * mass, 0.3 * mass, told, model=change)
 
 
-def _share(name: str, what: str, change: Callable[[GearRecord, float], GearRecord]) -> RigChange:
+def _share(kind: str, what: str, change: Callable[[GearRecord, float], GearRecord]) -> RigChange:
     def told(amount: float) -> str:
         return f'{100 * abs(amount):.0f} % {"more" if amount > 0 else "less"} {what}'
 
-    return RigChange(name, 0.02, 0.5, told, change)
+    return RigChange(kind, 0.02, 0.5, told, change)
 
 
 def _hung(number: int) -> Callable[[GearRecord, float], GearRecord]:

@@ -64,6 +64,7 @@ class HeldGear:
         self.model, self.places = model, places
         self.turn = rotations[0]
         self.acting: list[tuple[GearModel, Tow]] = []
+        self._loads: list[float] = []
         self.states: list[State] = []
         for warp, speed in places:
             acting, point = with_effects(model, (warp, warp), speed)
@@ -89,7 +90,9 @@ class HeldGear:
             ]
             for start in (guess, *near):
                 try:
-                    return loose, _shape(loose, start, tow, place)
+                    shape = _shape(loose, start, tow, place)
+                    self._loads.append(pressure)
+                    return loose, shape
                 except NoSteadyState as reason:
                     refused = reason
         assert refused is not None
@@ -99,6 +102,13 @@ class HeldGear:
     def _apart(a: tuple[float, float], b: tuple[float, float]) -> float:
         """Distance of two operating points, in logarithms."""
         return float(np.abs(np.log(a) - np.log(b)).sum())
+
+    def regeared(self, model: GearModel) -> None:
+        """Go on with a changed gear of the same nodes; shapes are those of before."""
+        self.model = model
+        for number, (warp, speed) in enumerate(self.places):
+            acting, _ = with_effects(model, (warp, warp), speed)
+            self.acting[number] = (bowed(acting, self._loads[number]), self.acting[number][1])
 
     def turned(self, rotations: FloatArray, points: FloatArray) -> None:
         """Hold the boards at other rotations (2, 3, 3)."""

@@ -52,6 +52,17 @@ class MeasuredAngles:
             and abs(seen.door_depth - self.depth) < MET * self.depth
         )
 
+    @property
+    def missed(self) -> str:
+        """Wishes that are not met, and by how much."""
+        seen = self.observables
+        pairs = ('spread', seen.door_spread, self.spread), ('depth', seen.door_depth, self.depth)
+        return ' and '.join(
+            f'the {name} by {100 * (value / wanted - 1):+.0f} %'
+            for name, value, wanted in pairs
+            if abs(value / wanted - 1) >= MET
+        )
+
     def told(self, tension: float | None = None) -> str:
         """Sentence on what is met and what is nearest; ``tension`` (N) of a warp if measured."""
         seen = self.observables
@@ -65,7 +76,7 @@ class MeasuredAngles:
         else:
             sentence = (
                 f'boards of this law cannot be {self.spread:.4g} m apart and {self.depth:.4g} m '
-                f'deep; nearest: {found}'
+                f'deep; nearest: {found}; missed: {self.missed}'
             )
         if tension is not None:
             ratio = seen.warp_tension / tension
