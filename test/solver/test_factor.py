@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.solver.factor import factorised, factorised_part, solve_refined
+from trawl_ros.solver.factor import MANY, factorised, factorised_part, solve_refined
 
 
 @pytest.fixture(scope='module')
@@ -42,6 +42,17 @@ def test_many_right_hand_sides_are_solved_one_by_one(
     right = rng.normal(size=(model.dof, 3))
     columns = [factor.solve(column) for column in right.T]
     assert (factor.solve(right) == np.column_stack(columns)).all()
+
+
+@pytest.mark.parametrize('turned', [1.0, 1.0 + 0.5j])
+def test_many_side_by_side_are_solved_as_one_is(
+    model: GearModel, rng: np.random.Generator, turned: complex
+) -> None:
+    data = turned * gear_like(model, rng) + 0.1 * gear_like(model, rng)
+    factor = factorised(model.pattern, data)
+    right = rng.normal(size=(model.dof, MANY + 1))
+    columns = np.column_stack([factor.solve(column) for column in right.T])
+    assert np.abs(factor.solve(right) - columns).max() < 1e-12 * np.abs(columns).max()
 
 
 @pytest.mark.parametrize('pivot', [0.0, 1e-14])

@@ -30,7 +30,8 @@ from trawl_ros.model.state import State, Tow
 def rest_lengths(model: GearModel, tow: Tow) -> tuple[FloatArray, FloatArray]:
     """Unstretched lengths of all bars and their rates; a warp is cut into equal bars."""
     lengths = tow.lengths / model.warp_segments
-    rest, rate = model.rest.astype(lengths.dtype), np.zeros(len(model.rest))
+    rest = model.rest.astype(lengths.dtype)
+    rate = np.zeros(len(rest), np.result_type(tow.length_rates, 0.0))
     for side, bars in enumerate(model.warp_bars):
         rest[bars] = lengths[side]
         rate[bars] = tow.length_rates[side] / model.warp_segments
@@ -152,23 +153,41 @@ def gathered(
 
 
 def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Force (2, 3) of each warp on its towing block, N.
+    """Force (..., 2, 3) of each warp on its towing block, N; states and boundaries may be many.
 
     With the half segment of load that a lumped line hangs on its fixed end, so that the
     tension at the block does not depend on how finely the warp is cut.
     """
-    top, points = model.layout.top_warp_bars, points_of(model, state, tow)
-    ends = model.ends[top].ravel()
-    x, v, rest, rate = alike(
-        points.positions[ends],
-        points.velocities[ends],
-        *(values[top] for values in rest_lengths(model, tow)),
+    top, segments = model.layout.top_warp_bars, model.warp_segments
+    side, (block, upper) = model.warp_side[top], model.ends[top].T
+    block = block - model.nodes - 6
+    given = (
+        _both_ends(tow.blocks[..., block, :], state.nodes[..., upper, :]),
+        _both_ends(tow.block_velocities[..., block, :], state.node_velocities[..., upper, :]),
+        np.where(side >= 0, tow.lengths[..., side] / segments, model.rest[top]),
+        np.where(side >= 0, tow.length_rates[..., side] / segments, 0.0),
     )
-    bars, total = model.bars.chosen(top).columns, np.zeros_like(x)
+    x, v, rest, rate = alike(*given)
+    bars = len(x.reshape(-1, 2, 3))
+    rest, rate = (np.broadcast_to(values, x.shape[:-2]).reshape(-1) for values in (rest, rate))
+    columns = tuple(np.tile(column[top], bars // len(top)) for column in model.bars.columns)
+    total = np.zeros((2 * bars, 3), x.dtype)
     add_bar_forces(
-        np.arange(len(ends)).reshape(-1, 2), x, v, rest, rate, bars, water_of(model.water), total
+        np.arange(2 * bars).reshape(-1, 2),
+        x.reshape(-1, 3),
+        v.reshape(-1, 3),
+        rest,
+        rate,
+        columns,
+        water_of(model.water),
+        total,
     )
-    return total[0::2]
+    return total[0::2].reshape(*x.shape[:-2], 3)
+
+
+def _both_ends(block: FloatArray, node: FloatArray) -> FloatArray:
+    """Values (..., bars, 2, 3) of both ends of the highest bars, one or both of them for many."""
+    return np.stack(np.broadcast_arrays(block, node), axis=-2)
 
 
 def bar_tensions(model: GearModel, state: State, tow: Tow) -> FloatArray:

@@ -23,7 +23,7 @@ from trawl_ros.model.board_law import (
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.compiled import as_kind, stepped_among
 from trawl_ros.model.hooks import CoefficientModifier
-from trawl_ros.model.numerics import angle, transpose
+from trawl_ros.model.numerics import STEP, angle, transpose
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.water import Water
 
@@ -264,22 +264,11 @@ def own_load(
         _flat(velocity, shape, 3),
         _flat(rate, shape, 3),
     )
-    total = np.empty((len(given[2]), 6), complex)
     turning = board.inertia, board.rotary_resistance
     if board.bend is None and board.law is None:
-        fill_own_loads(
-            board.flow_axes,
-            board.slip_sign,
-            float(board.mass),
-            float(board.volume),
-            float(board.area),
-            board.signed_levers,
-            *turning,
-            *as_kind(complex, *given),
-            water_of(water),
-            total,
-        )
+        total = _by_formula(board, as_kind(complex, *given), water)
         return _like(given, total).reshape(*shape, 6)
+    total = np.empty((len(given[2]), 6), complex)
     flow = flow_at(board, outward, position, rotation, velocity, rate, water)
     force, moment = (_flat(part, shape, 3) for part in hydrodynamics(board, values, flow))
     heavy = (board.mass - flow.density * board.volume) * water.gravity
@@ -295,6 +284,46 @@ def own_load(
     )
     fill_total(*turning, *as_kind(complex, *rest), total)
     return _like(rest, total).reshape(*shape, 6)
+
+
+def _by_formula(board: Board, given: list[FloatArray], water: Water) -> FloatArray:
+    """Loads (n, 6) by eq. 14, from coefficients, middle, and motion as `own_load` has them."""
+    total = np.empty((len(given[2]), 6), complex)
+    fill_own_loads(
+        board.flow_axes,
+        board.slip_sign,
+        float(board.mass),
+        float(board.volume),
+        float(board.area),
+        board.signed_levers,
+        board.inertia,
+        board.rotary_resistance,
+        *given,
+        water_of(water),
+        total,
+    )
+    return total
+
+
+def own_load_slopes(
+    board: Board,
+    values: FloatArray,
+    outward: FloatArray,
+    position: FloatArray,
+    rotation: FloatArray,
+    velocity: FloatArray,
+    rate: FloatArray,
+    water: Water,
+) -> FloatArray:
+    """Derivatives (n, 6, 12) of `own_load` of ``n`` boards by the coefficients."""
+    moving = position, rotation, velocity, rate
+    steps = values + 1j * STEP * np.eye(len(values))
+    if board.bend is None and board.law is None:
+        _, *rest = as_kind(complex, values, board.middle, outward, *moving)
+        loads = [_by_formula(board, [step, *rest], water) for step in steps]
+    else:
+        loads = [own_load(board, step, outward, *moving, water) for step in steps]
+    return np.stack(loads, axis=-1).imag / STEP
 
 
 def _flat(array: FloatArray, shape: tuple[int, ...], *tail: int) -> FloatArray:

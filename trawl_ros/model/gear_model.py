@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.gear.polars import polar_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
@@ -65,6 +65,24 @@ class NodeLayout:
         """Bridles of port and of starboard."""
         half = len(self.bridles) // 2
         return self.bridles[:half], self.bridles[half:]
+
+
+@dataclass(frozen=True)
+class BarGroup:
+    """Some k bars: their numbers, the ``points`` at which they end, these ``ends`` (k, 2) as places
+    among the points, and their properties.
+    """
+
+    bars: IntArray
+    points: IntArray
+    ends: IntArray
+    properties: BarProperties
+
+    def rows(self, nodes: int) -> IntArray:
+        """Degrees of freedom of those points that are nodes, of so many in the gear."""
+        free = self.points[self.points < nodes]
+        every: IntArray = (3 * free[:, None] + np.arange(3)).ravel()
+        return every
 
 
 @dataclass(frozen=True)
@@ -128,6 +146,27 @@ class GearModel:
         """Bars of the port and of the starboard warp."""
         return np.flatnonzero(self.warp_side == 0), np.flatnonzero(self.warp_side == 1)
 
+    @cached_property
+    def rigging(self) -> 'BarGroup':
+        """Bars of the warps, and the others at boards."""
+        rigged = self.pattern.rigged
+        return self._group(np.concatenate([*self.warp_bars, rigged[self.warp_side[rigged] < 0]]))
+
+    @cached_property
+    def warps(self) -> 'BarGroup':
+        """Bars of both warps."""
+        return self._group(np.concatenate(self.warp_bars))
+
+    def _group(self, bars: IntArray) -> 'BarGroup':
+        points, ends = np.unique(self.ends[bars], return_inverse=True)
+        return BarGroup(bars, points, ends.reshape(-1, 2), self.bars.chosen(bars))
+
+    @cached_property
+    def net_bars(self) -> BoolArray:
+        """Flags (m,) of the bars of netting and of ropes of the net."""
+        inside: BoolArray = np.isin(self.ends, self.layout.net)
+        return inside[:, 0] & inside[:, 1]
+
     def with_coefficients(self, values: FloatArray) -> 'GearModel':
         """The same gear with other board coefficients, in the order of eq. 36."""
         return replace(self, coefficients=np.asarray(values))
@@ -142,7 +181,7 @@ class GearModel:
         """The same gear with this many times the drag coefficients and the weight in water of all
         netting and ropes of the net.
         """
-        net = np.isin(self.ends, self.layout.net).all(axis=1)
+        net = self.net_bars
         bars, water = self.bars, self.water.density * self.bars.volume
         return replace(
             self,

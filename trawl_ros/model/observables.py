@@ -1,8 +1,10 @@
 """Observation: the observables of a state of the gear."""
 
+from typing import cast
+
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.board import flow_at, inclination, pitch_and_roll
 from trawl_ros.model.gear_model import OUTWARD, GearModel
@@ -20,8 +22,10 @@ LYING = np.sin(np.radians(50.0))
 
 
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:
-    """Compute the observables of a state; complex states give complex values."""
-    port, starboard = state.board_positions
+    """Compute the observables of a state; complex states give complex values, and states whose
+    arrays have dimensions in front give as many values of each.
+    """
+    port, starboard = state.board_positions[..., 0, :], state.board_positions[..., 1, :]
     flow = flow_at(
         model.board,
         OUTWARD,
@@ -36,38 +40,53 @@ def observe(model: GearModel, state: State, tow: Tow) -> Observables:
     pull = block_forces(model, state, tow)
     tension = length(pull)
     # Warps leave over the stern: their angles count from straight astern.
-    to_port = tow.blocks[0, :2] - tow.blocks[1, :2]
-    to_port = to_port / length(to_port)
-    astern = pull[:, 1] * to_port[0] - pull[:, 0] * to_port[1]
-    divergence = angle((pull[:, :2] @ to_port) * OUTWARD, astern)
-    declination = angle(-pull[:, 2], length(pull[:, :2]))
+    to_port = tow.blocks[..., 0, :2] - tow.blocks[..., 1, :2]
+    to_port = (to_port / length(to_port)[..., None])[..., None, :]
+    astern = pull[..., 1] * to_port[..., 0] - pull[..., 0] * to_port[..., 1]
+    aside = pull[..., 0] * to_port[..., 0] + pull[..., 1] * to_port[..., 1]
+    divergence = angle(aside * OUTWARD, astern)
+    declination = angle(-pull[..., 2], length(pull[..., :2]))
+    ends, centre, below = _mouth_nodes(model)
+    top = state.nodes[..., centre, :]
+    values = {
+        'door_spread': distance(port, starboard),
+        'port_door_depth': -port[..., 2],
+        'starboard_door_depth': -starboard[..., 2],
+        'port_tension': tension[..., 0],
+        'starboard_tension': tension[..., 1],
+        'net_depth': -top[..., 2],
+        'vertical_opening': top[..., 2] - state.nodes[..., below, 2],
+        'horizontal_opening': distance(state.nodes[..., ends[0], :], state.nodes[..., ends[1], :]),
+        'port_pitch': pitch[..., 0],
+        'starboard_pitch': pitch[..., 1],
+        'port_roll': roll[..., 0],
+        'starboard_roll': roll[..., 1],
+        'port_divergence': divergence[..., 0],
+        'starboard_divergence': divergence[..., 1],
+        'port_declination': declination[..., 0],
+        'starboard_declination': declination[..., 1],
+        'port_attack': flow.attack[..., 0],
+        'starboard_attack': flow.attack[..., 1],
+        'port_slip': flow.slip[..., 0],
+        'starboard_slip': flow.slip[..., 1],
+        'port_inclination': lean[..., 0],
+        'starboard_inclination': lean[..., 1],
+    }
+    # Numbers of one state, arrays of many.
+    return Observables(**cast(dict[str, float], values))
+
+
+def _mouth_nodes(model: GearModel) -> tuple[tuple[int, int], int, int]:
+    """Both ends of the headrope, its centre, and the footrope's."""
     head, foot = model.layout.headrope, model.layout.footrope
-    centre, below = head[len(head) // 2], foot[len(foot) // 2]
-    top = state.nodes[centre]
-    return Observables(
-        door_spread=distance(port, starboard),
-        port_door_depth=-port[2],
-        starboard_door_depth=-starboard[2],
-        port_tension=tension[0],
-        starboard_tension=tension[1],
-        net_depth=-top[2],
-        vertical_opening=top[2] - state.nodes[below][2],
-        horizontal_opening=distance(state.nodes[head[0]], state.nodes[head[-1]]),
-        port_pitch=pitch[0],
-        starboard_pitch=pitch[1],
-        port_roll=roll[0],
-        starboard_roll=roll[1],
-        port_divergence=divergence[0],
-        starboard_divergence=divergence[1],
-        port_declination=declination[0],
-        starboard_declination=declination[1],
-        port_attack=flow.attack[0],
-        starboard_attack=flow.attack[1],
-        port_slip=flow.slip[0],
-        starboard_slip=flow.slip[1],
-        port_inclination=lean[0],
-        starboard_inclination=lean[1],
-    )
+    ends = int(head[0]), int(head[-1])
+    return ends, int(head[len(head) // 2]), int(foot[len(foot) // 2])
+
+
+def observed_nodes(model: GearModel) -> IntArray:
+    """Nodes (k,) that the observables depend on: of the mouth, and the highest of the warps."""
+    ends, centre, below = _mouth_nodes(model)
+    return np.unique([*ends, centre, below, *model.ends[model.layout.top_warp_bars, 1]])
 
 
 def outward_normal_lift(state: State) -> FloatArray:

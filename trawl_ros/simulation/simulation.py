@@ -18,12 +18,10 @@ from trawl_ros.simulation.seabed import require_clear
 from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.solver.equilibrium import find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint, block_offsets
-from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
+from trawl_ros.solver.stepper import HALVINGS, Motion, StepFailed, Stepper, at_rest
 
 NANOSECONDS = 1_000_000_000
 CALM = Sea()
-HALVINGS = 6
-"""Number of halvings of a time step that fails before the tow is given up."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ it serves.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,6 +30,9 @@ KEEP_RATE = 0.35
 """Convergence slower than this factor per iteration asks for a new iteration matrix."""
 
 ITERATIONS = 12
+
+HALVINGS = 6
+"""Number of halvings of a time step that fails before the tow is given up."""
 
 LIMIT = 0.2
 """Largest correction of an iteration (m or rad)."""
@@ -53,16 +57,107 @@ def at_rest(state: State) -> Motion:
     return Motion(state, zero, zero)
 
 
+@dataclass(frozen=True)
+class Scheme:
+    """Constants of the generalised-α method, by the share of the fastest vibration it keeps."""
+
+    alpha_m: float
+    alpha_f: float
+    gamma: float
+    beta: float
+
+    @classmethod
+    def of(cls, rho: float) -> 'Scheme':
+        """Constants for a spectral radius (Chung and Hulbert 1993)."""
+        alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
+        gamma = 0.5 + alpha_f - alpha_m
+        return cls(alpha_m, alpha_f, gamma, 0.25 * (gamma + 0.5) ** 2)
+
+    @property
+    def share(self) -> float:
+        """Share of the new acceleration in the new averaged one."""
+        return (1 - self.alpha_f) / (1 - self.alpha_m)
+
+    def carried(self, old: FloatArray, averaged: FloatArray) -> FloatArray:
+        """Part of the new averaged acceleration that is known before the step."""
+        return (self.alpha_f * old - self.alpha_m * averaged) / (1 - self.alpha_m)
+
+    def by_position(self, h: float) -> float:
+        """Change of the new position by the new acceleration, s²."""
+        return h * h * self.beta * self.share
+
+    def by_velocity(self, h: float) -> float:
+        """Change of the new velocity by the new acceleration, s."""
+        return h * self.gamma * self.share
+
+    def way(
+        self, velocity: FloatArray, averaged: FloatArray, carried: FloatArray, h: float
+    ) -> FloatArray:
+        """Part of the way through a step of ``h`` s that is known before it."""
+        return h * velocity + h * h * ((0.5 - self.beta) * averaged + self.beta * carried)
+
+    def pace(
+        self, velocity: FloatArray, averaged: FloatArray, carried: FloatArray, h: float
+    ) -> FloatArray:
+        """Part of the new velocity that is known before the step."""
+        return velocity + h * ((1 - self.gamma) * averaged + self.gamma * carried)
+
+
+SCHEME = Scheme.of(SPECTRAL_RADIUS)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of ``h`` seconds from a motion as a function of the new acceleration."""
+
+    start: Motion
+    h: float
+
+    @cached_property
+    def carried(self) -> FloatArray:
+        """Part (dof,) of the new averaged acceleration that is known."""
+        return SCHEME.carried(self.start.acceleration, self.start.averaged)
+
+    @cached_property
+    def way(self) -> FloatArray:
+        """Part (dof,) of the way that is known."""
+        given = self.start.state.velocity, self.start.averaged, self.carried
+        return SCHEME.way(*given, self.h)
+
+    @cached_property
+    def pace(self) -> FloatArray:
+        """Part (dof,) of the new velocity that is known."""
+        given = self.start.state.velocity, self.start.averaged, self.carried
+        return SCHEME.pace(*given, self.h)
+
+    def shift(self, new: FloatArray) -> FloatArray:
+        """Way (dof,) of the gear with an acceleration (dof,) at the end."""
+        return self.way + SCHEME.by_position(self.h) * new
+
+    def state(self, new: FloatArray) -> State:
+        """State at the end with an acceleration (dof,) there."""
+        velocity = self.pace + SCHEME.by_velocity(self.h) * new
+        return self.start.state.moved(self.shift(new)).with_velocity(velocity)
+
+    def motion(self, new: FloatArray) -> Motion:
+        """Motion at the end with an acceleration (dof,) there."""
+        return Motion(self.state(new), new, self.carried + SCHEME.share * new)
+
+
+@dataclass(frozen=True)
+class SolvedStep:
+    """Step with its new acceleration (dof,) and the mass as data on the pattern."""
+
+    step: Step
+    acceleration: FloatArray
+    inertia: FloatArray
+
+
 class Stepper:
     """Time stepper of one gear; holds the factorised iteration matrix between steps."""
 
     def __init__(self, model: GearModel) -> None:
-        rho = SPECTRAL_RADIUS
         self.model = model
-        self._alpha_m = (2 * rho - 1) / (rho + 1)
-        self._alpha_f = rho / (rho + 1)
-        self._gamma = 0.5 + self._alpha_f - self._alpha_m
-        self._beta = 0.25 * (self._gamma + 0.5) ** 2
         self._factor: Factor | None = None
         self._factor_step = 0.0
         self.factorisations = 0
@@ -75,6 +170,10 @@ class Stepper:
         StepFailed
             If the iteration does not converge.
         """
+        solved = self._solved(motion, tow, h)
+        return solved.step.motion(solved.acceleration)
+
+    def _solved(self, motion: Motion, tow: Tow, h: float) -> SolvedStep:
         if self._factor_step != h:
             self._factor = None
         try:
@@ -84,23 +183,18 @@ class Stepper:
             self._factor = None
             return self._solve(motion, tow, h, 0.0)
 
-    def _solve(self, motion: Motion, tow: Tow, h: float, keep_rate: float) -> Motion:
-        model = self.model
-        share = (1 - self._alpha_f) / (1 - self._alpha_m)
-        by_velocity = h * self._gamma * share
-        by_position = h * h * self._beta * share
-        start, velocity = motion.state, motion.state.velocity
-        old, averaged = motion.acceleration, motion.averaged
-        carried = (self._alpha_f * old - self._alpha_m * averaged) / (1 - self._alpha_m)
-        # With the new acceleration q, places move by `way` + by_position q, and velocities
-        # become `pace` + by_velocity q.
-        way = h * velocity + h * h * ((0.5 - self._beta) * averaged + self._beta * carried)
-        pace = velocity + h * ((1 - self._gamma) * averaged + self._gamma * carried)
-        new = averaged.copy()
+    def _is_done(self, size: float, last: float, enough: float) -> bool:
+        """True if a correction of a size, after one of the last size, is small enough."""
+        return size < enough
+
+    def _solve(self, motion: Motion, tow: Tow, h: float, keep_rate: float) -> SolvedStep:
+        model, step = self.model, Step(motion, h)
+        by_velocity, by_position = SCHEME.by_velocity(h), SCHEME.by_position(h)
+        new = motion.averaged.copy()
         inertia = None
         last = np.inf
         for iteration in range(ITERATIONS):
-            state = start.moved(way + by_position * new).with_velocity(pace + by_velocity * new)
+            state = step.state(new)
             if inertia is None:
                 # Added mass turns with the ropes; taking it at the predicted place keeps
                 # the order of the method.
@@ -123,10 +217,8 @@ class Stepper:
             if not np.isfinite(size) or (iteration > 2 and size > 10 * last):
                 raise StepFailed('the time step did not converge')
             new = new + correction * (min(1.0, LIMIT / max(size, LIMIT)) / by_position)
-            if size < TOLERANCE * h**3:
-                state = start.moved(way + by_position * new)
-                speed = pace + by_velocity * new
-                return Motion(state.with_velocity(speed), new, carried + share * new)
+            if self._is_done(size, last, TOLERANCE * h**3):
+                return SolvedStep(step, new, inertia)
             if size > keep_rate * last:
                 self._factor = None
             last = size

@@ -13,6 +13,7 @@ from trawl_ros.lab.report.page import Findings
 TITLES: Mapping[str, str] = MappingProxyType(
     {
         'gear': 'The full gear in motion',
+        'derivatives': 'Derivatives of the motion',
         'web': 'MoorDyn on a web as large as the gear',
         'wire': 'One wire in motion',
         'equilibrium': 'Steady states of the full gear',

@@ -17,10 +17,9 @@ from trawl_ros.lab.validation.closed_forms.refinement import order
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import Tow
 from trawl_ros.report.pictures import Drawing
-from trawl_ros.simulation.simulation import HALVINGS
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
+from trawl_ros.solver.stepper import HALVINGS, Motion, StepFailed, Stepper, at_rest
 
 WARP, SPEED = 500.0, 2.1
 """Operating point at the manoeuvre's start, m and m/s."""

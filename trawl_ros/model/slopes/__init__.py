@@ -1,0 +1,1 @@
+"""Derivatives of forces and inertia by more than positions and velocities."""

@@ -1,0 +1,1 @@
+"""Dense fronts of a sparse matrix: numerical factorisation and solutions, compiled."""

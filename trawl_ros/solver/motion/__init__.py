@@ -1,0 +1,1 @@
+"""Motion in time with its derivatives by parameters, step by step."""

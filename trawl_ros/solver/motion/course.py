@@ -1,0 +1,199 @@
+"""Towing boundary of a gear along given inputs, with its derivatives by parameters.
+
+Warp lengths and speed are given as counters and log show them; the effects that act say what is
+true. The ship's way is the integral of her speed, by the trapezoidal rule from step to step, and so
+are its derivatives.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.effects.base.effect import Effect, Situation, sense
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import cross
+from trawl_ros.model.state import Tow, TowSlopes
+from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.operating_point import block_offsets
+
+VALUE_PART = 1e-4
+"""Differences by an effect's value are taken over this part of its std."""
+
+RATE_STEP_S = 0.1
+"""Differences along the rates of the inputs are taken over so long."""
+
+
+@dataclass(frozen=True)
+class InputPoint:
+    """Inputs at one instant as instruments show them.
+
+    Attributes
+    ----------
+    inputs, rates
+        Port and starboard warp length (m) and speed (m/s), and their rates of change, both (3,).
+    heading, yaw_rate
+        ENU yaw (rad) and rate of turn (rad/s).
+    hours
+        Since the tow began.
+    errors, error_rates
+        Additions (k, 3) to inputs and rates by one unit of each of `MotionParameters.inputs`.
+    """
+
+    inputs: FloatArray
+    rates: FloatArray
+    heading: float = 0.0
+    yaw_rate: float = 0.0
+    hours: float = 0.0
+    errors: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    error_rates: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @cached_property
+    def situation(self) -> Situation:
+        """Situation of the effects."""
+        port, starboard, speed = map(float, self.inputs)
+        heading = float(self.heading)
+        return Situation((port, starboard, speed), heading, sense(heading), self.hours)
+
+
+@dataclass(frozen=True)
+class ShipWay:
+    """Way of the ship: position (3,) midway between the blocks, and its derivatives (m, 3)."""
+
+    position: FloatArray
+    slopes: FloatArray
+
+
+@dataclass(frozen=True)
+class CoursePoint:
+    """Towing boundary at one instant with its derivatives, and the ship's velocity (3,) with its
+    derivatives (m, 3) beside her way.
+    """
+
+    tow: Tow
+    slopes: TowSlopes
+    way: ShipWay
+    velocity: FloatArray
+    velocity_slopes: FloatArray
+
+
+def course_point(
+    model: GearModel,
+    acting: EffectSet,
+    parameters: MotionParameters,
+    point: InputPoint,
+    before: CoursePoint | None = None,
+    h: float = 0.0,
+) -> CoursePoint:
+    """Towing boundary at one instant.
+
+    Parameters
+    ----------
+    model
+        The gear; its water flows over ground at the surface as it says.
+    acting
+        Effects that are there.
+    parameters
+        Of the derivatives.
+    point
+        Inputs at this instant.
+    before, h
+        Boundary ``h`` s earlier; without it the ship is at the origin.
+    """
+    inputs, rates = _true(acting, point)
+    by_inputs, by_rates = _slopes(acting, parameters, point)
+    ahead = np.array([np.cos(point.heading), np.sin(point.heading), 0.0])
+    velocity = inputs[2] * ahead + model.water.surface_current
+    velocity_slopes = by_inputs[:, 2:] * ahead
+    way = ShipWay(np.zeros(3), np.zeros((len(parameters), 3)))
+    if before is not None:
+        way = ShipWay(
+            before.way.position + 0.5 * h * (before.velocity + velocity),
+            before.way.slopes + 0.5 * h * (before.velocity_slopes + velocity_slopes),
+        )
+    offsets = block_offsets(model, point.heading)
+    tow = Tow(
+        blocks=way.position + offsets,
+        block_velocities=velocity + cross(np.array([0.0, 0.0, point.yaw_rate]), offsets),
+        lengths=inputs[:2],
+        length_rates=rates[:2],
+    )
+    slopes = TowSlopes(
+        blocks=np.repeat(way.slopes[:, None], 2, axis=1),
+        block_velocities=np.repeat(velocity_slopes[:, None], 2, axis=1),
+        lengths=by_inputs[:, :2],
+        length_rates=by_rates[:, :2],
+    )
+    return CoursePoint(tow, slopes, way, velocity, velocity_slopes)
+
+
+def _true(acting: EffectSet, point: InputPoint) -> tuple[FloatArray, FloatArray]:
+    """True inputs and their rates, both (3,)."""
+    if not acting:
+        return point.inputs, point.rates
+    inputs = acting.apply_to_inputs(point.inputs, point.situation)
+    return inputs, _along(acting, point, point.rates)
+
+
+def _along(acting: EffectSet, point: InputPoint, direction: FloatArray) -> FloatArray:
+    """Change (3,) of the true inputs with a change (3,) of the shown ones."""
+    if not acting:
+        return direction
+    up, down = _beside(acting, point, direction)
+    change: FloatArray = (up - down) / (2.0 * RATE_STEP_S)
+    return change
+
+
+def _true_beside(acting: EffectSet, point: InputPoint) -> FloatArray:
+    """True inputs and their rates (2, 3), the former as a mean of those beside."""
+    up, down = _beside(acting, point, point.rates)
+    return np.array([0.5 * (up + down), (up - down) / (2.0 * RATE_STEP_S)])
+
+
+def _beside(
+    acting: EffectSet, point: InputPoint, direction: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """True inputs (3,) a little before and behind along a direction (3,) of the shown ones."""
+    at, step = point.situation, RATE_STEP_S * direction
+    up = acting.apply_to_inputs(point.inputs + step, at)
+    return up, acting.apply_to_inputs(point.inputs - step, at)
+
+
+def _slopes(
+    acting: EffectSet, parameters: MotionParameters, point: InputPoint
+) -> tuple[FloatArray, FloatArray]:
+    """Derivatives (m, 3) of the true inputs and of their rates by the parameters."""
+    by_inputs, by_rates = np.zeros((2, len(parameters), 3))
+    first = parameters.of_effects.start
+    for effect in parameters.effects:
+        last = first + len(effect.parameters)
+        if type(effect).apply_to_inputs is not Effect.apply_to_inputs:
+            changed = by_values(acting, effect, lambda there: _true_beside(there, point))
+            by_inputs[first:last], by_rates[first:last] = np.moveaxis(changed, 0, 1)
+        first = last
+    own = parameters.of_inputs
+    by_inputs[own] = [_along(acting, point, error) for error in point.errors] or 0.0
+    by_rates[own] = [_along(acting, point, rate) for rate in point.error_rates] or 0.0
+    return by_inputs, by_rates
+
+
+def by_values(
+    acting: EffectSet, effect: Effect, of: Callable[[EffectSet], FloatArray]
+) -> FloatArray:
+    """Derivatives (k, ...) of what an effect set does by the k values of one of its effects, which
+    may be absent, that is neutral; by central differences.
+    """
+    active = acting.of(effect)
+    slopes = []
+    for number, parameter in enumerate(effect.parameters):
+        size = VALUE_PART * parameter.std
+        step = size * np.eye(len(active.values))[number]
+        up, down = (
+            of(acting.having(ActiveEffect(effect, active.values + sign * step)))
+            for sign in (1.0, -1.0)
+        )
+        slopes.append((up - down) / (2.0 * size))
+    return np.array(slopes)

@@ -1,0 +1,86 @@
+"""Parameters by which a tow in motion is differentiated."""
+
+from dataclasses import dataclass
+
+from trawl_ros.core.arrays import Slice
+from trawl_ros.effects.base.effect import Effect
+from trawl_ros.records.coefficients import COEFFICIENTS
+
+NET = ('drag', 'weight')
+"""Factors on drag and weight in water of the net."""
+
+
+@dataclass(frozen=True)
+class MotionParameters:
+    """Parameters of the derivatives of a tow, one kind behind the other; names are those of the
+    groups of a fit's parameter vector.
+
+    Attributes
+    ----------
+    coefficients, net
+        True where the twelve coefficients of the boards, and the two factors on drag and weight in
+        water of the net, are among them.
+    effects
+        Effects by whose values to differentiate.
+    inputs
+        Names of additions to what counters and log show; their course in time comes with the
+        inputs (`trawl_ros.solver.motion.course.InputPoint`).
+    motions
+        Number of slow motions that the gear may begin with, `trawl_ros.solver.motion.start`.
+    """
+
+    coefficients: bool = True
+    net: bool = False
+    effects: tuple[Effect, ...] = ()
+    inputs: tuple[str, ...] = ()
+    motions: int = 0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names (m) of all parameters in their order."""
+        return (
+            *(COEFFICIENTS if self.coefficients else ()),
+            *(NET if self.net else ()),
+            *(f'{effect.name} {own.name}' for effect in self.effects for own in effect.parameters),
+            *self.inputs,
+            *(f'motion {number + 1}' for number in range(self.motions)),
+        )
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    @property
+    def _starts(self) -> tuple[int, ...]:
+        sizes = (
+            len(COEFFICIENTS) if self.coefficients else 0,
+            len(NET) if self.net else 0,
+            sum(len(effect.parameters) for effect in self.effects),
+            len(self.inputs),
+            self.motions,
+        )
+        return tuple(sum(sizes[:number]) for number in range(len(sizes) + 1))
+
+    @property
+    def of_coefficients(self) -> Slice:
+        """Slice of the coefficients of the boards."""
+        return slice(self._starts[0], self._starts[1])
+
+    @property
+    def of_net(self) -> Slice:
+        """Slice of the net's factors."""
+        return slice(self._starts[1], self._starts[2])
+
+    @property
+    def of_effects(self) -> Slice:
+        """Slice of the values of the effects."""
+        return slice(self._starts[2], self._starts[3])
+
+    @property
+    def of_inputs(self) -> Slice:
+        """Slice of the additions to the inputs."""
+        return slice(self._starts[3], self._starts[4])
+
+    @property
+    def of_motions(self) -> Slice:
+        """Slice of the first slow motions."""
+        return slice(self._starts[4], self._starts[5])

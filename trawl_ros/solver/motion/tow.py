@@ -1,0 +1,148 @@
+"""Tow of a gear along given inputs, with the derivatives of its motion by parameters.
+
+Memory is that of one state and its derivatives, however long the tow.
+"""
+
+from collections.abc import Callable
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.line import BarProperties
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.motion.course import CoursePoint, InputPoint, course_point
+from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.motion.partials import GearAtPoint, NetLoads, StepEnd, net_loads, pushes
+from trawl_ros.solver.motion.readings import MotionPrediction, observed_slopes
+from trawl_ros.solver.motion.slopes import (
+    advance_slopes,
+    unmoved,
+)
+from trawl_ros.solver.motion.start import starting_slopes
+from trawl_ros.solver.motion.stepper import DifferentiatedStepper
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.stepper import (
+    HALVINGS,
+    StepFailed,
+    at_rest,
+)
+
+
+class DifferentiatedTow:
+    """Tow along given inputs, with the derivatives of its motion.
+
+    Parameters
+    ----------
+    model
+        The gear without effects.
+    parameters
+        Parameters of the derivatives; with none of them it is towed alone.
+    inputs
+        Inputs at a time (s since the tow began); it begins in the equilibrium of the first.
+    acting
+        Effects that are there.
+    start
+        Equilibrium nearby from which that is sought.
+
+    Attributes
+    ----------
+    time
+        Time reached, s.
+    model
+        The gear there, with its effects.
+    motion, slopes
+        Motion of the gear and its derivatives.
+    course
+        Towing boundary and its derivatives.
+    first
+        Equilibrium that it began in.
+
+    Raises
+    ------
+    NoSteadyState
+        If the gear has none to start from.
+    """
+
+    def __init__(
+        self,
+        model: GearModel,
+        parameters: MotionParameters,
+        inputs: Callable[[float], InputPoint],
+        acting: EffectSet = NO_EFFECTS,
+        start: Equilibrium | None = None,
+    ) -> None:
+        self._plain, self._acting, self._inputs = model, acting, inputs
+        self.parameters, self.time = parameters, 0.0
+        self._net: tuple[BarProperties, NetLoads] | None = None
+        point = inputs(0.0)
+        self.model = acting.gear(model, point.situation)
+        self.course = course_point(model, acting, parameters, point)
+        true = acting.apply_to_inputs(point.inputs, point.situation)
+        port, starboard, speed = map(float, true)
+        wanted = OperatingPoint(port, starboard, speed, point.heading)
+        self.first = find_equilibrium(self.model, wanted, start)
+        self.motion = at_rest(self.first.state)
+        state, tow = self.motion.state, self.course.tow
+        self.slopes = unmoved(model.dof, len(parameters))
+        if parameters:
+            end = StepEnd(state, self.motion.acceleration, tow, state)
+            push = self._pushes(self.model, point, end, self.course)
+            self.slopes = starting_slopes(
+                self.model, state, tow, parameters, self.course.slopes, push
+            )
+        self._stepper = DifferentiatedStepper(self.model)
+
+    def advance(self, h: float) -> None:
+        """Advance by ``h`` seconds, in shorter steps where one fails.
+
+        Raises
+        ------
+        StepFailed
+            If not even short steps converge; the tow stays where it had come to.
+        """
+        self._advance(h, HALVINGS)
+
+    def _advance(self, h: float, halvings: int) -> None:
+        try:
+            self.step(h)
+        except StepFailed:
+            if halvings == 0:
+                raise
+            self._advance(0.5 * h, halvings - 1)
+            self._advance(0.5 * h, halvings - 1)
+
+    def step(self, h: float) -> None:
+        """Advance by one step of ``h`` seconds.
+
+        Raises
+        ------
+        StepFailed
+            If the iteration does not converge; the tow stays where it was.
+        """
+        time = self.time + h
+        point = self._inputs(time)
+        model = self._acting.gear(self._plain, point.situation)
+        course = course_point(model, self._acting, self.parameters, point, self.course, h)
+        self._stepper.model = model
+        if self.parameters:
+            at = self._stepper.linearised_step(self.motion, course.tow, h)
+            motion = at.solved.step.motion(at.solved.acceleration)
+            end = StepEnd(motion.state, motion.acceleration, course.tow, at.predicted)
+            push = self._pushes(model, point, end, course)
+            self.slopes = advance_slopes(model, at, self.slopes, course.tow, course.slopes, push)
+        else:
+            motion = self._stepper.step(self.motion, course.tow, h)
+        self.model, self.course, self.motion, self.time = model, course, motion, time
+
+    def _pushes(
+        self, model: GearModel, point: InputPoint, end: StepEnd, course: CoursePoint
+    ) -> FloatArray:
+        if self._net is None or self._net[0] is not model.bars:
+            self._net = model.bars, net_loads(model)
+        gear = GearAtPoint(self._plain, self._acting, point)
+        return pushes(model, gear, self.parameters, end, course.slopes, self._net[1])
+
+    def observed(self) -> MotionPrediction:
+        """Observables of the present instant with their derivatives."""
+        at = self.model, self.motion.state, self.course.tow
+        return observed_slopes(*at, self.slopes, self.course.slopes)
