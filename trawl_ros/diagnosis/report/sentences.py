@@ -3,6 +3,7 @@
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.rules import FALSE_ALARMS
 from trawl_ros.diagnosis.weighing import Weighed
+from trawl_ros.gear.parts import own_parts
 
 MENTIONED = 3
 """So many places where model and measurement disagree are named at once."""
@@ -10,6 +11,10 @@ MENTIONED = 3
 
 def headline(diagnosis: Diagnosis) -> str:
     """Verdict in one sentence."""
+    return own_parts(_headline(diagnosis), diagnosis.gear)
+
+
+def _headline(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == 'NOT_TESTABLE':
         return f'Nothing can be said: {diagnosis.reason}.'
     if diagnosis.verdict == 'NO_DISCREPANCY':
@@ -77,7 +82,7 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             f'{diagnosis.score_test.limit:.1f} in {FALSE_ALARMS:.0%} of trials without any effect '
             '(-log₁₀ of a probability).'
         )
-    return tuple(lines)
+    return tuple(own_parts(line, diagnosis.gear) for line in lines)
 
 
 def _names(entry: Weighed) -> str:

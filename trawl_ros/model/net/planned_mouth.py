@@ -45,7 +45,10 @@ class FrameRope:
         netting, hanging = plan.hung_netting(name), plan.hanging
         whole = plan.rope_length(name) if length is None else length
         hung = {'bosom': hanging.bosom * netting['bosom'], 'tip': hanging.wing_tip * netting['tip']}
-        of = {kind: np.array([k == kind for k in self.kinds]) for kind in ('edge', 'bosom', 'tip')}
+        of = {
+            kind: np.array([k == kind for k in self.kinds], dtype=bool)
+            for kind in ('edge', 'bosom', 'tip')
+        }
         if not of['edge'].any():
             hung = {kind: whole if of[kind].any() else 0.0 for kind in hung}
         left = whole - sum(hung[kind] for kind in hung if of[kind].any())
