@@ -54,6 +54,34 @@ def test_a_file_that_is_there_is_not_written_over(tmp_path: Path) -> None:
     assert out.read_text() == 'mine'
 
 
+def test_numbers_keep_their_millimetres_and_millinewtons_however_large(tmp_path: Path) -> None:
+    gear = load_gear('krill_800')
+    front, *others = gear.hung
+    heavy = front.model_copy(update={'weight_in_water_n': 1234567.891})
+    out = tmp_path / 'heavy.yaml'
+    write_changed('krill_800', out, gear.model_copy(update={'hung': (heavy, *others)}))
+    assert load_gear(out).hung[0].weight_in_water_n == 1234567.891
+
+
+def test_a_gear_that_no_file_may_have_leaves_no_file(tmp_path: Path) -> None:
+    gear = load_gear('krill_800')
+    light = gear.model_copy(update={'board': gear.board.model_copy(update={'mass_kg': -1.0})})
+    out = tmp_path / 'light.yaml'
+    with pytest.raises(GearError, match=r'^\S*/light\.yaml: board\.mass_kg: ') as told:
+        write_changed('krill_800', out, light)
+    assert f'{out}: ' in str(told.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_cannot_be_written_leaves_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr('trawl_ros.gear.edit.edited', lambda text, values: text)
+    with pytest.raises(GearError, match='cannot be written beside what the file says'):
+        write_changed('krill_800', tmp_path / 'copy.yaml', changed(load_gear('krill_800')))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_numbers_that_are_left_out_are_put_in_block_and_flow_records() -> None:
     text = 'a:\n  b: 1.0  # kept\nc: {d: 2.0}\nf: [1.0, 2.0]\n'
     new = edited(text, {('a', 'e'): 5.0, ('c', 'e'): 6.0, ('f', 1): 3.5})

@@ -6,7 +6,7 @@ from pathlib import Path
 import yaml
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.core.files import write_text
+from trawl_ros.core.files import write_text, written
 from trawl_ros.core.resources import packaged
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -17,6 +17,9 @@ Key = tuple[str | int, ...]
 
 DIGITS = 3
 """Decimals that are written: millimetres, and thousandths of a newton."""
+
+FIGURES = '.12g'
+"""Format of numbers in the file, in which none of those decimals is lost."""
 
 
 CLOSE = 0.01
@@ -79,7 +82,7 @@ def edited(text: str, values: Mapping[Key, float]) -> str:
         elif missing or not isinstance(record, yaml.MappingNode | yaml.SequenceNode):
             raise GearError(f'{_dotted(key)}: missing, expected it in the file')
         elif (node := _child(record, last)) is not None:
-            pieces.append((node.start_mark.index, node.end_mark.index, f'{value:g}'))
+            pieces.append((node.start_mark.index, node.end_mark.index, f'{value:{FIGURES}}'))
         elif isinstance(record, yaml.MappingNode):
             pieces.append(_added(record, str(last), value))
     for start, end, new in sorted(pieces, reverse=True):
@@ -90,7 +93,7 @@ def edited(text: str, values: Mapping[Key, float]) -> str:
         rows = []
         for number, name in enumerate(ENDS):
             row = f'name: {name}, ' + ('' if swept else f'at_board: {name}, ') + f'at_net: {name}'
-            length = f', length_m: {bridles[number]:g}' if number in bridles else ''
+            length = f', length_m: {bridles[number]:{FIGURES}}' if number in bridles else ''
             rows.append(f'  - {{{row}{length}}}')
         text = '\n'.join([text.rstrip('\n'), '', 'bridles:', *rows, ''])
     return text
@@ -108,7 +111,7 @@ def _added(node: yaml.MappingNode, name: str, value: float) -> tuple[int, int, s
     """Insertion of a key ahead of the first one of its record."""
     first = node.value[0][0].start_mark
     ending = ', ' if node.flow_style else '\n' + ' ' * first.column
-    return first.index, first.index, f'{name}: {value:g}{ending}'
+    return first.index, first.index, f'{name}: {value:{FIGURES}}{ending}'
 
 
 def _named(key: Key) -> Key:
@@ -135,7 +138,8 @@ def write_changed(source: str | Path, out: Path, gear: GearRecord) -> None:
     Raises
     ------
     GearError
-        If ``out`` is there already, or what would be written does not load as that gear.
+        If ``out`` is there already, or what would be written does not load as that gear. Then no
+        file is left.
     """
     require_new(out)
     path = packaged(source, 'gear', GearError)
@@ -143,12 +147,18 @@ def write_changed(source: str | Path, out: Path, gear: GearRecord) -> None:
     values = changed_values(old, gear)
     keys = ', '.join(dict.fromkeys(_dotted(_named(key)) for key in values))
     head = f'# Copy of {path.name} in which `trawl trim` changed {keys}.\n'
-    write_text(out, head + edited(path.read_text(encoding='utf-8'), values))
-    there = changed_values(old, load_gear(out))
-    for key, value in values.items():
-        if abs(there.get(key, float('inf')) - value) > CLOSE:
-            out.unlink()
-            raise GearError(f'{out}: {_dotted(key)} cannot be written beside what the file says')
+    text = head + edited(path.read_text(encoding='utf-8'), values)
+    with written(out) as draft:
+        write_text(draft, text)
+        try:
+            there = changed_values(old, load_gear(draft))
+        except GearError as reason:
+            raise GearError(str(reason).replace(str(draft), str(out))) from reason
+        for key, value in values.items():
+            if abs(there.get(key, float('inf')) - value) > CLOSE:
+                raise GearError(
+                    f'{out}: {_dotted(key)} cannot be written beside what the file says'
+                )
 
 
 def require_new(path: Path) -> None:
