@@ -14,9 +14,9 @@ from trawl_ros.bags.logs.clock import ClockReader
 from trawl_ros.bags.logs.layout import BadRow, LogRow, read_rows
 from trawl_ros.bags.logs.mapping import ColumnMapping, LogMapping, TopicMapping, load_mapping
 from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
-from trawl_ros.bags.logs.table_samples import table_sample
 from trawl_ros.bags.logs.writing import Imported, write_samples
-from trawl_ros.bags.possible import impossible, impossible_compass
+from trawl_ros.records.fields import sample_of_fields
+from trawl_ros.records.possible import impossible, impossible_compass
 from trawl_ros.records.samples import Sample
 
 NO_READING = 'no reading, or none that is new'
@@ -121,8 +121,10 @@ class _Reading:
             readings = self._readings(row, entry)
             if entry.changes_only and readings == self._last.get(topic):
                 continue
+            water = self._mapping.water
+            stated = entry.stated(topic, water)
             if stamp is not None and (
-                sample := table_sample(topic, stamp, readings, entry, self._mapping.water)
+                sample := sample_of_fields(topic, stamp, readings, stated, water)
             ):
                 self._refuse_impossible(row, topic, entry, sample, readings)
                 self._last[topic] = readings

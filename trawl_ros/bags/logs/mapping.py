@@ -11,48 +11,7 @@ from trawl_ros.core.errors import LogError
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.core.units import UNITS, units_of
-from trawl_ros.records.topics import RANGES
-
-_RANGE = {'distance': 'length'}
-_PRESSURE = {'pressure': 'pressure', 'depth': 'length'}
-_ATTITUDE = {'pitch': 'angle', 'roll': 'angle'}
-
-FIELDS: dict[str, dict[str, str]] = {
-    'winch/joint_states': {
-        'port_length': 'length',
-        'starboard_length': 'length',
-        'port_speed': 'speed',
-        'starboard_speed': 'speed',
-        'port_tension': 'force',
-        'starboard_tension': 'force',
-    },
-    'door/port/pressure': _PRESSURE,
-    'door/starboard/pressure': _PRESSURE,
-    'sonar/pressure': _PRESSURE,
-    'door/port/attitude': _ATTITUDE,
-    'door/starboard/attitude': _ATTITUDE,
-    **dict.fromkeys(RANGES.values(), _RANGE),
-    'vessel/velocity_water': {'forward': 'speed', 'to_port': 'speed'},
-    'vessel/velocity_ground': {'speed': 'speed', 'compass_course': 'angle'},
-    'vessel/heading': {'compass_heading': 'angle'},
-    'vessel/fix': {'latitude': 'angle', 'longitude': 'angle'},
-}
-"""Fields of each topic that a log can give, with their quantities. A compass angle runs clockwise
-from north; a depth becomes a pressure."""
-
-STD_QUANTITIES = {
-    'door/port/pressure': 'pressure',
-    'door/starboard/pressure': 'pressure',
-    'sonar/pressure': 'pressure',
-    'door/port/attitude': 'angle',
-    'door/starboard/attitude': 'angle',
-    **dict.fromkeys(RANGES.values(), 'length'),
-    'vessel/heading': 'angle',
-    'vessel/fix': 'length',
-}
-"""Topics whose messages state their noise, with its quantity."""
-
-RANGE_TOPICS = tuple(topic for topic, fields in FIELDS.items() if fields is _RANGE)
+from trawl_ros.records.fields import FIELDS, RANGE_TOPICS, STD_QUANTITIES, Stated, WaterColumn
 
 _TOGETHER = (
     'door/port/attitude',
@@ -91,22 +50,6 @@ class ColumnMapping(Record):
         return (cell * self.scale + self.offset) * UNITS[self.unit].size
 
 
-class LogWater(Record):
-    """Conversion of depths into absolute pressures: surface + density x gravity x depth."""
-
-    density_kg_m3: Annotated[float, Field(gt=900, lt=1100)]
-    gravity_m_s2: Annotated[float, Field(gt=9.7, lt=9.9)] = 9.80665
-    surface_pressure_pa: Annotated[float, Field(gt=8e4, lt=1.2e5)] = 101_325.0
-
-    def pressure(self, depth: float) -> float:
-        """Convert a depth (m) into an absolute pressure (Pa)."""
-        return self.surface_pressure_pa + self.depth_to_difference(depth)
-
-    def depth_to_difference(self, depth: float) -> float:
-        """Convert a difference in depth (m) into one in pressure (Pa)."""
-        return self.density_kg_m3 * self.gravity_m_s2 * depth
-
-
 class TopicMapping(Record):
     """Mapping of one topic: its readings by field, and the errors its messages state.
 
@@ -122,6 +65,15 @@ class TopicMapping(Record):
     min_range: Quantity | None = None
     max_range: Quantity | None = None
 
+    def stated(self, topic: str, water: WaterColumn | None) -> Stated:
+        """Give noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
+        std = 0.0 if self.std is None else self.std.si()
+        in_metres = self.std is not None and UNITS[self.std.unit].quantity == 'length'
+        if water and in_metres and STD_QUANTITIES.get(topic) == 'pressure':
+            std = water.depth_to_difference(std)
+        limits = [limit.si() for limit in (self.min_range, self.max_range) if limit]
+        return Stated(std, *limits)
+
 
 class LogMapping(Record):
     """Mapping of a whole log.
@@ -134,7 +86,7 @@ class LogMapping(Record):
     topics: Annotated[dict[str, TopicMapping], Field(min_length=1)]
     layout: LogLayout = LogLayout()
     only: dict[str, tuple[str, ...]] = Field(default_factory=dict)
-    water: LogWater | None = None
+    water: WaterColumn | None = None
     missing: tuple[str, ...] = ('', 'nan', 'na', 'n/a', 'null')
 
     def clocks(self) -> list[Clock]:

@@ -17,10 +17,10 @@ from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, load_nmea_mapping
 from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, sample_of
 from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread_stamps
 from trawl_ros.bags.logs.writing import Imported, listed, write_samples
-from trawl_ros.bags.possible import impossible
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import open_file
 from trawl_ros.core.foreign import reading as reading_file
+from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample
 
 MAX_LINE = 4096

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.bags.logs.compass import compass_yaw, course_velocity
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, NmeaTopic
-from trawl_ros.bags.possible import impossible_compass
+from trawl_ros.core.compass import compass_yaw, course_velocity
 from trawl_ros.core.units import UNITS
+from trawl_ros.records.possible import impossible_compass
 from trawl_ros.records.samples import FixSample, HeadingSample, RangeSample, Sample, VelocitySample
 
 KNOT, KM_H = UNITS['kn'].size, UNITS['km/h'].size

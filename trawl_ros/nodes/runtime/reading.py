@@ -4,9 +4,9 @@ from collections import defaultdict
 from typing import Any
 
 from trawl_ros.bags.one_source import SourceWatch
-from trawl_ros.bags.possible import impossible
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.from_messages import to_sample
+from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from trawl_ros.bags.possible import impossible
+from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import VelocitySample
 
 
