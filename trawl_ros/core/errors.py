@@ -84,6 +84,10 @@ class LogError(TrawlError):
     """CSV log or mapping that cannot be turned into a bag."""
 
 
+class SentenceError(TrawlError):
+    """Table of sentences, or link for them, that is missing, unreadable or impossible."""
+
+
 class RosMissing(TrawlError):
     """Missing ROS 2 for a function that needs it; ``reason`` is the import that failed."""
 

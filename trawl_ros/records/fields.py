@@ -113,7 +113,7 @@ def sample_of_fields(
     topic
         Relative name, one of `FIELDS`.
     stamp
-        When it was sampled, ns.
+        Time of sampling, ns.
     readings
         Values by field; NaN, or no entry, is a missing one.
     stated

@@ -8,9 +8,10 @@ from pydantic import Field, model_validator
 from trawl_ros.bags.logs.clock import Clock
 from trawl_ros.bags.logs.layout import LogLayout
 from trawl_ros.core.errors import LogError
+from trawl_ros.core.quantity import Quantity, check_unit
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
-from trawl_ros.core.units import UNITS, units_of
+from trawl_ros.core.units import UNITS
 from trawl_ros.records.fields import FIELDS, RANGE_TOPICS, STD_QUANTITIES, Stated, WaterColumn
 
 _TOGETHER = (
@@ -20,17 +21,6 @@ _TOGETHER = (
     'vessel/fix',
 )
 """Topics that make no sense without all of their fields."""
-
-
-class Quantity(Record):
-    """Quantity: a number with its unit."""
-
-    value: float
-    unit: str
-
-    def si(self) -> float:
-        """Give the value in SI units."""
-        return self.value * UNITS[self.unit].size
 
 
 class ColumnMapping(Record):
@@ -123,7 +113,7 @@ class LogMapping(Record):
                 raise ValueError(
                     f'{where}.fields.{field}: unknown field, expected one of {", ".join(known)}'
                 )
-            _check_unit(f'{where}.fields.{field}.unit', column.unit, known[field])
+            check_unit(f'{where}.fields.{field}.unit', column.unit, known[field])
             if column.hemisphere and field not in ('latitude', 'longitude'):
                 raise ValueError(
                     f'{where}.fields.{field}.hemisphere: given, expected none: it is no position'
@@ -146,7 +136,7 @@ class LogMapping(Record):
             if limit is not None and not wanted:
                 raise ValueError(f'{where}.{name}: given, expected none: it measures no distance')
             if limit is not None:
-                _check_unit(f'{where}.{name}.unit', limit.unit, 'length')
+                check_unit(f'{where}.{name}.unit', limit.unit, 'length')
         low, high = limits.values()
         if low and high and not 0 <= low.si() < high.si():
             raise ValueError(
@@ -165,7 +155,7 @@ class LogMapping(Record):
         # A depth gauge is specified in metres as often as in pascals.
         if quantity == 'pressure' and self.water and UNITS.get(std.unit, ('',))[0] == 'length':
             return
-        _check_unit(f'{where}.std.unit', std.unit, quantity)
+        check_unit(f'{where}.std.unit', std.unit, quantity)
 
 
 def load_mapping(path: str | Path) -> LogMapping:
@@ -178,26 +168,3 @@ def load_mapping(path: str | Path) -> LogMapping:
     """
     file = packaged(path, 'logs', LogError)
     return validated(LogMapping, load_yaml(file, LogError), file, LogError)
-
-
-def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
-    """Refuse a quantity of another kind than wanted, or below zero.
-
-    Raises
-    ------
-    ValueError
-        Naming the key, what was found and what was expected.
-    """
-    _check_unit(f'{key}.unit', quantity.unit, wanted)
-    if quantity.value < 0:
-        raise ValueError(f'{key}.value: found {quantity.value:g}, expected 0 or more')
-
-
-def _check_unit(key: str, unit: str, quantity: str) -> None:
-    known = UNITS.get(unit)
-    if known is None or known[0] != quantity:
-        is_one = f' of {known[0]}' if known else ''
-        raise ValueError(
-            f'{key}: found {unit!r}{is_one}, expected a unit of {quantity}: '
-            f'{", ".join(units_of(quantity))}'
-        )

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.bags.logs.clock import Clock
-from trawl_ros.bags.logs.mapping import Quantity, check_quantity
 from trawl_ros.core.errors import LogError
+from trawl_ros.core.quantity import Quantity, check_quantity
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.records.fields import RANGE_TOPICS, STD_QUANTITIES
 

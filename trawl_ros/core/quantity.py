@@ -1,0 +1,45 @@
+"""Quantities in files: a number with its unit."""
+
+from trawl_ros.core.schema import Record
+from trawl_ros.core.units import UNITS, units_of
+
+
+class Quantity(Record):
+    """Quantity: a number with its unit."""
+
+    value: float
+    unit: str
+
+    def si(self) -> float:
+        """Give the value in SI units."""
+        return self.value * UNITS[self.unit].size
+
+
+def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
+    """Refuse a quantity of another kind than wanted, or below zero.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, what was found and what was expected.
+    """
+    check_unit(f'{key}.unit', quantity.unit, wanted)
+    if quantity.value < 0:
+        raise ValueError(f'{key}.value: found {quantity.value:g}, expected 0 or more')
+
+
+def check_unit(key: str, unit: str, quantity: str) -> None:
+    """Refuse a unit of another quantity, and one that there is not.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, what was found and what was expected.
+    """
+    known = UNITS.get(unit)
+    if known is None or known[0] != quantity:
+        is_one = f' of {known[0]}' if known else ''
+        raise ValueError(
+            f'{key}: found {unit!r}{is_one}, expected a unit of {quantity}: '
+            f'{", ".join(units_of(quantity))}'
+        )

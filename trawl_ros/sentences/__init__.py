@@ -1,0 +1,1 @@
+"""Sentences of ships' instruments, read and written by a table in YAML."""

@@ -1,0 +1,217 @@
+"""Codec of single sentences: a frame into readings, readings into a sentence."""
+
+import math
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from trawl_ros.sentences.framing import Frame, Unreadable, framed
+from trawl_ros.sentences.numbers import read_number, write_number
+from trawl_ros.sentences.table import SentenceField, SentenceRow, SentenceTable
+from trawl_ros.sentences.times import SaidTime, read_day, read_time, write_time
+
+Readings = Mapping[tuple[str, str], float]
+"""SI values by topic and field; NaN where a sentence says that there is none."""
+
+
+@dataclass(frozen=True)
+class Spoken:
+    """Sentence that was understood.
+
+    Attributes
+    ----------
+    system, name
+        Table and row.
+    talker
+        First letters of its address, where the row leaves them open.
+    readings
+        SI values by topic and field; NaN is no reading.
+    time
+        Time that it says; None without one.
+    """
+
+    system: str
+    name: str
+    talker: str
+    readings: Readings
+    time: SaidTime | None
+
+
+class SentenceReader:
+    """Reader of sentences by tables.
+
+    Parameters
+    ----------
+    tables
+        Systems that are understood.
+    """
+
+    def __init__(self, tables: Sequence[SentenceTable]) -> None:
+        self.rows = {
+            (table.system, name): row for table in tables for name, row in table.sentences.items()
+        }
+        self._by_address: dict[str, list[tuple[str, str]]] = defaultdict(list)
+        for key, row in self.rows.items():
+            self._by_address[row.start + row.address].append(key)
+
+    def knows(self, frame: Frame) -> bool:
+        """True if a table has sentences of this address."""
+        return bool(self._candidates(frame))
+
+    def read(self, frame: Frame) -> Spoken:
+        """Read a sentence.
+
+        Raises
+        ------
+        Unreadable
+            If no row fits; the reason names the sentence, and the field that comes nearest.
+        """
+        found = self._candidates(frame)
+        if not found:
+            raise Unreadable(f'sentence {_name(frame)}, which no table has')
+        best, reason = -1, ''
+        for (system, name), address in found:
+            row = self.rows[system, name]
+            texts = frame.body[len(address) :].removeprefix(row.separator).split(row.separator)
+            try:
+                if row.checksum == 'yes' and not frame.checked:
+                    raise _Misfit(99, 'no checksum')
+                readings, time = _read_fields(row, texts)
+            except _Misfit as misfit:
+                if misfit.fields > best:
+                    best, reason = misfit.fields, str(misfit)
+                continue
+            talker = address[:2] if row.address.startswith('--') else ''
+            return Spoken(system, name, talker, readings, time)
+        raise Unreadable(f'sentence {_name(frame)}: {reason}')
+
+    def _candidates(self, frame: Frame) -> list[tuple[tuple[str, str], str]]:
+        """Rows of an address, each with the text that stands for it in the body."""
+        address = frame.body.partition(',')[0]
+        if frame.start == '#':
+            # Its address has blanks, as have its fields.
+            return [
+                (key, frame.body[: len(frame.body) - len(rest)])
+                for start, keys in self._by_address.items()
+                if start[0] == '#' and (rest := _after(frame.body, start[1:])) is not None
+                for key in keys
+            ]
+        keys = [*self._by_address.get(frame.start + address, ())]
+        keys += self._by_address.get(f'{frame.start}--{address[2:]}', ()) if address[2:] else ()
+        return [(key, address) for key in keys]
+
+
+def write_sentence(row: SentenceRow, readings: Readings, stamp: int) -> str | None:
+    """Write a sentence, without its end.
+
+    Parameters
+    ----------
+    row
+        Of the table.
+    readings
+        SI values by topic and field; what is not there is missing.
+    stamp
+        Time of the readings, ns.
+
+    Returns
+    -------
+    str or None
+        None if it would hold no reading; where there is a status for that, it is written.
+    """
+    values = [readings.get(field.target, math.nan) for field in row.fields if field.reading]
+    silent = bool(values) and not any(map(math.isfinite, values))
+    if silent and not any(field.status is not None for field in row.fields):
+        return None
+    texts = [_write_field(field, readings, stamp, silent) for field in row.fields]
+    address = row.address.replace('--', row.talker)
+    body = row.separator.join([address, *texts])
+    return framed(row.start, body, checksum=row.checksum != 'no')
+
+
+class _Misfit(ValueError):
+    """Row that does not fit, after so many fields did."""
+
+    def __init__(self, fields: int, reason: str) -> None:
+        super().__init__(reason)
+        self.fields = fields
+
+
+def _read_fields(
+    row: SentenceRow, texts: Sequence[str]
+) -> tuple[dict[tuple[str, str], float], SaidTime | None]:
+    if row.separator == ' ':
+        texts = [text for text in texts if text]
+    wanted = len(row.fields)
+    if len(texts) < wanted - row.optional or (len(texts) > wanted and not row.more):
+        raise _Misfit(0, f'{len(texts)} fields, expected {wanted}')
+    readings: dict[tuple[str, str], float] = {}
+    signs: dict[str, float] = {}
+    of_day: int | None = None
+    dates: list[tuple[str, str]] = []
+    valid = True
+    for number, (field, raw) in enumerate(zip(row.fields, texts, strict=False)):
+        text = raw.strip()
+        try:
+            if field.text is not None and text not in (field.text, *field.also):
+                raise ValueError(f'field {number + 1} is {text[:8]!r}, expected {field.text!r}')
+            if field.reading is not None:
+                readings[field.target] = read_number(text, field)
+            elif field.hemisphere is not None:
+                signs[field.hemisphere] = _sign(text, field.hemisphere)
+            elif field.time is not None:
+                of_day = read_time(text) if text else None
+            elif field.date is not None:
+                dates.append((field.date, text))
+            elif field.status is not None and text in field.invalid:
+                valid = False
+        except ValueError as reason:
+            raise _Misfit(number, str(reason)) from None
+    try:
+        day = read_day(dates)
+    except ValueError as reason:
+        raise _Misfit(wanted, str(reason)) from None
+    for (topic, name), value in readings.items():
+        sign = signs.get(name, 1.0) if topic == 'vessel/fix' else 1.0
+        readings[topic, name] = sign * value if valid else math.nan
+    course = readings.get(('vessel/velocity_ground', 'compass_course'), 0.0)
+    if math.isnan(course) and readings.get(('vessel/velocity_ground', 'speed')) == 0.0:
+        # A receiver that stands still gives no course.
+        readings['vessel/velocity_ground', 'compass_course'] = 0.0
+    return readings, None if of_day is None else SaidTime(of_day, day)
+
+
+def _write_field(field: SentenceField, readings: Readings, stamp: int, silent: bool) -> str:
+    if field.text is not None:
+        return field.text
+    if field.any is not None:
+        return field.any
+    if field.reading is not None:
+        return write_number(readings.get(field.target, math.nan), field)
+    if field.hemisphere is not None:
+        value = readings.get(('vessel/fix', field.hemisphere), math.nan)
+        if math.isnan(value):
+            return ''
+        return ('SN' if field.hemisphere == 'latitude' else 'WE')[value >= 0.0]
+    if field.status is not None:
+        return field.invalid[0] if silent else field.status
+    return write_time(stamp, field)
+
+
+def _after(body: str, address: str) -> str | None:
+    """Text behind an address, before which blanks may stand; None if it is another one."""
+    bare = body.lstrip()
+    return bare[len(address) :] if bare.startswith(f'{address} ') else None
+
+
+def _sign(text: str, which: str) -> float:
+    letters = {'N': 1.0, 'S': -1.0} if which == 'latitude' else {'E': 1.0, 'W': -1.0}
+    if text and text not in letters:
+        raise ValueError('a hemisphere other than N, S, E or W')
+    return letters.get(text, math.nan)
+
+
+def _name(frame: Frame) -> str:
+    """Name of a sentence for its reason, with nothing that differs from one to the next."""
+    address = frame.body.partition(',')[0] if frame.start != '#' else frame.body[:5]
+    return frame.start + ''.join(sign if sign.isalnum() or sign == ' ' else '?'
+                                 for sign in address[:10])  # fmt: skip

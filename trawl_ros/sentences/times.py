@@ -1,0 +1,96 @@
+"""Times in sentences: of day, with or without a date."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date, datetime, timedelta, timezone
+
+from trawl_ros.core.time import SECOND
+from trawl_ros.sentences.table import SentenceField
+
+DAY = 86_400 * SECOND
+_TIME = re.compile(r'(\d\d):?(\d\d):?(\d\d)(?:\.(\d{1,9}))?')
+_EPOCH = date(1970, 1, 1)
+NOT_A_TIME = 'a field that is no time'
+
+
+@dataclass(frozen=True)
+class SaidTime:
+    """Time that a sentence says: ns since midnight, and the day where it says that."""
+
+    of_day: int
+    day: date | None = None
+
+    def stamp(self, near: int | None) -> int | None:
+        """Give the stamp (ns): on its day, else on that which brings it nearest to ``near``."""
+        if self.day is not None:
+            return (self.day - _EPOCH).days * DAY + self.of_day
+        if near is None:
+            return None
+        around = near - near % DAY + self.of_day
+        return min((around - DAY, around, around + DAY), key=lambda stamp: abs(stamp - near))
+
+
+def read_time(text: str) -> int:
+    """Read a time of day, ns.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    match = _TIME.fullmatch(text.strip())
+    if match is None:
+        raise ValueError(NOT_A_TIME)
+    hours, minutes, seconds = (int(match[number]) for number in (1, 2, 3))
+    if hours > 23 or minutes > 59 or seconds > 60:
+        raise ValueError(NOT_A_TIME)
+    return (hours * 3600 + minutes * 60 + seconds) * SECOND + int((match[4] or '').ljust(9, '0'))
+
+
+def read_day(parts: Sequence[tuple[str, str]]) -> date | None:
+    """Read a date from fields, each as (format, text); None where all are empty.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    if not any(text.strip() for _, text in parts):
+        return None
+    numbers: dict[str, int] = {}
+    for form, text in parts:
+        bare = text.strip()
+        if len(bare) != len(form):
+            raise ValueError(NOT_A_TIME)
+        for sign in ('yyyy', 'yy', 'mm', 'dd'):
+            at = form.find(sign)
+            if at >= 0 and sign[0] not in numbers:
+                numbers[sign[0]] = int(bare[at : at + len(sign)])
+    year = numbers['y']
+    # As POSIX has it: 69 and above belong to the last century.
+    year += 0 if year >= 100 else 1900 if year >= 69 else 2000
+    try:
+        return date(year, numbers['m'], numbers['d'])
+    except ValueError:
+        raise ValueError(NOT_A_TIME) from None
+
+
+def write_time(stamp: int, field: SentenceField) -> str:
+    """Write the time of day or the date of a stamp (ns) as a field has it, cut to its decimals."""
+    form: str = field.time or field.date or ''
+    decimals = len(form.partition('.')[2])
+    step = SECOND // 10**decimals
+    stamp -= stamp % step
+    when = datetime.fromtimestamp(stamp // SECOND, timezone.utc)
+    if field.date:
+        for sign, code in (('yyyy', '%Y'), ('yy', '%y'), ('mm', '%m'), ('dd', '%d')):
+            form = form.replace(sign, when.strftime(code))
+        return form
+    text = when.strftime('%H:%M:%S' if ':' in form else '%H%M%S')
+    return f'{text}.{stamp % SECOND // step:0{decimals}d}' if decimals else text
+
+
+def day_of(stamp: int) -> date:
+    """Give the day (UTC) of a stamp (ns)."""
+    return _EPOCH + timedelta(days=stamp // DAY)

@@ -1,0 +1,76 @@
+"""Writer of sentences: samples in, the sentences that a system sends of them out."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+from trawl_ros.core.time import SECOND
+from trawl_ros.records.fields import WaterColumn, fields_of_sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.sentences.codec import write_sentence
+from trawl_ros.sentences.table import SentenceRow, SentenceTable
+
+
+class SentenceWriter:
+    """Writer of the sentences of some systems.
+
+    Parameters
+    ----------
+    tables
+        The systems.
+    water
+        By which pressures become depths.
+    """
+
+    def __init__(self, tables: Sequence[SentenceTable], water: WaterColumn) -> None:
+        self._water = water
+        self._rows: dict[str, list[tuple[str, SentenceRow]]] = defaultdict(list)
+        self._clocks: list[tuple[str, SentenceRow]] = []
+        self._due: dict[str, int] = {}
+        for table in tables:
+            for name, row in table.sentences.items():
+                if row.form:
+                    continue
+                key = f'{table.system} {name}'
+                for topic in row.topics:
+                    self._rows[topic].append((key, row))
+                if row.is_clock:
+                    self._clocks.append((key, row))
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Topics of which sentences are written."""
+        return tuple(self._rows)
+
+    def write(self, sample: Sample) -> list[str]:
+        """Write the sentences of a sample, without their ends.
+
+        A sentence with readings of two topics leaves those of the other topic empty: they were
+        sampled at another time. Nothing is written of a sample that no sentence tells.
+        """
+        taken = fields_of_sample(sample, self._water)
+        if taken is None:
+            return []
+        topic, fields = taken
+        readings = {(topic, name): value for name, value in fields.items()}
+        return [
+            text
+            for key, row in self._rows.get(topic, ())
+            if self._is_due(key, row, sample.stamp)
+            and (text := write_sentence(row, readings, sample.stamp)) is not None
+        ]
+
+    def write_clock(self, stamp: int) -> list[str]:
+        """Write the sentences that say date and time and nothing else."""
+        texts = (write_sentence(row, {}, stamp) for _, row in self._clocks)
+        return [text for text in texts if text is not None]
+
+    def _is_due(self, key: str, row: SentenceRow, stamp: int) -> bool:
+        if row.least_interval_s == 0.0:
+            return True
+        due = self._due.get(key)
+        # A stamp far back is that of a tow that has begun anew.
+        interval = round(row.least_interval_s * SECOND)
+        if due is not None and due - 2 * interval < stamp < due:
+            return False
+        self._due[key] = stamp + interval
+        return True
