@@ -40,7 +40,8 @@ def samples():
 def spoken(table, samples):
     """All sentences of samples with the stamps of these, in their order."""
     writer = SentenceWriter([table], WATER)
-    return [(text, sample.stamp) for sample in samples for text in writer.write(sample)]
+    instants = itertools.groupby(samples, lambda sample: sample.stamp)
+    return [(text, stamp) for stamp, together in instants for text in writer.write(*together)]
 
 
 def steps(table):

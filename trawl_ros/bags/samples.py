@@ -26,6 +26,8 @@ class SampleStream:
 
     Attributes
     ----------
+    topics
+        Relative names of the topics that are read.
     problems
         A sentence for each thing that was found wrong; complete once all was read.
     """
@@ -33,6 +35,7 @@ class SampleStream:
     paths: Sequence[Path]
     namespace: str
     problems: list[str] = field(default_factory=list)
+    topics: Sequence[str] = SAMPLE_TOPICS
 
     def __iter__(self) -> Iterator[tuple[Path, Sample]]:
         last = 0
@@ -50,10 +53,10 @@ class SampleStream:
 
     def _read(self, path: Path) -> Iterator[Sample]:
         bag = Bag(path, namespace=self.namespace)
-        names = {absolute(name, self.namespace): name for name in SAMPLE_TOPICS}
+        names = {absolute(name, self.namespace): name for name in self.topics}
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
-        watches = {name: SourceWatch() for name in SAMPLE_TOPICS}
+        watches = {name: SourceWatch() for name in self.topics}
         for received in bag.messages(names):
             name = names[received.topic]
             try:

@@ -8,11 +8,14 @@ from trawl_ros.bags.check import GROUPS, check_bag
 from trawl_ros.bags.export import ARRAY_LIMIT, DICTIONARY, export_bag
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import SUFFIX, repair_bag
+from trawl_ros.bags.sentence_log import write_sentence_log
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
 from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console
 from trawl_ros.core.errors import BagError
+from trawl_ros.records.fields import WaterColumn
+from trawl_ros.sentences.table import load_tables, packaged_systems
 
 FINDINGS = 3
 """Exit code of ``trawl bag check`` where something was found; 1 is an error, 2 a wrong call."""
@@ -83,7 +86,7 @@ def check(
 
 @command.command('export')
 @click.argument('bag', type=BAG)
-@click.option('--out', required=True, type=FOLDER, help='Folder to be made.')
+@click.option('--out', required=True, type=BAG, help='Folder to be made; with --as a file.')
 @click.option(
     '--topic',
     'topics',
@@ -98,13 +101,42 @@ def check(
     show_default=True,
     help='Elements up to which an array is spread over columns; longer ones are left out.',
 )
+@click.option(
+    '--as',
+    'systems',
+    multiple=True,
+    metavar='SYSTEM',
+    help='Write sentences of this system in place of tables: '
+    f'{", ".join(packaged_systems())}, or a YAML file. May be given several times.',
+)
+@click.option(
+    '--water-density',
+    type=click.FloatRange(900, 1100, min_open=True, max_open=True),
+    default=1025.0,
+    show_default=True,
+    help='Density (kg/m3) by which pressures become the depths of sentences.',
+)
 @NAMESPACE_OPTION
-def export(bag: Path, out: Path, topics: tuple[str, ...], array_limit: int, namespace: str) -> None:
-    """Write a bag as CSV, one file per topic.
+def export(
+    bag: Path,
+    out: Path,
+    topics: tuple[str, ...],
+    array_limit: int,
+    systems: tuple[str, ...],
+    water_density: float,
+    namespace: str,
+) -> None:
+    """Write a bag as CSV, one file per topic, or as a log of sentences.
 
     Columns are named by the path of their field; columns.csv says the unit of each. Times stand
     there twice, in seconds and in whole nanoseconds. A cell is empty where there is no reading.
+    With --as, a file of the sentences that instruments of other make would have sent.
     """
+    if systems:
+        if topics:
+            raise click.UsageError('--topic and --as: the systems say which topics are wanted')
+        _export_sentences(bag, out, systems, WaterColumn(density_kg_m3=water_density), namespace)
+        return
     with ProgressDisplay(error_console()) as display:
         done = export_bag(
             bag,
@@ -120,6 +152,18 @@ def export(bag: Path, out: Path, topics: tuple[str, ...], array_limit: int, name
         for path, reason in topic.left_out.items():
             click.echo(f'{topic.topic}: {path} is left out, since it {reason}', err=True)
     click.echo(f'{out / DICTIONARY} says what the columns are')
+    for problem in done.problems:
+        click.echo(f'Damaged: {problem}', err=True)
+
+
+def _export_sentences(
+    bag: Path, out: Path, systems: tuple[str, ...], water: WaterColumn, namespace: str
+) -> None:
+    done = write_sentence_log(bag, load_tables(systems), out, water=water, namespace=namespace)
+    for address, count in done.sentences.items():
+        click.echo(f'{count:8d}  {address}')
+    for topic in done.silent:
+        click.echo(f'No reading of {topic} in the bag', err=True)
     for problem in done.problems:
         click.echo(f'Damaged: {problem}', err=True)
 

@@ -40,3 +40,5 @@ def command(log: Path, mapping: Path, out: Path, leave_out: bool) -> None:
         click.echo(f'{count:8d}  {topic}')
     for reason, count in done.left_out.items():
         click.echo(f'{count:8d}  {rows} left out: {reason}')
+    for note in done.notes:
+        click.echo(f'Note: {note}')

@@ -41,22 +41,26 @@ class SentenceWriter:
         """Topics of which sentences are written."""
         return tuple(self._rows)
 
-    def write(self, sample: Sample) -> list[str]:
-        """Write the sentences of a sample, without their ends.
+    def write(self, *samples: Sample) -> list[str]:
+        """Write the sentences of samples of one instant, without their ends.
 
-        A sentence with readings of two topics leaves those of the other topic empty: they were
-        sampled at another time. Nothing is written of a sample that no sentence tells.
+        A sentence with readings of two topics leaves those of a topic empty that was sampled at
+        another time. Nothing is written of a sample that no sentence tells.
         """
-        taken = fields_of_sample(sample, self._water)
-        if taken is None:
-            return []
-        topic, fields = taken
-        readings = {(topic, name): value for name, value in fields.items()}
+        readings: dict[tuple[str, str], float] = {}
+        rows: dict[str, SentenceRow] = {}
+        for sample in samples:
+            if (taken := fields_of_sample(sample, self._water)) is None:
+                continue
+            topic, fields = taken
+            readings |= {(topic, name): value for name, value in fields.items()}
+            rows |= dict(self._rows.get(topic, ()))
+        stamp = samples[0].stamp
         return [
             text
-            for key, row in self._rows.get(topic, ())
-            if self._is_due(key, row, sample.stamp)
-            and (text := write_sentence(row, readings, sample.stamp)) is not None
+            for key, row in rows.items()
+            if self._is_due(key, row, stamp)
+            and (text := write_sentence(row, readings, stamp)) is not None
         ]
 
     def write_clock(self, stamp: int) -> list[str]:

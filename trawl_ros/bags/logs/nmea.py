@@ -1,9 +1,9 @@
-"""Import of NMEA 0183 logs as bags: sentences of the ship's sensors on serial lines."""
+"""Import of NMEA 0183 logs as bags: sentences of the ship's sensors and of her gear's."""
 
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from pynmeagps.exceptions import NMEAParseError
 from pynmeagps.nmeahelpers import calc_checksum
 
 from trawl_ros.bags.logs.clock import ClockReader
+from trawl_ros.bags.logs.gear_sentences import GearListening
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, load_nmea_mapping
 from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, sample_of
 from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread_stamps
@@ -22,6 +23,7 @@ from trawl_ros.core.foreign import open_file
 from trawl_ros.core.foreign import reading as reading_file
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample
+from trawl_ros.sentences.framing import Frame
 
 MAX_LINE = 4096
 """Bytes in a line; a sentence has 82 at most, a recorder's mark in front of it some more."""
@@ -63,7 +65,8 @@ def import_nmea(
     path = Path(log_path)
     listening = _Listening(path, load_nmea_mapping(mapping_path), leave_out)
     samples = listening.samples()
-    return write_samples(path, samples, bag_path, lambda: (listening.lines, listening.left))
+    done = write_samples(path, samples, bag_path, lambda: (listening.lines, listening.left))
+    return replace(done, notes=tuple(listening.notes))
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,10 @@ class _Listening:
     def __init__(self, path: Path, mapping: NmeaMapping, leave_out: bool) -> None:
         self.lines = 0
         self.left: Counter[str] = Counter()
+        self.notes: list[str] = []
         self._path = path
         self._mapping = mapping
+        self._gear = GearListening(mapping.tables(), mapping.water, self.left)
         self._leave_out = leave_out
         self._recorder = ClockReader(mapping.recorder) if mapping.recorder else None
         self._times = SentenceTimes(date.fromisoformat(mapping.date) if mapping.date else None)
@@ -95,7 +100,14 @@ class _Listening:
 
     def samples(self) -> list[Sample]:
         heard: dict[str, list[_Heard]] = defaultdict(list)
-        for front, text in self._lines():
+        for line in self._lines():
+            front, text = _front_of(line)
+            if (frame := self._gear.frame(line)) is not None:
+                self._hear_gear(frame, front)
+                continue
+            if not text:
+                self.left['a line without a sentence ($…)'] += 1
+                continue
             sentence = self._parse(text)
             if sentence is None:
                 continue
@@ -112,20 +124,30 @@ class _Listening:
                 self.left['before the first time with a date'] += 1
                 continue
             self._take(heard, sentence, stamp)
-        if self._recorder is None and self.lines and not self._times.moments:
+        start = self._mapping.start
+        timeless = start is None and not self._gear.has_times
+        if self._recorder is None and self.lines and not self._times.moments and timeless:
             why = f' ({listed(self.left)})' if self.left else ''
             raise LogError(
                 f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date{why}; '
                 'expected one, or key date in the mapping, or time: recorder'
             )
-        return [
+        samples = [
             sample
             for topic, sentences in heard.items()
             for sample in self._chosen(topic, sentences)
         ]
+        of_gear, self.notes = self._gear.samples(self._times.moments, start)
+        return samples + of_gear
 
-    def _lines(self) -> Iterator[tuple[str, bytes]]:
-        """Yield the text in front of each sentence, and the sentence."""
+    def _hear_gear(self, frame: Frame, front: str) -> None:
+        stamp = None
+        if self._recorder is not None and (stamp := self._recorded(front)) is None:
+            return
+        self._gear.hear(frame, stamp, len(self._times.moments) - 1)
+
+    def _lines(self) -> Iterator[bytes]:
+        """Yield the lines that are not empty."""
         with reading_file(self._path, LogError), open_file(self._path, LogError) as stream:
             while line := stream.readline(MAX_LINE):
                 self.lines += 1
@@ -134,13 +156,8 @@ class _Listening:
                         f'{self._path}: line {self.lines} has {MAX_LINE} bytes or more; '
                         'expected sentences of NMEA 0183'
                     )
-                # Where a sentence was cut short by the next one, the next one is whole.
-                start = line.rfind(b'$')
-                if start >= 0:
-                    front = line[: line.find(b'$')].decode('ascii', 'replace')
-                    yield front, line[start:].strip()
-                elif line.strip():
-                    self.left['a line without a sentence ($…)'] += 1
+                if line.strip():
+                    yield line
 
     def _parse(self, text: bytes) -> Any | None:
         if b'*' not in text:
@@ -212,3 +229,14 @@ class _Listening:
         return [
             heard.sample(next(given) if heard.stamp is None else heard.stamp) for heard in chosen
         ]
+
+
+def _front_of(line: bytes) -> tuple[str, bytes]:
+    """Split a line into the text in front of its sentence, and the sentence.
+
+    Where a sentence was cut short by the next one, the next one is whole. Those of the ship begin
+    with a dollar; a line without one gives an empty sentence.
+    """
+    sign = b'$' if b'$' in line else b'@' if b'@' in line else b'#'
+    front = line[: max(line.find(sign), 0)].decode('ascii', 'replace')
+    return front, line[line.rfind(sign) :].strip() if sign == b'$' else b''

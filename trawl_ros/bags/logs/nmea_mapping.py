@@ -10,7 +10,9 @@ from trawl_ros.bags.logs.clock import Clock
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.quantity import Quantity, check_quantity
 from trawl_ros.core.schema import Record, load_yaml, validated
-from trawl_ros.records.fields import RANGE_TOPICS, STD_QUANTITIES
+from trawl_ros.records.fields import RANGE_TOPICS, STD_QUANTITIES, WaterColumn
+from trawl_ros.sentences.table import SentenceTable, load_tables
+from trawl_ros.sentences.times import DAY
 
 KEY = 'nmea'
 """By which such a mapping is told from one for CSV."""
@@ -52,6 +54,8 @@ class NmeaMapping(Record):
     ``time`` says whether stamps are those in the sentences (the date from RMC or ZDA, or
     ``date`` for the first of them) or those that a recorder put in front. ``keel_depth`` is how
     far the keel is below the transducer of the echo sounder, where its sentence does not say it.
+    ``systems`` names tables of sentences of fishing gear, packaged ones or files; ``water`` makes
+    pressures of their depths.
     """
 
     time: Literal['sentences', 'recorder'] = 'sentences'
@@ -60,6 +64,25 @@ class NmeaMapping(Record):
     need_checksum: bool = True
     keel_depth: Quantity = Quantity(value=0.0, unit='m')
     topics: Annotated[dict[str, NmeaTopic], Field(min_length=1)]
+    systems: tuple[str, ...] = ()
+    water: WaterColumn = WaterColumn(density_kg_m3=1025.0)
+
+    @property
+    def start(self) -> int | None:
+        """Midnight (ns) before the log begins, where ``date`` says that."""
+        if self.date is None:
+            return None
+        return (date.fromisoformat(self.date) - date(1970, 1, 1)).days * DAY
+
+    def tables(self) -> tuple[SentenceTable, ...]:
+        """Load the tables of the systems.
+
+        Raises
+        ------
+        SentenceError
+            If one is missing or wrong.
+        """
+        return load_tables(self.systems)
 
     @model_validator(mode='after')
     def _fits_the_topics(self) -> 'NmeaMapping':

@@ -21,12 +21,13 @@ class Imported:
     """Result of an import.
 
     ``rows`` were read, ``counts`` are messages by full topic name, ``left_out`` says how many
-    rows gave none, by reason.
+    rows gave none, by reason. ``notes`` are sentences on what the log shows of its clocks.
     """
 
     rows: int
     counts: Mapping[str, int]
     left_out: Mapping[str, int]
+    notes: tuple[str, ...] = ()
 
 
 def write_samples(

@@ -10,6 +10,7 @@ import click
 from rich.console import Console
 
 from trawl_ros.bags.reader import summarise
+from trawl_ros.bags.sentence_log import write_sentence_log
 from trawl_ros.cli.options import FOLDER, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing, TrawlError
@@ -30,14 +31,17 @@ from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.fields import WaterColumn
 from trawl_ros.records.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
 from trawl_ros.report.style import DPI
 from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients
+from trawl_ros.sentences.table import load_tables
 
 if TYPE_CHECKING:
     from trawl_ros.lab.running.monitor import Monitor
 
 LOOK_S = 0.2
+SYSTEMS = ('marport', 'scantrol', 'ship')
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,7 @@ def command(out: Path, scenario: Path, diagnosis: bool) -> None:
         _replay(processes, monitor, loaded, folder, console)
     result = load_result(folder.path)
     figures = _draw(loaded, folder)
+    _speak(loaded, folder)
     folder.write_summary(
         {
             'finished': True,
@@ -212,6 +217,17 @@ def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
     if shape is not None:
         write_figure(folder.path / 'gear.png', gear_figure(shape, tow.name), DPI)
     return sorted(file.name for file in folder.path.glob('*.png'))
+
+
+def _speak(scenario: Scenario, folder: DemoFolder) -> None:
+    """Write the tow as the sentences that a ship's instruments would have sent."""
+    density = build_water(scenario.plant).density
+    write_sentence_log(
+        folder.bag,
+        load_tables(SYSTEMS),
+        folder.path / folder.SENTENCES,
+        water=WaterColumn(density_kg_m3=density),
+    )
 
 
 def _close(

@@ -29,6 +29,7 @@ class DemoFolder:
         If there is something else, or the folder cannot be made.
     """
 
+    SENTENCES = 'marport.nmea'
     FIGURES = ('history.png', 'gear.png')
     RESULTS = 'identification'
     HIDDEN = 'hidden'
@@ -91,6 +92,8 @@ class DemoFolder:
         for folder in (self.bag, self.logs, self.results, self.hidden):
             if folder.is_dir():
                 shutil.rmtree(folder)
-        results = (self.path / name for name in ('identification.json', 'report.html'))
+        results = (
+            self.path / name for name in (self.SENTENCES, 'identification.json', 'report.html')
+        )
         for file in (*results, *self.path.glob('*.png')):
             file.unlink(missing_ok=True)
