@@ -107,6 +107,13 @@ class _Rigging:
         return on_points.reshape(2, 3, 3), on_nodes
 
 
+def rope_pulls(model: GearModel, state: State, tow: Tow) -> FloatArray:
+    """Pulls (2, 3, 3) of warps, upper and lower ropes at the boards' fastening points, N."""
+    still = np.zeros((2, 3, 3)), np.zeros((model.nodes, 3))
+    pulls: FloatArray = _Rigging(model, state, tow).forces(*still)[0].real
+    return pulls
+
+
 def held_board(model: GearModel, state: State, tow: Tow) -> HeldBoard:
     """Condense the gear around the port board of a state that is at rest but for its attitudes."""
     n, rigging = model.nodes, _Rigging(model, state, tow)

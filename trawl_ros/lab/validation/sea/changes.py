@@ -1,6 +1,6 @@
 """Changes of what is not measured at sea, and what they do to hauls that the model misses."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import EffectRecord, GearRecord
 from trawl_ros.lab.validation.sea.published import HaulRecord
+from trawl_ros.lab.validation.sea.quantities import quantities
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import steady_state
@@ -60,20 +61,26 @@ CHANGES = (
 
 def changed_hauls(
     gear: GearRecord, haul: HaulRecord, changes: Sequence[Change] = CHANGES
-) -> list[Observables | None]:
-    """Observables of a haul with each change; None where that has no steady state."""
-    found: list[Observables | None] = []
+) -> list[tuple[Observables | None, Mapping[str, float]]]:
+    """Observables and derived quantities of a haul with each change; none where that has no steady
+    state.
+    """
+    found: list[tuple[Observables | None, Mapping[str, float]]] = []
     for change in changes:
         model = build_model(change.gear(haul.rigged(gear)))
         try:
             steady = steady_state(model, haul.warp_m, change.speed * haul.speed)
         except NoSteadyState:
-            found.append(None)
+            found.append((None, {}))
         else:
-            found.append(steady.observables)
+            found.append((steady.observables, quantities(model, steady)))
     return found
 
 
-def value_of(observables: Observables | None, quantity: str) -> float:
-    """Observable of this name; NaN where there are none."""
-    return float('nan') if observables is None else float(np.real(getattr(observables, quantity)))
+def value_of(observables: Observables | None, derived: Mapping[str, float], quantity: str) -> float:
+    """Quantity of this name; NaN where there are no observables."""
+    if observables is None:
+        return float('nan')
+    if quantity in derived:
+        return derived[quantity]
+    return float(np.real(getattr(observables, quantity)))

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.lab.validation.sea.tables import FORCES
+
 MARKS = {
     'door_depth': 'v',
     'door_spread': 'o',
@@ -12,13 +14,15 @@ MARKS = {
     'vertical_opening': 's',
     'horizontal_opening': 'D',
     'warp_tension': 'P',
+    'net_drag': 'X',
+    'mouth_area': '*',
 }
 
 
 def haul_figure(
     points: Sequence[tuple[str, str, float, float, str]], near_percent: float
 ) -> Figure:
-    """Model over sea, both logarithmic: lengths (m) and, beside them, tensions (kN).
+    """Model over sea, both logarithmic: lengths (m), areas (m²) and, beside them, forces (kN).
 
     Parameters
     ----------
@@ -27,9 +31,9 @@ def haul_figure(
     near_percent
         Half width of the band around equality, %.
     """
-    tensions = [p for p in points if p[1] == 'warp_tension']
-    lengths = [p for p in points if p[1] != 'warp_tension']
-    groups = [('m', 1.0, lengths)] + ([('kN', 1e-3, tensions)] if tensions else [])
+    forces = [p for p in points if p[1] in FORCES]
+    lengths = [p for p in points if p[1] not in FORCES]
+    groups = [('m, m²', 1.0, lengths)] + ([('kN', 1e-3, forces)] if forces else [])
     gears = list(dict.fromkeys(p[0] for p in points))
     figure = Figure(figsize=(5.2 * len(groups), 4.8), layout='constrained')
     for axes, (unit, scale, group) in zip(

@@ -155,8 +155,9 @@ def run(small: bool) -> Findings:
         ),
         text=(
             'Hauls, what may be tuned and what counts stand in config/hauls/published.yaml, which '
-            'was committed before any of them was run, but for the two of krill_800. A point is '
-            'one quantity of one haul; its error is that of the model against the middle of what '
+            'was committed before any of them was run, but for the two of krill_800; drag of nets '
+            'and areas of mouths came later, before these were run. A point is one quantity of one '
+            'haul; its error is that of the model against the middle of what '
             'was printed, and infinite where the model has no steady state.'
         ),
     )

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.validation.sea.changes import value_of
 from trawl_ros.lab.validation.sea.published import GearHauls, HaulRecord, PointRecord, TrendRecord
+from trawl_ros.lab.validation.sea.quantities import quantities
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import Equilibrium, steady_state
@@ -16,16 +17,17 @@ from trawl_ros.solver.equilibrium import Equilibrium, steady_state
 
 @dataclass(frozen=True)
 class ModelledHaul:
-    """Haul with the observables of its steady state, or the reason why it has none."""
+    """Haul with the quantities of its steady state, or the reason why it has none."""
 
     gear: GearHauls
     haul: HaulRecord
     observables: Observables | None
     refusal: str = ''
+    derived: Mapping[str, float] = field(default_factory=dict)
 
     def value(self, quantity: str) -> float:
-        """Observable of this name; NaN without a steady state."""
-        return value_of(self.observables, quantity)
+        """Observable or derived quantity of this name; NaN without a steady state."""
+        return value_of(self.observables, self.derived, quantity)
 
     def error(self, point: PointRecord) -> float:
         """Error of the model (%) at a point; infinite without a steady state."""
@@ -54,7 +56,8 @@ def modelled(gear: GearHauls, *, small: bool) -> list[ModelledHaul]:
                 refusal = refusal or str(reason)
                 continue
             known.append(steady.equilibrium)
-            results.append(ModelledHaul(gear, haul, steady.observables))
+            derived = quantities(model, steady)
+            results.append(ModelledHaul(gear, haul, steady.observables, derived=derived))
             break
         else:
             results.append(ModelledHaul(gear, haul, None, refusal))

@@ -19,8 +19,12 @@ Quantity = Literal[
     'vertical_opening',
     'horizontal_opening',
     'warp_tension',
+    'net_drag',
+    'mouth_area',
 ]
-"""Measured quantity, by its name among the `Observables`; m, and N for the tension of one warp."""
+"""Measured quantity, by its name among the `Observables` or `DERIVED`; m, m² for the area of the
+mouth, and N for the tension of one warp and the drag of the net.
+"""
 
 Use = Literal['counts', 'tunes', 'told']
 """Use of a haul: it counts, one number of the gear was set by it, or it is shown only."""

@@ -12,6 +12,9 @@ from trawl_ros.report.rendering import number
 NEAR_PERCENT = 30.0
 """Error that most points are to stay within, %."""
 
+FORCES = ('warp_tension', 'net_drag')
+"""Quantities in newtons."""
+
 
 def word(quantity: str) -> str:
     """Quantity in words."""
@@ -27,7 +30,9 @@ def shown(value: float, quantity: str) -> str:
     """Value with its unit."""
     if math.isnan(value):
         return '–'
-    return f'{number(value / 1e3)} kN' if quantity == 'warp_tension' else f'{value:.1f} m'
+    if quantity in FORCES:
+        return f'{number(value / 1e3)} kN'
+    return f'{value:.0f} m²' if quantity == 'mouth_area' else f'{value:.1f} m'
 
 
 def points_table(hauls: Sequence[ModelledHaul], published: PublishedHauls) -> TextTable:
@@ -90,7 +95,7 @@ def changes_table(hauls: Sequence[ModelledHaul], *, small: bool) -> TextTable:
             continue
         changed = changed_hauls(gear_record(one.gear, small=small), one.haul)
         for point in missed:
-            values = (value_of(seen, point.quantity) for seen in changed)
+            values = (value_of(*seen, point.quantity) for seen in changed)
             rows.append(
                 (
                     f'{one.gear.gear}, {one.haul.name}: {word(point.quantity)}',
