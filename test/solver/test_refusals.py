@@ -5,12 +5,13 @@ import time
 import numpy as np
 import pytest
 
-from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState, sentence_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.remedy_command import remedy_command
 from trawl_ros.solver.stability import stability
 
 
@@ -106,12 +107,30 @@ def test_boards_that_lie_over_are_told_with_their_last_state(default_model: Gear
     with pytest.raises(NoSteadyState, match=r'boards lie over: at 1\.\d+ m/s they lean') as lost:
         steady_state(default_model, 500.0, 1.5)
     assert lost.value.reason == 'lift lost'
+    command = '`trawl gear state kaifuha --warp 500 --speed 1.5` computes what would make it usable'
+    assert lost.value.remedy == command
+    assert sentence_of(lost.value) == f'{lost.value}\n{command}'
     assert time.process_time() - before < 10.0
 
 
 def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearModel) -> None:
-    with pytest.raises(NoSteadyState, match='heave of one board against the other grows'):
+    with pytest.raises(NoSteadyState, match='heave of one board against the other grows') as told:
         steady_state(default_model, 300.0, 1.7)
+    assert told.value.remedy.startswith('`trawl gear state kaifuha --warp 300 --speed 1.7`')
+    assert getattr(told.value, '__notes__', []) == [told.value.remedy]
+
+
+def test_of_a_gear_with_a_file_of_its_own_the_command_asks_for_the_file(gear: GearRecord) -> None:
+    mine = gear.model_copy(update={'name': '../mine'})
+    told = remedy_command(mine, OperatingPoint(410.0, 390.0, 1.5))
+    assert told.startswith("`trawl gear state GEAR --warp 400 --speed 1.5`, with the gear's file")
+
+
+def test_a_gear_that_surfaces_needs_no_command(model: GearModel) -> None:
+    with pytest.raises(NoSteadyState) as surfaced:
+        steady_state(model, 200.0, 3.5)
+    assert surfaced.value.remedy == ''
+    assert sentence_of(surfaced.value) == str(surfaced.value)
 
 
 def test_boards_that_do_not_stay_upright_are_told_with_the_moments_on_them(

@@ -12,7 +12,7 @@ from typing import Any
 
 import click
 
-from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.version import __version__
 
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -72,7 +72,7 @@ class Trawl(click.Group):
         try:
             return super().invoke(ctx)
         except TrawlError as error:
-            raise click.ClickException(printable(str(error))) from error
+            raise click.ClickException(printable(sentence_of(error))) from error
 
     def main(self, *args: Any, **options: Any) -> Any:
         """Run it all; what the system refuses ends with one sentence and exit code 1.

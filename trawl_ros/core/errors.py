@@ -101,7 +101,9 @@ class RosMissing(TrawlError):
 class NoSteadyState(TrawlError):
     """Gear without usable steady state at the wanted warp length and speed.
 
-    ``reason`` says why in a word; where a root was found, which of its faults came first.
+    ``reason`` says why in a word; where a root was found, which of its faults came first. Where a
+    command computes what would help, ``remedy`` names it in a sentence; commands, nodes and, from
+    Python 3.11 on, tracebacks tell it below the message.
 
     Examples
     --------
@@ -114,16 +116,22 @@ class NoSteadyState(TrawlError):
     surfaced: warp 50 m at 2.1 m/s: the gear breaks the surface by 1.2 m
     """
 
-    def __init__(self, message: str, reason: Refusal = 'none found') -> None:
+    def __init__(self, message: str, reason: Refusal = 'none found', remedy: str = '') -> None:
         super().__init__(message)
         self.reason: Refusal = reason
+        self.remedy = remedy
+        if remedy:
+            self.__notes__ = [remedy]
 
 
 def sentence_of(reason: Exception) -> str:
     """Describe an error in a sentence, for threads and processes that cannot let it rise.
 
-    An error of the program is told with all that helps to mend it.
+    A refused tow is told with what would help, an error of the program with all that helps to mend
+    it.
     """
+    if isinstance(reason, NoSteadyState) and reason.remedy:
+        return f'{reason}\n{reason.remedy}'
     if isinstance(reason, TrawlError):
         return str(reason)
     return f'an error of the program; {"".join(format_exception(reason))}'

@@ -165,6 +165,7 @@ def commanded_tow(
     """
     model, effects = build_model(gear), effects_of(gear)
     refusals: list[str] = []
+    remedy = ''
     for length, speed in (start, *OTHER_STARTS) if start == DEFAULT_START else (start,):
         command = Command(length, length, speed)
         try:
@@ -173,8 +174,9 @@ def commanded_tow(
             )
         except NoSteadyState as reason:
             refusals.append(str(reason))
+            remedy = remedy or reason.remedy
             continue
         if refusals:
             warn(f'{"; ".join(refusals)}; starts at {length:g} m and {speed:g} m/s')
         return tow
-    raise NoSteadyState('; '.join(refusals))
+    raise NoSteadyState('; '.join(refusals), remedy=remedy)

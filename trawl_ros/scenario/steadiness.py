@@ -45,6 +45,7 @@ def require_steady_states(scenario: Scenario, model: GearModel) -> None:
                 f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed at '
                 'which the gear tows steadily',
                 reason.reason,
+                reason.remedy,
             ) from reason
 
 

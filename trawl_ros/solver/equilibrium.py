@@ -29,6 +29,7 @@ from trawl_ros.solver.relax import (
     WARM_TIME_STEP,
     relax,
 )
+from trawl_ros.solver.remedy_command import remedy_command
 from trawl_ros.solver.stability import Stability, stability
 from trawl_ros.solver.warm_start import Tangent, warm_start
 
@@ -279,6 +280,7 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
             f'{where}: the steady state is unstable, {mode} grows by a factor e in '
             f'{1 / motion.growth:.0f} s',
             'unstable',
+            remedy_command(model.gear, found.point),
         )
     return SteadyState(found, motion)
 

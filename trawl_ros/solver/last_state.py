@@ -27,6 +27,7 @@ from trawl_ros.solver.relax import (
     relax,
     without_attitude,
 )
+from trawl_ros.solver.remedy_command import remedy_command
 from trawl_ros.solver.stability import stability
 
 USUAL = 2.1
@@ -157,7 +158,11 @@ def _followed(
                 'fold',
             )
         if lies_over(model, here.state):
-            raise NoSteadyState(f'{where}: {_lift_lost(first, here)}', 'lift lost')
+            raise NoSteadyState(
+                f'{where}: {_lift_lost(first, here)}',
+                'lift lost',
+                remedy_command(model.gear, point),
+            )
         if count == MOST:
             break
     assert last is not None

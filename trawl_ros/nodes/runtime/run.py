@@ -17,7 +17,7 @@ from rclpy.logging import LoggingSeverity, get_logger_level, set_logger_level
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
-from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.foreign import short
 from trawl_ros.nodes.runtime.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
@@ -91,7 +91,7 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
                 )
             return _spin(make, stop)
         except TrawlError as reason:
-            print(f'{program}: {reason}', file=sys.stderr)  # noqa: T201
+            print(f'{program}: {sentence_of(reason)}', file=sys.stderr)  # noqa: T201
             return 1
         except (ExternalShutdownException, ROSInterruptException):
             return 0
