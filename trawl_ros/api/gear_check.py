@@ -132,6 +132,9 @@ def weights_of(model: GearModel) -> dict[str, float]:
             own = next(numbers for name, _, numbers in model.layout.lines if name == rope)
             force = item.force_on(float(model.rest[own].sum()))
             found[item.name] = found.get(item.name, 0.0) + force
+    if gear.catch is not None:
+        fish = gear.catch.mass_kg / gear.catch.density_kg_m3
+        found['catch'] = water.gravity * (gear.catch.mass_kg - water.density * fish)
     if gear.kite is not None:
         sunk = gear.kite.mass_kg - water.density * gear.kite.volume_m3
         found['kite'] = water.gravity * sunk

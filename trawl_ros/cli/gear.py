@@ -74,6 +74,12 @@ def check(gear: str, out: Path | None) -> None:
             }
             netting = ', '.join(f'{kind} {metres:.4g} m' for kind, metres in cut.items())
             click.echo(f'{rope} as the meshes of the model are cut: {netting}')
+    if model.catch is not None:
+        body = model.catch.body
+        click.echo(
+            f'catch: {body.volume:.3g} m³ in {body.length:.3g} m of the codend, '
+            f'{2 * body.radius:.3g} m across'
+        )
     table = plain_table('weight in water', 'N', right=('N',))
     for name, weight in found.weights.items():
         table.add_row(name, f'{weight:.0f}')

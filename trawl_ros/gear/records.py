@@ -7,6 +7,7 @@ from pydantic import Field, ValidationError, model_validator
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
 from trawl_ros.gear.boards import CORRECTIONS, BoardRecord, StartRecord
+from trawl_ros.gear.catch import CatchRecord
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.numbers import Degrees, NotNegative, Positive
 from trawl_ros.gear.pair import PairRecord, towing_plate
@@ -108,6 +109,8 @@ class GearRecord(Record):
         Sections of the net, and how finely it is cut.
     kite, clump, floats
         Kite, weights and floats of the mouth.
+    catch
+        Catch in the codend; None for an empty one.
     identification
         Start values, standard deviations and bounds of the twelve coefficients.
     effects
@@ -134,6 +137,7 @@ class GearRecord(Record):
     netting: NettingRecord
     side_rope: FrameRopeRecord | None = None
     kite: KiteRecord | None = None
+    catch: CatchRecord | None = None
     clump: ClumpRecord = ClumpRecord(weight_in_water_n=0.0, density_kg_m3=7800.0, drag_area_m2=0.0)
     floats: FloatRecord = FloatRecord(buoyancy_n=0.0, density_kg_m3=300.0, drag_area_m2=0.0)
     identification: StartRecord

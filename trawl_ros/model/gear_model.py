@@ -18,6 +18,7 @@ from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import Kite
 from trawl_ros.model.line import BarProperties
+from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
 from trawl_ros.model.net.weave import NetMesh
@@ -92,7 +93,8 @@ class GearModel:
     ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
     Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m², ``lump_added``
-    kg per kg/m³ of water. ``node_forces`` are forces beyond the paper's.
+    kg per kg/m³ of water. ``node_forces`` are forces beyond the paper's, ``catch`` what lies in the
+    codend.
 
     Examples
     --------
@@ -120,6 +122,7 @@ class GearModel:
     net_mesh: NetMesh
     pattern: SparsityPattern
     node_forces: tuple[NodeForce, ...] = ()
+    catch: CodendCatch | None = None
 
     @property
     def nodes(self) -> int:
@@ -320,6 +323,11 @@ def build_model(gear: GearRecord) -> GearModel:
     lumps[1, net] += mesh.knot_volume
     lumps[2, net] += mesh.knot_area * record.knot_drag + mesh.line_drag_area
     lumps[3, net] += mesh.knot_volume * record.knot_added_mass
+    catch = None if gear.catch is None else place_catch(gear.catch, record, mesh)
+    if gear.catch is not None and catch is not None:
+        # Where the codend is full the water goes around it, which the drag of the catch counts.
+        lumps[2, net] *= 1.0 - catch.covered
+        lumps[:, net] += catch.lumps(gear.catch, water.density)
     # Knots are made of the twine they join: their mass is the first body section's density.
     lumps[0, net] += mesh.knot_volume * mesh.knot_density
     clump, floats = gear.clump, gear.floats
@@ -373,6 +381,7 @@ def build_model(gear: GearRecord) -> GearModel:
         first_guess=guess,
         net_mesh=mesh,
         pattern=build_pattern(build.count, ends, kite.nodes),
+        catch=catch,
     )
 
 

@@ -5,6 +5,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.gear.catch import CatchBody
 from trawl_ros.model.assembly import points_of
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
@@ -22,7 +23,12 @@ VIEWS = (
 )
 
 THICK = ('_bridle', '_sweep', '_backstrop', 'headrope', 'footrope', '_wing_end')
-COLOURS = {'netting': style.NETTING, 'codend': style.NETTING, '_wing_end': '#7b4ea3'}
+COLOURS = {
+    'netting': style.NETTING,
+    'codend': style.NETTING,
+    '_wing_end': '#7b4ea3',
+    'catch': '#8c564b',
+}
 
 
 def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
@@ -43,7 +49,7 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
         axes = figure.add_subplot(place)
         style.quiet(axes)
         for name, pieces in lines:
-            thick = name.endswith(THICK) or name == 'board'
+            thick = name.endswith(THICK) or name in ('board', 'catch')
             axes.add_collection(
                 LineCollection(
                     list(pieces[:, :, plane]),
@@ -80,7 +86,27 @@ def _lines(model: GearModel, state: State, tow: Tow) -> list[tuple[str, FloatArr
         ring = place + np.array([ahead + up, ahead - up, -ahead - up, up - ahead, ahead + up])
         ring = (ring - origin) * turn
         grouped.setdefault('board', []).append(np.stack([ring[:-1], ring[1:]], axis=1))
+    if model.catch is not None:
+        for ring in _catch_rings(model.catch.body, points[model.layout.net[-2:]]):
+            ring = (ring - origin) * turn
+            grouped.setdefault('catch', []).append(np.stack([ring[:-1], ring[1:]], axis=1))
     return [(name, np.concatenate(pieces)) for name, pieces in grouped.items()]
+
+
+def _catch_rings(body: CatchBody, line: FloatArray) -> list[FloatArray]:
+    """Outlines (n, 3) of a catch at the end of a line (2, 3): two along it, one across."""
+    end, back = line[1], (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
+    side = np.cross([0.0, 0.0, 1.0], back)
+    side /= np.linalg.norm(side)
+    angles = np.linspace(0.0, 2.0 * np.pi, 73)
+    straight = body.length - 2.0 * body.radius
+    along = body.radius * (np.cos(angles) - 1.0) - np.where(np.cos(angles) < 0.0, straight, 0.0)
+    rings = []
+    for across in (side, np.cross(back, side)):
+        rings.append(end + np.outer(along, back) + np.outer(body.radius * np.sin(angles), across))
+    middle = end - 0.5 * body.length * back
+    round_ = np.outer(np.cos(angles), side) + np.outer(np.sin(angles), np.cross(back, side))
+    return [*rings, middle + body.radius * round_]
 
 
 def _colour(name: str) -> str:

@@ -1,0 +1,66 @@
+"""Catch in the codend: its mass, and the body that it makes of the codend's end."""
+
+from dataclasses import dataclass
+from math import atan, pi, sin, sqrt
+from typing import Annotated
+
+from pydantic import Field
+
+from trawl_ros.core.schema import Record
+from trawl_ros.gear.numbers import NotNegative
+
+OPEN_SHARE = sin(atan(sqrt(2.0)))
+"""Circumference over that of stretched netting where diamond meshes are blown open.
+
+A pressure p in a tube of radius r pulls with p r around and p r / 2 along, and bars at an angle θ
+to the axis bear tan² θ times as much around as along. So θ is 54.7°, as in braided hoses.
+"""
+
+
+class CatchRecord(Record):
+    """Catch in the codend.
+
+    ``density_kg_m3`` is that of fish, ``bulk_kg_m3`` the fish in a cubic metre of the full codend,
+    the rest of which is water. The pressure of the flow on the codend around it is ½ ρ C_D v² with
+    ``drag_coefficient``, so that this is C_D of the catch on its cross-section.
+    """
+
+    mass_kg: Annotated[float, Field(gt=0, le=1e6)]
+    density_kg_m3: Annotated[float, Field(ge=900, le=1300)] = 1050.0
+    bulk_kg_m3: Annotated[float, Field(ge=100, le=1000)] = 800.0
+    drag_coefficient: NotNegative = 1.4
+
+
+@dataclass(frozen=True)
+class CatchBody:
+    """Body of a catch: a ball, or a cylinder with round ends as wide as the netting opens.
+
+    Attributes
+    ----------
+    radius, length
+        Of the body, m.
+    volume
+        Of fish and the water between them, m³.
+    """
+
+    radius: float
+    length: float
+    volume: float
+
+    @property
+    def cross_section(self) -> float:
+        """Area across the flow, m²."""
+        return pi * self.radius**2
+
+
+def catch_body(catch: CatchRecord, circumference: float, *, square: bool = False) -> CatchBody:
+    """Body of a catch in netting of this stretched circumference (m).
+
+    Bars of square meshes lie around already and do not open further.
+    """
+    volume = catch.mass_kg / catch.bulk_kg_m3
+    widest = (1.0 if square else OPEN_SHARE) * circumference / (2.0 * pi)
+    ball = (3.0 * volume / (4.0 * pi)) ** (1.0 / 3.0)
+    radius = min(ball, widest)
+    straight = max(volume - 4.0 / 3.0 * pi * radius**3, 0.0) / (pi * radius**2)
+    return CatchBody(radius, 2.0 * radius + straight, volume)
