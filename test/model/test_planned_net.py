@@ -13,7 +13,8 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.net_plan import NetPlanRecord, cut_slope
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.net.planned_cloth import mesh_angle, shielding
+from trawl_ros.model.net.planned_cloth import PlannedCloth, mesh_angle, shielding
+from trawl_ros.model.net.planned_mouth import PlannedMouth
 
 AROUND = (24, 36, 48)
 
@@ -76,6 +77,14 @@ SQUARE = [
     piece('wing', 'lower', 10, 40, 48),
     *WHOLE_SIDES[3:],
 ]
+SIX_PANELS = [
+    *(row for row in SQUARE[:5]),
+    piece('body', 'upper', 110, 40, 60, section='belly'),
+    piece('body', 'side_upper', 40, 18, 60, section='belly'),
+    piece('body', 'side_lower', 20, 12, 60, section='belly', rtex=6740.0),
+    piece('body', 'lower', 110, 40, 60, section='belly'),
+    piece('codend', 'all', 140, 100, 20, section='codend'),
+]
 NO_SIDE_WINGS = [SQUARE[0], SQUARE[4] | {'long_meshes': 30}, *WHOLE_SIDES[3:]]
 PLANS = {
     'published': None,
@@ -83,6 +92,7 @@ PLANS = {
     'whole sides': WHOLE_SIDES,
     'square': SQUARE,
     'no side wings': NO_SIDE_WINGS,
+    'six panels': SIX_PANELS,
 }
 
 
@@ -246,6 +256,51 @@ def test_the_kite_hangs_on_a_planned_headrope(tmp_path: Path) -> None:
     model = build_model(loaded(tmp_path, data))
     head = model.layout.headrope
     assert model.layout.kite.nodes[0] == head[len(head) // 2]
+
+
+def halved(row: dict[str, Any], panel: str) -> dict[str, Any]:
+    """Half of a side panel's piece, under the name of one of its two panels."""
+    counts = {key: 0.5 * row[key] for key in ('front_meshes', 'back_meshes')}
+    return {key: value for key, value in row.items() if key != 'cut'} | counts | {'panel': panel}
+
+
+def test_sides_that_are_cut_in_two_along_their_middle_are_the_same_net(tmp_path: Path) -> None:
+    data = plan_data()
+    whole = build_model(loaded(tmp_path, data))
+    rows = data['netting']['plan']['pieces']
+    data['netting']['plan']['pieces'] = [
+        half
+        for row in rows
+        for half in (
+            [halved(row, 'side_upper'), halved(row, 'side_lower')]
+            if (row['part'], row['panel']) == ('body', 'side')
+            else [row]
+        )
+    ]
+    six = build_model(loaded(tmp_path, data))
+    assert sorted(plan_of(six.gear).panels) == ['lower', 'side_lower', 'side_upper', 'upper']
+    np.testing.assert_allclose(six.rest, whole.rest, rtol=1e-12)
+    for mine, other in zip(six.bars.columns, whole.bars.columns, strict=True):
+        np.testing.assert_allclose(mine, other, rtol=1e-9, atol=1e-15)
+
+
+def test_the_twine_of_either_side_panel_lies_above_and_below(tmp_path: Path) -> None:
+    data = plan_data()
+    thick = [dict(row) for row in SIX_PANELS]
+    data['netting']['plan']['pieces'] = thick
+    for rope in ('headrope', 'footrope', 'side_rope'):
+        data.get(rope, {}).pop('length_m', None)
+    model = build_model(loaded(tmp_path, data))
+    cloth = PlannedCloth(
+        model.gear.netting, PlannedMouth(plan_of(model.gear), model.gear.netting.around)
+    )
+    upper, middle, lower = cloth.bounds(10.0)
+    # 110 + 40 + 20 + 110 + 20 + 40 meshes around the mouth, narrowing by as many parts each.
+    assert 0.0 < upper < middle < lower < 0.5
+    front = cloth.bounds(1e-9)
+    np.testing.assert_allclose(front, np.array([55.0, 95.0, 115.0]) / 340.0, rtol=1e-6)
+    above, below = (cloth.bodies[panel].sections[0] for panel in ('side_upper', 'side_lower'))
+    assert below.twine_diameter_m == pytest.approx(np.sqrt(2.0) * above.twine_diameter_m)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,10 @@ Orientation = Literal['T0', 'T90', 'square']
 Meshes = Annotated[float, Field(ge=0, le=100_000)]
 
 WING_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower')
-BODY_PANELS = ('upper', 'lower', 'side', 'all')
+BODY_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower', 'all')
+
+SIDES = ('side', 'side_upper', 'side_lower')
+"""Panels of which a net has one at port and one at starboard."""
 
 _CUT = re.compile(r'(?:A([BNT])|(?:(\d+)([NT]))?(?:(\d+)B)?)')
 
@@ -137,7 +140,7 @@ class PieceRecord(Record):
     def count(self) -> int:
         """Number of such pieces in the net."""
         if self.part != 'wing':
-            return 2 if self.panel == 'side' else 1
+            return 2 if self.panel in SIDES else 1
         if self.panel in ('side_upper', 'side_lower'):
             return 2
         # One whole side panel on either side; two wings of the upper or the lower panel.
@@ -193,10 +196,16 @@ class NetPlanRecord(Record):
         for part in parts:
             for name, pieces in self.sections(part):
                 panels = sorted(piece.panel for piece in pieces)
-                if panels not in (['all'], ['lower', 'upper'], ['lower', 'side', 'upper']):
+                if panels not in (
+                    ['all'],
+                    ['lower', 'upper'],
+                    ['lower', 'side', 'upper'],
+                    ['lower', 'side_lower', 'side_upper', 'upper'],
+                ):
                     raise ValueError(
                         f"pieces: section '{name}' has the panels {', '.join(panels)}, expected "
-                        'all, or upper and lower, or upper, lower and side, each once'
+                        'all, or upper and lower, with side or with side_upper and side_lower '
+                        'between them, each once'
                     )
                 long = [piece.length for piece in pieces]
                 if max(long) > 1.03 * min(long):
@@ -229,11 +238,12 @@ class NetPlanRecord(Record):
         return tuple(piece.panel for piece in self.sections('body')[0][1])
 
     def mouth_width(self, panel: str) -> float:
-        """Stretched width (m) of a panel at the mouth; 0 for one that the net has not."""
-        for piece in self.sections('body')[0][1]:
-            if piece.panel == panel:
-                return piece.widths[0]
-        return 0.0
+        """Stretched width (m) of a panel at the mouth; 0 for one that the net has not.
+
+        That of a ``side`` is the sum of its two panels in a net of six.
+        """
+        names = SIDES if panel == 'side' else (panel,)
+        return sum(p.widths[0] for p in self.sections('body')[0][1] if p.panel in names)
 
     @property
     def circumference(self) -> float:
@@ -247,7 +257,7 @@ class NetPlanRecord(Record):
     @property
     def open_side(self) -> bool:
         """True for a net whose sides are cut out between upper and lower wings."""
-        return 'side' in self.panels and not self.wing('side')
+        return not set(SIDES).isdisjoint(self.panels) and not self.wing('side')
 
     def hung_netting(self, rope: str) -> dict[str, float]:
         """Stretched netting (m) that hangs on a rope of the frame, by kind.

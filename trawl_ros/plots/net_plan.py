@@ -8,7 +8,8 @@ from matplotlib.patches import Polygon
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
 from trawl_ros.report import style
 
-PANELS = ('upper', 'side', 'lower')
+PANELS = ('upper', 'side', 'side_upper', 'side_lower', 'lower')
+TITLES = {'side_upper': 'upper side', 'side_lower': 'lower side'}
 FACES = {'wing': '#dfeaf2', 'body': '#f4f1e8', 'codend': '#ece4ee'}
 LABEL_LENGTH = 0.03
 """Pieces shorter than this part of the net get no words of their own."""
@@ -26,7 +27,7 @@ def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
     Lengths and widths are those of stretched netting, which cannot both be had at once: the picture
     is the plan, not the net.
     """
-    panels = [panel for panel in PANELS if panel != 'side' or 'side' in plan.panels]
+    panels = [p for p in PANELS if p in ('upper', 'lower') or p in plan.panels]
     figure = Figure(figsize=(4.4 * len(panels), 10.0), layout='constrained')
     every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     ahead = max(plan.wing_length(panel) for panel in ('upper', 'lower'))
@@ -47,7 +48,7 @@ def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
                 _label(axes, piece, corners, wide)
         axes.set_xlim(-wide, wide)
         axes.set_ylim(1.01 * (ahead + rear), -0.01 * (ahead + rear))
-        axes.set_title(f'{panel} panel', fontsize='medium')
+        axes.set_title(f'{TITLES.get(panel, panel)} panel', fontsize='medium')
         axes.set_xlabel('stretched width / m')
     every[0].set_ylabel('stretched length behind the wing tips / m')
     figure.suptitle(
@@ -60,7 +61,7 @@ def _shapes(plan: NetPlanRecord, panel: str, ahead: float) -> list[Shape]:
     """Pieces of a panel with their corners; of a side, the upper wing is on the left."""
     found: list[Shape] = []
     mouth = 0.5 * plan.mouth_width(panel)
-    names = {'side': ('side', 'side_upper', 'side_lower')}.get(panel, (panel,))
+    names = ('side', 'side_upper', 'side_lower') if panel == 'side' else (panel,)
     for name in names:
         x, signs = ahead, {'side_upper': (-1,), 'side_lower': (1,)}.get(name, (-1, 1))
         for piece in plan.wing(name):
@@ -76,7 +77,9 @@ def _shapes(plan: NetPlanRecord, panel: str, ahead: float) -> list[Shape]:
     x, share = ahead, 1.0
     for part in ('body', 'codend'):
         for _, pieces in plan.sections(part):
-            own = next(piece for piece in pieces if piece.panel in (panel, 'all'))
+            own = next((p for p in pieces if p.panel in (panel, 'all')), None)
+            if own is None:  # a side that is one panel here, or two
+                own = next(p for p in pieces if p.panel.startswith('side'))
             # As much of what goes all around as the panel was of the netting ahead of it.
             front, back = (width * (share if own.panel == 'all' else 1.0) for width in own.widths)
             if own.panel != 'all':

@@ -1,11 +1,13 @@
 """The netting of a planned net: what hangs at a place of it, panel by panel."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
-from trawl_ros.gear.net_plan import NetPlanRecord, Part, PieceRecord
+from trawl_ros.gear.net_plan import NetPlanRecord, Panel, Part, PieceRecord
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.planned_mouth import PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile
@@ -19,7 +21,8 @@ WIDEST = np.radians(80.0)
 LEAST_SHARE = 0.3
 """Part of its column that a bar at the edge of a wing has at least, so that it can bear a load."""
 
-PANELS = ('upper', 'side', 'lower')
+PANELS = ('upper', 'side_upper', 'side_lower', 'lower')
+"""Panels from the top to the bottom; a side that is one piece is both of the side's."""
 
 
 def mesh_angle(piece: PieceRecord, net: NettingRecord) -> float:
@@ -88,7 +91,8 @@ def sections_of(net: NettingRecord, plan: NetPlanRecord, part: Part, panel: str)
     for _, pieces in plan.sections(part):
         front, back = (sum(p.count * p.widths[edge] for p in pieces) for edge in (0, 1))
         length = float(np.mean([piece.length for piece in pieces]))
-        own = next((p for p in pieces if p.panel in (panel, 'all')), pieces[0])
+        names = panel, 'side' if panel.startswith('side') else 'all', 'all'
+        own = next((p for p in pieces if p.panel in names), pieces[0])
         sections.append(section_of(own, net, length, front, back))
     return Profile(tuple(sections))
 
@@ -116,19 +120,32 @@ class PlannedCloth:
         """Netting ahead of the mouth for each panel, over the distance forward from it."""
         around, found = self.plan.circumference, {}
         for panel in PANELS:
-            names = ('side_upper', 'side_lower', 'side', 'upper') if panel == 'side' else (panel,)
+            names: tuple[str, ...] = (panel,)
+            if panel.startswith('side') and panel in self.plan.panels:
+                names = panel, 'side', panel.removeprefix('side_')
+            elif panel.startswith('side'):
+                names = 'side_upper', 'side_lower', 'side', 'upper'
             pieces = next(pieces for name in names if (pieces := self.plan.wing(name)))
             sections = [section_of(p, self.net, p.length, around, around) for p in pieces]
             found[panel] = Profile(tuple(sections))
         return found
 
-    def bounds(self, x: float) -> tuple[float, float]:
-        """Ends of the upper panel and of the side at a distance (m) behind the mouth, as
-        parts of the circumference from the top.
+    def bounds(self, x: float) -> tuple[float, float, float]:
+        """Ends of the upper panel and of both parts of the side at a distance (m) behind the mouth,
+        as parts of the circumference from the top.
+
+        A side that is one piece is halved.
         """
+        upper, lower, share = self._sides(x)
+        return upper, upper + share * (lower - upper), lower
+
+    def _sides(self, x: float) -> tuple[float, float, float]:
+        """Ends of the upper panel and of the side, and the part of it that is its upper panel."""
         if x <= 0.0:
             upper, lower = self.mouth.seams
-            return upper / (2 * self.mouth.around), lower / (2 * self.mouth.around)
+            around, side = 2 * self.mouth.around, self.plan.mouth_width('side')
+            own = self.plan.mouth_width('side_upper')
+            return upper / around, lower / around, own / side if own else 0.5
         for number, (_, pieces) in enumerate(self.plan.sections('body')):
             long = self.bodies['upper'].sections[number].length_m
             if x <= long or number == len(self.bodies['upper'].sections) - 1:
@@ -136,19 +153,18 @@ class PlannedCloth:
                 width = {p.panel: np.interp(share, (0.0, 1.0), p.widths) for p in pieces}
                 whole = sum(p.count * width[p.panel] for p in pieces)
                 if 'all' in width:
-                    return self._last_bounds(number)
-                return 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
+                    return self._last_sides(number)
+                return _sides_of(width, whole)
             x -= long
         raise AssertionError
 
-    def _last_bounds(self, number: int) -> tuple[float, float]:
-        """Bounds at the end of the last section ahead of one that is not in panels."""
+    def _last_sides(self, number: int) -> tuple[float, float, float]:
+        """The same at the end of the last section ahead of one that is not in panels."""
         for _, pieces in self.plan.sections('body')[number::-1]:
             width = {p.panel: p.widths[1] for p in pieces}
             if 'all' not in width:
-                whole = sum(p.count * p.widths[1] for p in pieces)
-                return 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
-        return 0.25, 0.25
+                return _sides_of(width, sum(p.count * p.widths[1] for p in pieces))
+        return 0.25, 0.25, 0.5
 
     def sums(self, row: NettingRow, middle: float) -> dict[str, float]:
         """Sums of `Profile.per_mesh_column` for the bar of a row whose middle lies at this part of
@@ -157,10 +173,11 @@ class PlannedCloth:
         width = 1.0 / (row.around if row.joins else 2 * row.around)
         place = min(middle % 1.0, 1.0 - middle % 1.0)
         x = 0.5 * (row.front + row.back)
-        upper, lower = self.bounds(x)
+        upper, middle_of_side, lower = self.bounds(x)
         low, high = place - 0.5 * width, place + 0.5 * width
         # Beyond the top and the bottom it is the same panel again.
-        cuts = {'upper': (-1.0, upper), 'side': (upper, lower), 'lower': (lower, 2.0)}
+        edges = -1.0, upper, middle_of_side, lower, 2.0
+        cuts = dict(zip(PANELS, pairwise(edges), strict=True))
         shares = {
             panel: max(min(high, end) - max(low, start), 0.0) / width
             for panel, (start, end) in cuts.items()
@@ -205,3 +222,12 @@ class PlannedCloth:
                 sums = self.bodies[panel].per_mesh_column(row.front, row.back, row.columns)
             self.known[panel, row, wing] = sums
         return self.known[panel, row, wing]
+
+
+def _sides_of(width: Mapping[Panel, float], whole: float) -> tuple[float, float, float]:
+    """Ends of the upper panel and of the side as parts of the whole circumference, and the part of
+    the side that is its upper panel.
+    """
+    upper, lower = 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
+    own = width.get('side_upper')
+    return upper, lower, 0.5 if own is None else own / (own + width['side_lower'])
