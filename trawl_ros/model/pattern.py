@@ -44,6 +44,13 @@ class SparsityPattern:
         """Numbers of all bars that have a block: the plain ones first, then hung and rigged."""
         return np.concatenate([self.plain, self.hung, self.rigged])
 
+    @cached_property
+    def node_slots(self) -> IntArray:
+        """Slots (n, 3, 3) of the nodes' own blocks, by row and column."""
+        nodes = (self.dof - 12) // 3
+        before = 36 * len(self.plain) + 9 * len(self.hung) + 81 * len(self.rigged) + 2 * 36
+        return self.slot[before : before + 9 * nodes].reshape(nodes, 3, 3)
+
     def times(self, data: FloatArray, vector: FloatArray) -> FloatArray:
         """Product of the matrix of ``data`` with a vector (dof,)."""
         product = np.zeros(self.dof, np.result_type(data, vector))

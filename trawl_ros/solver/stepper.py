@@ -17,6 +17,7 @@ from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.patches import NO_PATCH, ImplicitStep, balanced, grown_patch
 
 SPECTRAL_RADIUS = 0.4
 """Share of the fastest vibration that is left after a step; 1 keeps all, 0 none."""
@@ -36,6 +37,9 @@ HALVINGS = 6
 
 LIMIT = 0.2
 """Largest correction of an iteration (m or rad)."""
+
+FLUNG = 0.02
+"""Correction (m) from which nodes are flung away by a flip, and not on their way."""
 
 
 class StepFailed(TrawlError):
@@ -192,7 +196,7 @@ class Stepper:
         by_velocity, by_position = SCHEME.by_velocity(h), SCHEME.by_position(h)
         new = motion.averaged.copy()
         inertia = None
-        last = np.inf
+        last, patch, enough = np.inf, NO_PATCH, TOLERANCE * h**3
         for iteration in range(ITERATIONS):
             state = step.state(new)
             if inertia is None:
@@ -217,9 +221,15 @@ class Stepper:
             if not np.isfinite(size) or (iteration > 2 and size > 10 * last):
                 raise StepFailed('the time step did not converge')
             new = new + correction * (min(1.0, LIMIT / max(size, LIMIT)) / by_position)
-            if self._is_done(size, last, TOLERANCE * h**3):
+            if self._is_done(size, last, enough):
                 return SolvedStep(step, new, inertia)
-            if size > keep_rate * last:
-                self._factor = None
+            slow = size > keep_rate * last
+            if slow or len(patch) or size > FLUNG:
+                grown = grown_patch(model, patch, correction, enough)
+                if slow and len(grown) in (0, len(patch)):
+                    self._factor = None
+                if len(patch := grown):
+                    implicit = ImplicitStep(inertia, by_position, by_velocity, enough)
+                    new = balanced(model, step.state(new), tow, implicit, new, patch)
             last = size
         raise StepFailed('the time step did not converge')
