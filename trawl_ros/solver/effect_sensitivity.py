@@ -14,8 +14,8 @@ from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.model.assembly import forces
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
+from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
@@ -154,12 +154,7 @@ def _carried(
     along = np.zeros(direct.shape)
     if pushes.any():
         shifts = solve_refined(rest_linearisation(gear, found.state, found.tow).factor, pushes)
-        along = np.column_stack(
-            [
-                observe(gear, found.state.moved(1j * STEP * shift), found.tow).array().imag / STEP
-                for shift in shifts.T
-            ]
-        )
+        along = observed_slopes(gear, found.state, found.tow, shifts)[1]
     change = along + direct + jacobian[:, -3:] @ towed
     readings: FloatArray = sensor_slopes(acting, found, at)[:, None] * change + shown
     return readings

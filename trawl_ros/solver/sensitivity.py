@@ -13,10 +13,9 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, stepped
-from trawl_ros.model.observables import observe
-from trawl_ros.model.state import State, Tow
+from trawl_ros.model.slopes.observed import observed_slopes
+from trawl_ros.model.state import State, Tow, TowSlopes, held_boundary
 from trawl_ros.records.coefficients import COEFFICIENTS
-from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
 from trawl_ros.solver.rest_linearisation import rest_linearisation
@@ -38,7 +37,7 @@ def _perturbed(model: GearModel, found: Equilibrium, index: int) -> tuple[GearMo
         lengths = tow.lengths.astype(complex)
         lengths[side] += 1j * STEP
         return model, state, replace(tow, lengths=lengths)
-    ahead = np.array([np.cos(found.point.heading), np.sin(found.point.heading), 0.0])
+    ahead = _ahead(found)
     return (
         model,
         replace(
@@ -48,6 +47,11 @@ def _perturbed(model: GearModel, found: Equilibrium, index: int) -> tuple[GearMo
         ),
         replace(tow, block_velocities=stepped(tow.block_velocities, ahead)),
     )
+
+
+def _ahead(found: Equilibrium) -> FloatArray:
+    heading = found.point.heading
+    return np.array([np.cos(heading), np.sin(heading), 0.0])
 
 
 def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
@@ -69,11 +73,20 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
             pushes[:, index] = forces(changed, state, tow).imag / STEP
     shifts = solve_refined(rest_linearisation(model, found.state, found.tow).factor, pushes)
     found.remember(Tangent(model.coefficients, shifts))
-    result = np.empty((len(OBSERVABLES), len(PARAMETERS)))
-    for index, (changed, state, tow) in enumerate(moved):
-        along = state.moved(stepped(np.zeros(model.dof), shifts[:, index]))
-        result[:, index] = observe(changed, along, tow).array().imag / STEP
-    return result
+    along = shifts, *_changed_motion(model, found)
+    return observed_slopes(model, found.state, found.tow, *along)[1]
+
+
+def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, TowSlopes]:
+    """Change of velocities (dof, n_parameters) and boundary with the parameters."""
+    number, ahead = len(PARAMETERS), _ahead(found)
+    velocities, boundary = np.zeros((model.dof, number)), held_boundary(number)
+    boards = velocities[3 * model.nodes :].reshape(2, 6, number)
+    velocities[: 3 * model.nodes, -1] = np.tile(ahead, model.nodes)
+    boards[:, :3, -1] = ahead
+    boundary.block_velocities[-1] = ahead
+    boundary.lengths[-3:-1] = np.eye(2)
+    return velocities, boundary
 
 
 def net_sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
@@ -92,9 +105,4 @@ def net_sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
         [forces(model.with_net(*twice), *at[1:]) - here for twice in ((2.0, 1.0), (1.0, 2.0))]
     )
     shifts = solve_refined(rest_linearisation(*at).factor, pushes)
-    return np.column_stack(
-        [
-            observe(model, found.state.moved(1j * STEP * shift), found.tow).array().imag / STEP
-            for shift in shifts.T
-        ]
-    )
+    return observed_slopes(model, found.state, found.tow, shifts)[1]

@@ -9,11 +9,12 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties
+from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.motion.course import CoursePoint, InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.partials import GearAtPoint, NetLoads, StepEnd, net_loads, pushes
-from trawl_ros.solver.motion.readings import MotionPrediction, observed_slopes
+from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.slopes import (
     advance_slopes,
     unmoved,
@@ -145,4 +146,5 @@ class DifferentiatedTow:
     def observed(self) -> MotionPrediction:
         """Observables of the present instant with their derivatives."""
         at = self.model, self.motion.state, self.course.tow
-        return observed_slopes(*at, self.slopes, self.course.slopes)
+        along = self.slopes.places, self.slopes.velocities, self.course.slopes
+        return MotionPrediction(*observed_slopes(*at, *along))

@@ -1,0 +1,69 @@
+"""Observables of a state and their derivatives along directions, all of them in one pass."""
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.numerics import STEP, stepped
+from trawl_ros.model.observables import observe, observed_nodes
+from trawl_ros.model.rotations import rotation
+from trawl_ros.model.state import State, Tow, TowSlopes, held_boundary
+
+
+def observed_slopes(
+    model: GearModel,
+    state: State,
+    tow: Tow,
+    places: FloatArray,
+    velocities: FloatArray | None = None,
+    boundary: TowSlopes | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Observables (n_observables,) and their derivatives (n_observables, m).
+
+    Parameters
+    ----------
+    model, state, tow
+        Gear, its state and boundary.
+    places
+        Directions (dof, m): metres and, of the boards, rotation vectors in fixed axes.
+    velocities
+        Change (dof, m) of the velocities along them; held by default.
+    boundary
+        Change of the towing boundary along them; held by default.
+    """
+    number = places.shape[1]
+    if not number:
+        values = observe(model, state, tow).array()
+        return values, np.zeros((len(values), 0))
+    velocities = np.zeros_like(places) if velocities is None else velocities
+    boundary = held_boundary(number) if boundary is None else boundary
+    there = Tow(
+        stepped(tow.blocks, boundary.blocks),
+        stepped(tow.block_velocities, boundary.block_velocities),
+        stepped(tow.lengths, boundary.lengths),
+        stepped(tow.length_rates, boundary.length_rates),
+    )
+    found = observe(model, _stepped_state(model, state, places, velocities), there).array()
+    return found[:, 0].real, found.imag / STEP
+
+
+def _stepped_state(
+    model: GearModel, state: State, places: FloatArray, velocities: FloatArray
+) -> State:
+    """State stepped along all directions at once; nodes that nothing is read of stay at nought."""
+    n, number = model.nodes, places.shape[1]
+    nodes, going = np.zeros((2, number, n, 3), complex)
+    for node in observed_nodes(model):
+        own = slice(3 * node, 3 * node + 3)
+        nodes[:, node] = stepped(state.nodes[node], places[own].T)
+        going[:, node] = stepped(state.node_velocities[node], velocities[own].T)
+    moved, rates = (part[3 * n :].T.reshape(number, 2, 6) for part in (places, velocities))
+    turns = rotation(stepped(np.zeros(3), moved[..., 3:]))
+    return State(
+        nodes=nodes,
+        board_positions=stepped(state.board_positions, moved[..., :3]),
+        board_rotations=turns @ state.board_rotations,
+        node_velocities=going,
+        board_velocities=stepped(state.board_velocities, rates[..., :3]),
+        board_rates=stepped(state.board_rates, rates[..., 3:]),
+    )
