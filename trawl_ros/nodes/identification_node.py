@@ -12,9 +12,16 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
 from trawl_ros.estimation.fit.estimate import Estimate
-from trawl_ros.estimation.from_gear import estimator_options, identification_for, predictor_for
+from trawl_ros.estimation.from_gear import (
+    board_prior,
+    estimator_options,
+    identification_for,
+    predictor_for,
+)
 from trawl_ros.estimation.pipeline import Identification
-from trawl_ros.estimation.planning.next_manoeuvre import Advice, Adviser
+from trawl_ros.estimation.planning.advice import Advice
+from trawl_ros.estimation.planning.next_manoeuvre import Adviser
+from trawl_ros.estimation.planning.proposals import knowledge_of
 from trawl_ros.estimation.report.report import report
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
@@ -34,6 +41,7 @@ from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import OneSourceEach
 from trawl_ros.nodes.runtime.rewinding import Rewinding
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.workers.advice_parameters import ADVICE_SPECS, advice_limits
 from trawl_ros.nodes.workers.advice_worker import AdvisingThread
 from trawl_ros.nodes.workers.estimate_status import (
     advice_status,
@@ -42,6 +50,7 @@ from trawl_ros.nodes.workers.estimate_status import (
 )
 from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
+from trawl_ros.nodes.workers.proposals import knowledge_status
 from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.scenario.scenario import true_coefficients
@@ -72,10 +81,9 @@ class IdentificationNode(TrawlNode):
              'empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started anew goes on; none if empty.'),
-        Flag('advise', True, 'Whether to look for the manoeuvre that would teach most, which takes '
-             'a tenth of a core.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
+        *ADVICE_SPECS,
         *WINDOW_SPECS,
     )  # fmt: skip
     DRAINS: ClassVar = True
@@ -119,8 +127,15 @@ class IdentificationNode(TrawlNode):
     def _advising(self) -> AdvisingThread:
         # A model of its own: the estimator's remembers what it was asked last.
         predictor = predictor_for(self._gear)
-        adviser = Adviser(self._gear, predictor, windows=window_options(self.parameters))
-        return AdvisingThread(adviser, lambda: self._worker.idle, self._advised)
+        options = window_options(self.parameters)
+        adviser = Adviser(self._gear, predictor, advice_limits(self.parameters), options)
+        return AdvisingThread(
+            adviser,
+            board_prior(self._gear).start,
+            self.parameters['advise_share'],
+            lambda: self._worker.idle and self._progress.stamp > 0,
+            self._advised,
+        )
 
     def _identification(self) -> Identification:
         fresh = identification_for(
@@ -228,8 +243,9 @@ class IdentificationNode(TrawlNode):
             self._adviser.fitted(outcome.fit)
 
     def _advised(self, advice: Advice | None, trouble: str) -> None:
-        before, self._advice = self._advice, (advice, trouble)
-        if str(before) != str(self._advice):
+        (before, trouble_before), self._advice = self._advice, (advice, trouble)
+        same = str(before) == str(advice) and trouble_before == trouble
+        if not same or _ranking(before) != _ranking(advice):
             self._say_status(self._worker.outcome)
 
     def _say_status(self, outcome: EstimatorOutcome) -> None:
@@ -237,7 +253,10 @@ class IdentificationNode(TrawlNode):
         with self._telling:
             statuses = identification_statuses(outcome)
             if self._adviser is not None:
-                statuses.append(advice_status(*self._advice))
+                advice, trouble = self._advice
+                windows = outcome.estimate.windows if outcome.estimate else 0
+                statuses.append(advice_status(advice, trouble))
+                statuses.append(knowledge_status(knowledge_of(advice, windows)))
             stamp = outcome.estimate.stamp if outcome.estimate else outcome.stamp
             self.send(STATUS, diagnostic_array(stamp, statuses))
 
@@ -253,6 +272,10 @@ class IdentificationNode(TrawlNode):
         if outcome.finished is not None:
             log = self.get_logger()
             (log.warning if outcome.failed else log.info)(outcome.finished)
+
+
+def _ranking(advice: Advice | None) -> tuple[object, ...]:
+    return () if advice is None else (advice.windows, advice.looked_up, advice.ranking)
 
 
 def main(args: Sequence[str] | None = None) -> int:

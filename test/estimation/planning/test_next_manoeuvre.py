@@ -15,6 +15,7 @@ from trawl_ros.estimation.planning.information import (
     information_of,
 )
 from trawl_ros.estimation.planning.next_manoeuvre import Adviser, expected_windows
+from trawl_ros.estimation.planning.proposals import knowledge_of
 from trawl_ros.estimation.planning.search import shortfall
 from trawl_ros.estimation.planning.states import Explorer, Limits, Manoeuvre
 from trawl_ros.estimation.planning.windows import imagined_windows
@@ -156,3 +157,40 @@ def test_manoeuvres_are_looked_up_anew_when_the_estimate_has_moved_far(record, p
     assert adviser.look_up(there)
     (candidate,) = adviser.known.values()
     assert np.array_equal(candidate.part.at, there)
+
+
+def test_manoeuvres_near_to_the_ship_are_looked_up_first(record, predictor, fit):
+    limits = Limits(lengths=(200.0, 300.0, 500.0), speeds=(2.1, 2.3), shorter=(5.0,))
+    adviser = Adviser(record, predictor, limits)
+    assert adviser.look_up(fit.coefficients, Manoeuvre(495.2, 499.7, 2.28))
+    assert list(adviser.known) == [Manoeuvre(495.0, 500.0, 2.3)]
+
+
+def test_the_ranking_has_all_that_is_known_but_the_state_that_goes_on(adviser, fit):
+    ranking = adviser.ranking(fit)
+    assert {ranked.manoeuvre for ranked in ranking} == set(adviser.known)
+    assert [ranked.rate for ranked in ranking] == sorted((r.rate for r in ranking), reverse=True)
+    assert ranking == adviser.advise(fit).ranking
+    assert adviser.advise(fit).windows == len(fit.windows)
+    for ranked in ranking:
+        seen = adviser.known[ranked.manoeuvre].part.state.observables
+        assert ranked.tension == max(seen.port_tension, seen.starboard_tension)
+        assert seen.net_depth < ranked.deepest < 2.0 * ranked.manoeuvre.length
+        assert ranked.nats > 0.0
+    there = expected_windows(fit, adviser.known[ranking[0].manoeuvre], 1)
+    arrived = replace(fit, windows=(*fit.windows, *there))
+    left = {ranked.manoeuvre for ranked in adviser.ranking(arrived)}
+    assert left == set(adviser.known) - {ranking[0].manoeuvre}
+
+
+def test_what_the_trial_hears_is_what_the_adviser_says(adviser, fit):
+    advice = adviser.advise(fit)
+    knowledge = knowledge_of(advice, 5)
+    assert knowledge.windows == 5
+    assert knowledge.advised == len(fit.windows)
+    assert knowledge.known(0.2) == advice.before.well_known.sum()
+    first = knowledge.proposals[0]
+    assert first.target.port == advice.manoeuvre.port_length
+    assert first.minutes == advice.minutes
+    assert first.nats == pytest.approx(advice.nats, rel=0.1)
+    assert knowledge_of(None, 2).proposals == ()

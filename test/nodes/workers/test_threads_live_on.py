@@ -61,7 +61,7 @@ def test_a_report_that_cannot_be_written_ends_the_wish_and_not_the_thread(coarse
 def test_advice_that_fails_is_said_and_sought_again():
     told = SimpleQueue()
     adviser = SimpleNamespace(advise=broken, look_up=broken)
-    thread = AdvisingThread(adviser, lambda: True, lambda *what: told.put(what))
+    thread = AdvisingThread(adviser, np.zeros(12), 0.1, lambda: True, lambda *what: told.put(what))
     thread.start()
     for _ in range(2):
         thread.fitted(SimpleNamespace(windows=(), coefficients=np.zeros(12)))

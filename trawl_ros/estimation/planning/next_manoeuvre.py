@@ -9,8 +9,6 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.laws import (
-    QUANTITIES,
-    WELL_KNOWN,
     LawQuantities,
     WorkingAngles,
     law_quantities,
@@ -18,6 +16,7 @@ from trawl_ros.estimation.fit.laws import (
     working_angles,
 )
 from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.planning.advice import Advice, RankedManoeuvre
 from trawl_ros.estimation.planning.duration import Timetable, ability_of, minutes_of
 from trawl_ros.estimation.planning.information import (
     covariance_from,
@@ -31,6 +30,7 @@ from trawl_ros.estimation.planning.states import (
     Manoeuvre,
     Refused,
     TowableManoeuvre,
+    faster,
 )
 from trawl_ros.estimation.planning.windows import imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
@@ -38,50 +38,11 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.predict import Predictor
 
+_Known = Mapping[Manoeuvre, TowableManoeuvre]
+
 STALE = 1.0
 """Departure of a coefficient, in std of the prior, from where a manoeuvre was looked up, beyond
 which it is looked up anew."""
-
-
-@dataclass(frozen=True)
-class Advice:
-    """Advice: the next manoeuvre and its gain.
-
-    Attributes
-    ----------
-    manoeuvre
-        Warp lengths and speed; the ship goes straight ahead.
-    minutes
-        From now until its windows are taken.
-    before, after
-        Quantities of the laws now, and then.
-    nats
-        Information gained: half the fall of the covariance's log determinant.
-    looked_up
-        Part of all manoeuvres among which was chosen; the others are not looked up yet.
-    """
-
-    manoeuvre: Manoeuvre
-    minutes: float
-    before: LawQuantities
-    after: LawQuantities
-    nats: float
-    looked_up: float
-
-    @property
-    def helped(self) -> int:
-        """Index into `QUANTITIES` of the quantity that improves most."""
-        terms = [np.log1p((known.ratio / WELL_KNOWN) ** 2) for known in (self.before, self.after)]
-        return int(np.argmax(terms[0] - terms[1]))
-
-    def __str__(self) -> str:
-        at = self.helped
-        return (
-            f'{self.manoeuvre}, {self.minutes:g} min: {QUANTITIES[at]} from '
-            f'{100 * self.before.ratio[at]:.0f} to {100 * self.after.ratio[at]:.0f} % of its span, '
-            f'{self.before.well_known.sum()} to {self.after.well_known.sum()} of '
-            f'{len(QUANTITIES)} well known'
-        )
 
 
 class Adviser:
@@ -89,7 +50,9 @@ class Adviser:
 
     Looking a manoeuvre up takes seconds, advising a fraction of one. So whoever has time to spare
     calls `look_up` again and again, for one manoeuvre at a time, and `advise` after each window:
-    it chooses among those that are known by then.
+    it chooses among those that are known by then. Those near to where the ship is come first: they
+    are solved soonest, and are what she can get to. Slower than where the boards have lost their
+    lift nothing is sought. One thread may look up while another one advises.
 
     Parameters
     ----------
@@ -117,19 +80,21 @@ class Adviser:
         self._limits = limits or Limits()
         self._explorer: Explorer | None = None
         self._waiting: list[Manoeuvre] = []
-        self._known: dict[Manoeuvre, TowableManoeuvre] = {}
+        self._solved: set[Manoeuvre] = set()
+        # Replaced, never changed: who ranks does not wait for who looks up.
+        self._known: _Known = {}
 
     @property
     def known(self) -> Mapping[Manoeuvre, TowableManoeuvre]:
         """Feasible manoeuvres among those solved so far."""
-        return MappingProxyType(self._known)
+        return MappingProxyType(dict(self._known))
 
     @property
     def looked_up(self) -> float:
-        """Share of all manoeuvres that have been solved."""
-        return 0.0 if self._explorer is None else 1.0 - len(self._waiting) / len(self._explorer)
+        """Share of all manoeuvres that have been solved, with this estimate or one before."""
+        return 0.0 if self._explorer is None else len(self._solved) / len(self._explorer)
 
-    def look_up(self, coefficients: FloatArray) -> bool:
+    def look_up(self, coefficients: FloatArray, near: Manoeuvre | None = None) -> bool:
         """Solve one more manoeuvre; False when there is none left.
 
         Parameters
@@ -137,6 +102,8 @@ class Adviser:
         coefficients
             The present estimate (12,). When it has moved too far from where manoeuvres were
             looked up, all are looked up anew, and meanwhile the old ones serve.
+        near
+            State in which the ship is; by default the middle of the limits.
         """
         explorer = self._explorer
         if explorer is None or self._moved(explorer.coefficients, coefficients):
@@ -145,34 +112,91 @@ class Adviser:
             self._waiting = list(explorer.manoeuvres)
         if not self._waiting:
             return False
-        manoeuvre = self._waiting.pop(0)
+        here = near or self._middle()
+        manoeuvre = min(self._waiting, key=here.distance)
+        self._waiting.remove(manoeuvre)
+        self._solved.add(manoeuvre)
         state = explorer.look_up(manoeuvre, list(self._known.values()))
         if isinstance(state, Refused):
-            self._known.pop(manoeuvre, None)
+            self._forget({manoeuvre, *self._slower(manoeuvre)})
         else:
-            self._known[manoeuvre] = state
+            self._known = {**self._known, manoeuvre: state}
         return True
+
+    def _middle(self) -> Manoeuvre:
+        limits = self._limits
+        length, speed = (v[len(v) // 2] for v in (limits.lengths, limits.speeds))
+        return Manoeuvre(length, length, speed)
+
+    def _slower(self, lost: Manoeuvre) -> set[Manoeuvre]:
+        """Find those slower than a refused manoeuvre that could be towed faster."""
+        if not any(faster(known, lost) for known in self._known):
+            return set()
+        return {other for other in self._waiting if faster(lost, other)}
+
+    def _forget(self, refused: set[Manoeuvre]) -> None:
+        self._solved |= refused
+        self._waiting = [other for other in self._waiting if other not in refused]
+        self._known = {one: state for one, state in self._known.items() if one not in refused}
 
     def advise(self, fit: Fit) -> Advice | None:
         """Advise after a fit's newest window; None before a window, or with nothing known.
 
         Of all manoeuvres that is chosen which gains most per minute, as a plan counts it.
         """
-        if not fit.windows or not self._known:
+        known = self._known
+        ranking = self._rank(fit, known)
+        if not ranking:
             return None
+        return replace(self._promise(fit, ranking[0].manoeuvre, known), ranking=ranking)
+
+    def ranking(self, fit: Fit) -> tuple[RankedManoeuvre, ...]:
+        """Rank the `known` manoeuvres by what they gain per minute, the best one first.
+
+        The state of the newest window is not among them: as it goes on it gives no more windows.
+
+        Parameters
+        ----------
+        fit
+            Without a window the ranking is empty.
+        """
+        return self._rank(fit, self._known)
+
+    def _rank(self, fit: Fit, known: _Known) -> tuple[RankedManoeuvre, ...]:
+        if not fit.windows or not known:
+            return ()
         question = _Question.of(fit, self._gear)
-        before = shortfall(question.quantities(fit.posterior.covariance))
-        information = information_in(fit)
-        timetable = self._timetable()
-        best, most = None, -np.inf
-        for manoeuvre, candidate in sorted(self._known.items()):
+        informed = information_in(fit)
+        now = covariance_from(informed, fit.prior)
+        before, log_before = shortfall(question.quantities(now)), np.linalg.slogdet(now)[1]
+        timetable, here = self._timetable(known), manoeuvre_of(fit)
+        ranked = []
+        for manoeuvre, candidate in sorted(known.items()):
+            if self._goes_on(here, manoeuvre):
+                continue
             windows = expected_windows(fit, candidate, self._windows.max_windows_per_state)
             taught = information_of(windows, fit.prior, fit.options, fit.scales)
-            after = shortfall(question.quantities(covariance_from(information + taught, fit.prior)))
-            rate = (before - after) / _minutes(timetable, fit, manoeuvre)
-            if rate > most:
-                best, most = manoeuvre, rate
-        return None if best is None else self.promise(fit, best)
+            then = covariance_from(informed + taught, fit.prior)
+            minutes = _minutes(timetable, fit, manoeuvre)
+            ranked.append(
+                RankedManoeuvre(
+                    manoeuvre,
+                    minutes,
+                    nats=float(0.5 * (log_before - np.linalg.slogdet(then)[1])),
+                    rate=(before - shortfall(question.quantities(then))) / minutes,
+                    tension=candidate.tension,
+                    deepest=candidate.deepest,
+                )
+            )
+        return tuple(sorted(ranked, key=lambda it: -it.rate))
+
+    def _goes_on(self, here: Manoeuvre, manoeuvre: Manoeuvre) -> bool:
+        metres, speed = 2.0 * self._windows.length_tolerance, self._windows.speed_tolerance
+        return (
+            abs(manoeuvre.port_length - here.port_length) <= metres
+            and abs(manoeuvre.starboard_length - here.starboard_length) <= metres
+            and abs(manoeuvre.speed - here.speed) <= speed
+        )
 
     def promise(self, fit: Fit, manoeuvre: Manoeuvre) -> Advice:
         """Predict the gain of one of the `known` manoeuvres, by the fit itself.
@@ -184,23 +208,26 @@ class Adviser:
         manoeuvre
             The next manoeuvre.
         """
+        return self._promise(fit, manoeuvre, self._known)
+
+    def _promise(self, fit: Fit, manoeuvre: Manoeuvre, known: _Known) -> Advice:
         question = _Question.of(fit, self._gear)
-        number = self._windows.max_windows_per_state
-        windows = expected_windows(fit, self._known[manoeuvre], number)
+        windows = expected_windows(fit, known[manoeuvre], self._windows.max_windows_per_state)
         now = fit.posterior.covariance
         then = replace(fit, windows=(*fit.windows, *windows)).posterior.covariance
         return Advice(
             manoeuvre=manoeuvre,
-            minutes=_minutes(self._timetable(), fit, manoeuvre),
+            minutes=_minutes(self._timetable(known), fit, manoeuvre),
             before=question.quantities(now),
             after=question.quantities(then),
             nats=float(0.5 * (np.linalg.slogdet(now)[1] - np.linalg.slogdet(then)[1])),
             looked_up=self.looked_up,
+            windows=len(fit.windows),
         )
 
-    def _timetable(self) -> Timetable:
-        ability = ability_of(self._gear, tuple(self._known))
-        return Timetable(ability, self._windows, self._known.values())
+    def _timetable(self, known: _Known) -> Timetable:
+        ability = ability_of(self._gear, tuple(known))
+        return Timetable(ability, self._windows, known.values())
 
     def _moved(self, before: FloatArray, now: FloatArray) -> bool:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)
@@ -239,10 +266,11 @@ def _noise_of(fit: Fit) -> Mapping[str, float]:
 def _minutes(timetable: Timetable, fit: Fit, manoeuvre: Manoeuvre) -> float:
     """Time from a fit's newest window until those of a manoeuvre are taken."""
     depth = fit.windows[-1].window.means['net_depth']
-    return minutes_of(timetable.legs((_manoeuvre_of(fit), manoeuvre), depth)[1:])
+    return minutes_of(timetable.legs((manoeuvre_of(fit), manoeuvre), depth)[1:])
 
 
-def _manoeuvre_of(fit: Fit) -> Manoeuvre:
+def manoeuvre_of(fit: Fit) -> Manoeuvre:
+    """Warp lengths and speed of a fit's newest window."""
     means = fit.windows[-1].window.means
     return Manoeuvre(*(float(means[name]) for name in INPUTS))
 

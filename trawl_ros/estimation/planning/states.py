@@ -1,5 +1,4 @@
 """Candidate steady states of a trial, and the predictions in each.
-would show.
 
 A turn is not among them: a gear that is towed around has no steady state in fixed axes. Nor is an
 opposite heading, which shows nothing new where there is no current.
@@ -46,6 +45,14 @@ class Manoeuvre:
         """True if both warps are equally long."""
         return self.port_length == self.starboard_length
 
+    def distance(self, other: 'Manoeuvre') -> float:
+        """Distance of another manoeuvre: the sum of its relative differences from this one."""
+        return (
+            abs(other.port_length / self.port_length - 1.0)
+            + abs(other.starboard_length / self.starboard_length - 1.0)
+            + abs(other.speed / self.speed - 1.0)
+        )
+
     def __str__(self) -> str:
         lengths = f'{self.port_length:g}'
         if not self.equal:
@@ -82,13 +89,20 @@ class Limits:
 
 @dataclass(frozen=True)
 class TowableManoeuvre:
-    """Candidate: a feasible manoeuvre, the linearised model there, and the decay time (s, to 1/e)
-    of its slowest motion.
+    """Candidate: a feasible manoeuvre, the linearised model there, the decay time (s, to 1/e)
+    of its slowest motion, and the depth (m) of the gear's deepest point.
     """
 
     manoeuvre: Manoeuvre
     part: Linearised
     decay: float
+    deepest: float
+
+    @property
+    def tension(self) -> float:
+        """Predicted tension of the tauter warp, N."""
+        observables = self.part.state.observables
+        return float(max(observables.port_tension, observables.starboard_tension))
 
 
 @dataclass(frozen=True)
@@ -173,7 +187,7 @@ class Explorer:
             state = self.look_up(manoeuvre, known)
             if isinstance(state, TowableManoeuvre):
                 known.append(state)
-            elif any(_faster(towable.manoeuvre, manoeuvre) for towable in known):
+            elif any(faster(towable.manoeuvre, manoeuvre) for towable in known):
                 lost[manoeuvre.length] = manoeuvre.speed, state.reason
             yield state
 
@@ -183,12 +197,7 @@ class Explorer:
         """Solve one manoeuvre, warm from those known, and check it."""
 
         def distance(other: TowableManoeuvre) -> float:
-            there = other.manoeuvre
-            return (
-                abs(there.port_length / manoeuvre.port_length - 1.0)
-                + abs(there.starboard_length / manoeuvre.starboard_length - 1.0)
-                + abs(there.speed / manoeuvre.speed - 1.0)
-            )
+            return manoeuvre.distance(other.manoeuvre)
 
         starts = (min(known, key=distance).part.state, None) if known else (None,)
         try:
@@ -200,19 +209,18 @@ class Explorer:
             steady = require_usable(model, linear.state)
         except NoSteadyState as reason:
             return Refused(manoeuvre, reason.reason)
-        if trouble := self._trouble(model, linear):
-            return Refused(manoeuvre, trouble)
-        return TowableManoeuvre(manoeuvre, linear, steady.stability.settling_time)
+        settling = steady.stability.settling_time
+        deepest = deepest_point(model, linear.state)
+        candidate = TowableManoeuvre(manoeuvre, linear, settling, deepest)
+        trouble = self._trouble(candidate)
+        return Refused(manoeuvre, trouble) if trouble else candidate
 
-    def _trouble(self, model: GearModel, linear: Linearised) -> str:
-        limits, observables = self.limits, linear.state.observables
-        tension = max(observables.port_tension, observables.starboard_tension)
-        if limits.max_tension is not None and tension > limits.max_tension:
+    def _trouble(self, candidate: TowableManoeuvre) -> str:
+        limits = self.limits
+        if limits.max_tension is not None and candidate.tension > limits.max_tension:
             return 'tension'
-        if limits.seabed is not None:
-            depth = deepest_point(model, linear.state)
-            if depth + limits.clearance > limits.seabed:
-                return 'seabed'
+        if limits.seabed is not None and candidate.deepest + limits.clearance > limits.seabed:
+            return 'seabed'
         return ''
 
 
@@ -250,7 +258,7 @@ def explore(explorer: Explorer, on_progress: OnProgress = ignore) -> ManoeuvreCh
     return ManoeuvreChoice(tuple(candidates), tuple(refused))
 
 
-def _faster(first: Manoeuvre, second: Manoeuvre) -> bool:
+def faster(first: Manoeuvre, second: Manoeuvre) -> bool:
     """True if one is the other at a higher speed."""
     return first.speed > second.speed and replace(first, speed=second.speed) == second
 

@@ -1,16 +1,15 @@
-"""Advice on the next manoeuvre, computed in a thread of its own with spare time."""
+"""Advice on the next manoeuvre, computed in threads of its own with spare time."""
 
 import time
 from collections.abc import Callable
-from queue import Empty, SimpleQueue
-from threading import Thread
+from queue import SimpleQueue
+from threading import Event, Thread
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import sentence_of
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.planning.next_manoeuvre import Advice, Adviser
-
-SHARE = 0.1
-"""Part of a core that looking manoeuvres up may take."""
+from trawl_ros.estimation.planning.advice import Advice
+from trawl_ros.estimation.planning.next_manoeuvre import Adviser, manoeuvre_of
 
 IDLE_S = 0.1
 """Wait before it asks again whether the estimator is at rest."""
@@ -19,10 +18,17 @@ IDLE_S = 0.1
 class AdvisingThread(Thread):
     """Chooses the next manoeuvre after each window, and anew whenever more are known.
 
+    Manoeuvres are looked up from the beginning on: until the first window, with the board as it is
+    believed to be.
+
     Parameters
     ----------
     adviser
         Nobody else may use it, or its predictor, from now on.
+    believed
+        Coefficients (12,) before the first window.
+    share
+        Part of a core that looking manoeuvres up may take.
     at_rest
         True if the estimator has nothing to do: it comes first.
     on_advice
@@ -33,65 +39,77 @@ class AdvisingThread(Thread):
     def __init__(
         self,
         adviser: Adviser,
+        believed: FloatArray,
+        share: float,
         at_rest: Callable[[], bool],
         on_advice: Callable[[Advice | None, str], None],
     ) -> None:
         super().__init__(name='advising', daemon=True)
         self._adviser = adviser
+        self._believed = believed
+        self._share = share
         self._at_rest = at_rest
         self._on_advice = on_advice
-        self._fits: SimpleQueue[Fit | None] = SimpleQueue()
+        self._asked: SimpleQueue[None] = SimpleQueue()
         self._fit: Fit | None = None
-        self._stopped = False
+        self._fresh, self._stopped = Event(), Event()
+        # A manoeuvre may take seconds to be looked up, for which a fit is not to wait.
+        self._looking = Thread(target=self._look, name='looking up', daemon=True)
 
     def fitted(self, fit: Fit) -> None:
         """Hand over the newest fit; one without windows withdraws the advice."""
-        self._fits.put(fit)
+        self._fit = fit
+        self._fresh.set()
+        self._asked.put(None)
 
     def stop(self) -> None:
         """End the thread, and wait for it."""
-        self._stopped = True
-        self._fits.put(None)
+        self._stopped.set()
+        self._fresh.set()
+        self._asked.put(None)
         self.join()
+        self._looking.join()
 
     def run(self) -> None:
         """Advise until stopped."""
-        rest: float | None = None
-        while not self._stopped:
-            if self._new_fit(rest):
-                rest = IDLE_S if self._attempt(self._advise) else None
-            elif not self._at_rest():
-                rest = IDLE_S
+        self._looking.start()
+        while True:
+            self._asked.get()
+            while not self._asked.empty():
+                self._asked.get()
+            if self._stopped.is_set():
+                return
+            self._attempt(self._advise)
+
+    def _look(self) -> None:
+        """Look manoeuvres up until stopped."""
+        while not self._stopped.is_set():
+            if not self._at_rest():
+                self._stopped.wait(IDLE_S)
+                continue
+            self._fresh.clear()
+            began = time.thread_time()
+            if self._attempt(self._look_up):
+                self._asked.put(None)
+                self._stopped.wait((time.thread_time() - began) * (1.0 / self._share - 1.0))
             else:
-                began = time.thread_time()
-                more = self._attempt(self._look_up)
-                rest = (time.thread_time() - began) * (1.0 / SHARE - 1.0) if more else None
+                self._fresh.wait()
 
-    def _new_fit(self, timeout: float | None) -> bool:
-        """Wait for a fit; of several the newest counts."""
+    def _attempt(self, act: Callable[[], bool]) -> bool:
         try:
-            fit = self._fits.get(timeout=timeout)
-            while not self._fits.empty():
-                fit = self._fits.get()
-        except Empty:
-            return False
-        if fit is not None:
-            self._fit = fit
-        return fit is not None
-
-    def _attempt(self, act: Callable[[Fit], bool]) -> bool:
-        if self._fit is None:
-            return False
-        try:
-            return act(self._fit)
+            return act()
         except Exception as reason:
             # Without advice the node still estimates, so this ends the thread's work on this fit.
             self._on_advice(None, sentence_of(reason))
         return False
 
-    def _advise(self, fit: Fit) -> bool:
-        self._on_advice(self._adviser.advise(fit), '')
-        return bool(fit.windows)
+    def _advise(self) -> bool:
+        if self._fit is not None:
+            self._on_advice(self._adviser.advise(self._fit), '')
+        return True
 
-    def _look_up(self, fit: Fit) -> bool:
-        return self._adviser.look_up(fit.coefficients) and self._advise(fit)
+    def _look_up(self) -> bool:
+        fit = self._fit
+        if fit is None or not fit.windows:
+            return self._adviser.look_up(self._believed)
+        return self._adviser.look_up(fit.coefficients, manoeuvre_of(fit))

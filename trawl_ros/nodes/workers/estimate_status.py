@@ -3,7 +3,7 @@
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimate import Innovation as Innovations
 from trawl_ros.estimation.fit.laws import QUANTITIES
-from trawl_ros.estimation.planning.next_manoeuvre import Advice
+from trawl_ros.estimation.planning.advice import Advice
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.estimates import ChannelInnovation
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome

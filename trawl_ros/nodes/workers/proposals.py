@@ -1,0 +1,87 @@
+"""Proposals for a trial as a diagnostic status, in ``identification/status``."""
+
+import math
+import re
+from collections.abc import Sequence
+
+from trawl_ros.control.trial.records import Knowledge, Proposal, TrialTarget
+from trawl_ros.core.errors import MessageError
+from trawl_ros.messages.diagnostics import OK, Status
+
+NAME = 'identification: proposals'
+NOW = 'now'
+
+_COLUMNS = ('port_warp', 'starboard_warp', 'speed', 'minutes', 'gain', 'rate', 'tension', 'deepest')
+_KEY = re.compile(rf'(\d{{1,4}}) ({"|".join(_COLUMNS)})')
+
+
+def knowledge_status(knowledge: Knowledge) -> Status:
+    """Return what the estimator knows and proposes, as numbers by name."""
+    values = {
+        'windows': str(knowledge.windows),
+        'advised': str(knowledge.advised),
+        'looked up': f'{knowledge.looked_up:.4f}',
+    }
+    values |= {f'{name} {NOW}': f'{ratio:.6g}' for name, ratio in knowledge.ratios.items()}
+    for number, proposal in enumerate(knowledge.proposals, 1):
+        target = proposal.target
+        numbers = (
+            target.port,
+            target.starboard,
+            target.speed,
+            proposal.minutes,
+            proposal.nats,
+            proposal.rate,
+            proposal.tension,
+            proposal.deepest,
+        )
+        for column, value in zip(_COLUMNS, numbers, strict=True):
+            values[f'{number} {column}'] = f'{value:.9g}'
+    message = f'{len(knowledge.proposals)} manoeuvres after {knowledge.advised} windows'
+    return Status(NAME, OK, message, values)
+
+
+def read_knowledge(statuses: Sequence[Status]) -> Knowledge | None:
+    """Read what the estimator knows; None where no status says it.
+
+    Raises
+    ------
+    MessageError
+        If a number is none, or a proposal lacks one.
+    """
+    status = next((status for status in statuses if status.name == NAME), None)
+    if status is None:
+        return None
+    rows: dict[int, dict[str, float]] = {}
+    ratios: dict[str, float] = {}
+    for key in status.values:
+        if match := _KEY.fullmatch(key):
+            rows.setdefault(int(match[1]), {})[match[2]] = _number(status, key)
+        elif key.endswith(f' {NOW}'):
+            ratios[key.removesuffix(f' {NOW}')] = _number(status, key)
+    return Knowledge(
+        windows=int(_number(status, 'windows')),
+        ratios=ratios,
+        advised=int(_number(status, 'advised')),
+        looked_up=_number(status, 'looked up'),
+        proposals=tuple(_proposal(number, rows[number]) for number in sorted(rows)),
+    )
+
+
+def _proposal(number: int, row: dict[str, float]) -> Proposal:
+    if missing := [column for column in _COLUMNS if column not in row]:
+        raise MessageError(f'{NAME}: proposal {number} lacks {", ".join(missing)}; expected all')
+    port, starboard, speed, minutes, nats, rate, tension, deepest = (row[name] for name in _COLUMNS)
+    target = TrialTarget(port=port, starboard=starboard, speed=speed)
+    return Proposal(target, minutes, nats, rate, tension, deepest)
+
+
+def _number(status: Status, key: str) -> float:
+    text = status.values.get(key, '')
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise MessageError(f'{NAME}: {key} is {text!r}; expected a number')
+    return value
