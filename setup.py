@@ -15,6 +15,7 @@ NODES = (
     'vessel_node',
     'autotrawl_node',
     'autopilot_node',
+    'trial_node',
     'identification_node',
     'discrepancy_node',
     'bag_recorder',

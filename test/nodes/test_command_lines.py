@@ -14,6 +14,7 @@ NODES = (
     'vessel_node',
     'autotrawl_node',
     'autopilot_node',
+    'trial_node',
     'identification_node',
     'discrepancy_node',
     'bag_recorder',

@@ -31,6 +31,7 @@ INSTRUMENTS = [
 OTHERS = [
     ('bag_recorder', 'BagRecorder'),
     ('autopilot_node', 'AutopilotNode'),
+    ('trial_node', 'TrialNode'),
     ('autotrawl_node', 'AutotrawlNode'),
 ]
 ESTIMATORS = [

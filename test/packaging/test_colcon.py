@@ -18,6 +18,7 @@ EXECUTABLES = {
     'vessel_node',
     'autotrawl_node',
     'autopilot_node',
+    'trial_node',
     'identification_node',
     'discrepancy_node',
     'bag_recorder',

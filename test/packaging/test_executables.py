@@ -31,6 +31,7 @@ NODES = (
     'vessel_node',
     'autotrawl_node',
     'autopilot_node',
+    'trial_node',
     'identification_node',
     'bag_recorder',
     'bag_player',

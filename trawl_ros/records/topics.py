@@ -331,6 +331,14 @@ ESTIMATES = (
         latched=True,
     ),
     Topic(
+        'trial/status',
+        'diagnostic_msgs/msg/DiagnosticArray',
+        '',
+        None,
+        'Phase and target of a trial that runs itself, and why it holds or waits.',
+        latched=True,
+    ),
+    Topic(
         '/diagnostics',
         'diagnostic_msgs/msg/DiagnosticArray',
         '',

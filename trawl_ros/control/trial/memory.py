@@ -1,0 +1,109 @@
+"""Memory of a trial, with which one that was killed goes on."""
+
+from pathlib import Path
+
+from trawl_ros.control.trial.records import Mode, Phase, TrialTarget
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import write_json
+from trawl_ros.core.schema import Record, load_yaml, validated
+
+
+class TowedState(Record):
+    """State that was towed, and the windows that it gave."""
+
+    target: TrialTarget
+    windows: int
+
+
+class TrialMemory(Record):
+    """Memory of a trial, with which one that was killed goes on.
+
+    Attributes
+    ----------
+    began_s, arrived_s
+        Times (s) of the beginning of the trial and of the tow in the present state.
+    phase, mode, target
+        As in `TrialState`.
+    origin
+        State from which the target is headed for.
+    heading
+        Heading that is kept, ENU yaw, rad.
+    minutes
+        Expected duration of the present state.
+    windows_before
+        Number of windows on arrival there.
+    towed
+        States that were towed.
+    struck
+        Targets struck off: by a veto, a limit, or for want of windows.
+    reason
+        Reason for which the trial ended.
+    """
+
+    began_s: float | None = None
+    arrived_s: float = 0.0
+    phase: Phase = 'start'
+    mode: Mode = 'sails'
+    target: TrialTarget | None = None
+    origin: TrialTarget | None = None
+    heading: float | None = None
+    minutes: float = 0.0
+    windows_before: int = 0
+    towed: tuple[TowedState, ...] = ()
+    struck: tuple[TrialTarget, ...] = ()
+    reason: str = ''
+
+    @property
+    def last_good(self) -> TrialTarget | None:
+        """State that was towed last, or the origin where it gave no window."""
+        if self.towed and self.towed[-1].windows:
+            return self.towed[-1].target
+        return self.origin
+
+    def changed(self, **changes: object) -> 'TrialMemory':
+        """Memory with other values of some attributes."""
+        return self.model_copy(update=changes)
+
+    def heading_for(self, target: TrialTarget, minutes: float) -> 'TrialMemory':
+        """Memory on the way to a target."""
+        return self.changed(phase='transit', origin=self.last_good, target=target, minutes=minutes)
+
+    def arrived(self, now_s: float, minutes: float, windows: int) -> 'TrialMemory':
+        """Memory on arrival at the target, when the estimator has used so many windows."""
+        return self.changed(phase='tow', arrived_s=now_s, minutes=minutes, windows_before=windows)
+
+    def left(self, now_s: float, windows: int) -> 'TrialMemory':
+        """Memory after the tow in the target's state; without windows it is struck off."""
+        assert self.target is not None
+        state = TowedState(target=self.target, windows=windows)
+        struck = self.struck if windows else (*self.struck, self.target)
+        return self.changed(
+            phase='advice', arrived_s=now_s, towed=(*self.towed, state), struck=struck
+        )
+
+    def struck_off(self, now_s: float) -> 'TrialMemory':
+        """Memory after the target was struck off, before the next is chosen."""
+        struck = (*self.struck, self.target)
+        return self.changed(phase='advice', target=None, struck=struck, arrived_s=now_s)
+
+
+def save_memory(path: Path, memory: TrialMemory) -> None:
+    """Save a memory as JSON, whole or not at all.
+
+    Raises
+    ------
+    TrawlError
+        If the file cannot be written.
+    """
+    write_json(path, memory.model_dump(mode='json'), indent=1)
+
+
+def load_memory(path: Path) -> TrialMemory:
+    """Load a memory.
+
+    Raises
+    ------
+    TrawlError
+        If the file cannot be read, or is no memory of a trial.
+    """
+    return validated(TrialMemory, load_yaml(path, TrawlError), path, TrawlError)
