@@ -1,6 +1,7 @@
 """`identification_node`: refits the boards' twelve coefficients while samples come in."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from threading import Lock
 from typing import Any, ClassVar
@@ -165,7 +166,11 @@ class IdentificationNode(TrawlNode):
             'revision': str(estimate.revision if estimate else 0),
             **{f'rejected {reason}': str(count) for reason, count in outcome.rejected.items()},
         }
-        return [self._about_estimate(outcome, values), *self._about_state(outcome)]
+        return [
+            self._about_estimate(outcome, values),
+            *self._about_state(outcome),
+            *self._about_advice(),
+        ]
 
     def _about_estimate(self, outcome: EstimatorOutcome, values: dict[str, str]) -> Status:
         level, message = OK, 'estimating'
@@ -185,6 +190,13 @@ class IdentificationNode(TrawlNode):
         values = {'file': str(self._state), 'windows': windows}
         message = trouble or 'saved after each window'
         return [Status('state', ERROR if trouble else OK, message, values)]
+
+    def _about_advice(self) -> list[Status]:
+        advice, trouble = self._advice
+        if self._adviser is None:
+            return []
+        values = {'looked up': f'{advice.looked_up:.2f}'} if advice else {}
+        return [Status('advice', WARN if trouble else OK, trouble or 'advising', values)]
 
     def finish_work(self) -> None:
         """Bring the estimate to convergence, write the report, and end the thread."""
@@ -256,7 +268,8 @@ class IdentificationNode(TrawlNode):
                 advice, trouble = self._advice
                 windows = outcome.estimate.windows if outcome.estimate else 0
                 statuses.append(advice_status(advice, trouble))
-                statuses.append(knowledge_status(knowledge_of(advice, windows)))
+                knowledge = replace(knowledge_of(advice, windows), trouble=trouble)
+                statuses.append(knowledge_status(knowledge))
             stamp = outcome.estimate.stamp if outcome.estimate else outcome.stamp
             self.send(STATUS, diagnostic_array(stamp, statuses))
 

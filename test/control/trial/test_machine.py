@@ -5,6 +5,7 @@ import pytest
 from trawl_ros.control.trial.memory import load_memory, save_memory
 from trawl_ros.control.trial.records import TrialSettings, TrialTarget
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.records.samples import HeadingSample
 
 SETTINGS = TrialSettings(hours=6.0)
 HOLD_S = 2.0
@@ -268,11 +269,9 @@ def test_a_file_that_is_no_trial_is_refused_with_its_name(tmp_path):
         load_memory(path)
 
 
-def test_the_heading_is_kept(ship, monkeypatch):
+def test_the_heading_is_kept(ship):
     seen = [command.turn_rate for _, command in ship.commands if command is not None]
     assert set(seen) == {0.0}
-    from trawl_ros.records.samples import HeadingSample
-
     stamp = round(ship.now * 1e9)
     ship.trial.take(HeadingSample(stamp, 0.2, 0.002), stamp)
     turn = ship.trial.update(stamp + 250_000_000).turn_rate

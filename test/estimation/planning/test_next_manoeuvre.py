@@ -107,18 +107,19 @@ def test_adding_to_a_fit_is_adding_information(adviser, fit):
     assert np.sqrt(np.diag(ours)) == pytest.approx(np.sqrt(np.diag(fits)), rel=0.05)
 
 
-def test_what_is_not_heard_promises_nothing(adviser, fit):
+def without(fit, channel):
+    """The fit whose windows have no reading of channels of this name."""
     deaf = []
     for part in fit.windows:
         window = part.window
-        kept = [row for row, name in enumerate(part.channels) if 'pitch' not in name]
+        kept = [row for row, name in enumerate(part.channels) if channel not in name]
         deaf.append(
             replace(
                 part,
                 window=replace(
                     window,
-                    means={n: v for n, v in window.means.items() if 'pitch' not in n},
-                    noise={n: v for n, v in window.noise.items() if 'pitch' not in n},
+                    means={n: v for n, v in window.means.items() if channel not in n},
+                    noise={n: v for n, v in window.noise.items() if channel not in n},
                 ),
                 channels=tuple(part.channels[row] for row in kept),
                 measured=part.measured[kept],
@@ -129,9 +130,12 @@ def test_what_is_not_heard_promises_nothing(adviser, fit):
                 slow=part.slow[kept],
             )
         )
-    without = replace(fit, windows=tuple(deaf))
+    return replace(fit, windows=tuple(deaf))
+
+
+def test_what_is_not_heard_promises_nothing(adviser, fit):
     candidate = next(iter(adviser.known.values()))
-    for part in expected_windows(without, candidate, 2):
+    for part in expected_windows(without(fit, 'pitch'), candidate, 2):
         assert not [name for name in part.channels if 'pitch' in name]
 
 
@@ -194,3 +198,7 @@ def test_what_the_trial_hears_is_what_the_adviser_says(adviser, fit):
     assert first.minutes == advice.minutes
     assert first.nats == pytest.approx(advice.nats, rel=0.1)
     assert knowledge_of(None, 2).proposals == ()
+
+
+def test_a_newest_window_without_the_depth_of_the_net_is_advised_on(adviser, fit):
+    assert adviser.advise(without(fit, 'net_depth')).minutes > 5.0

@@ -16,6 +16,8 @@ KNOWLEDGE = Knowledge(4, {'C_x value': 0.25, 'C_x slope': 1.5}, 2, 0.375, (FIRST
 def test_it_comes_through_as_it_was():
     assert read_knowledge([knowledge_status(KNOWLEDGE)]) == KNOWLEDGE
     assert read_knowledge([knowledge_status(Knowledge(windows=1))]) == Knowledge(windows=1)
+    trouble = Knowledge(windows=1, trouble='nothing to divide by')
+    assert read_knowledge([knowledge_status(trouble)]) == trouble
     assert read_knowledge([]) is None
 
 

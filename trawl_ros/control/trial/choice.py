@@ -43,7 +43,8 @@ def waiting_for_advice(knowledge: Knowledge, settings: TrialSettings, waited: fl
     if knowledge.windows == 0:
         return 'for the first window'
     if knowledge.advised < knowledge.windows:
-        return f'for advice after {knowledge.windows} windows, for {waited / 60.0:.0f} min'
+        wish = f'for advice after {knowledge.windows} windows, for {waited / 60.0:.0f} min'
+        return f'{wish}: {knowledge.trouble}' if knowledge.trouble else wish
     if knowledge.looked_up < settings.least_looked_up and waited < settings.advice_patience:
         return (
             f'until {100 * settings.least_looked_up:.0f} % of the manoeuvres are looked up; '

@@ -169,9 +169,7 @@ class Trial:
         before, self._now = self._now, now
         if self._hours() * 3600.0 < -1.0:
             self.memory, self._transit = TrialMemory(), None
-        if before is None:
-            return 0.0
-        return min(max((now - before) / SECOND, 0.0), LONGEST_STEP_S)
+        return 0.0 if before is None else min(max((now - before) / SECOND, 0.0), LONGEST_STEP_S)
 
     def _ready(self, now: int, lost: Sequence[str]) -> bool:
         """True once readings are there; then ship and winches are taken over as they are."""
@@ -186,10 +184,6 @@ class Trial:
             return False
         memory, here = self.memory, self.watch.here()
         self._transit = Transit(self.settings, here)
-        if memory.heading is None and math.isfinite(heading := self.watch.value('heading')):
-            self._keep(heading=heading)
-        if self.memory.heading is not None:
-            self._pilot.steer(HoldHeading(self.memory.heading))
         if memory.began_s is None:
             self._keep(began_s=now / SECOND, target=here)
             self._arrive(now, FIRST_MINUTES)
@@ -272,10 +266,8 @@ class Trial:
 
     def _head_for(self, target: TrialTarget, minutes: float) -> None:
         assert self._transit is not None
-        self._transit.target = target
-        self._at_limit_s = 0.0
+        self._transit.target, self._at_limit_s, self._waits = target, 0.0, ''
         self.memory = self.memory.heading_for(target, minutes)
-        self._waits = ''
 
     def _strike_off(self) -> None:
         """Leave the present target for good and hold until the next is chosen."""
@@ -295,5 +287,13 @@ class Trial:
 
     def _command(self, now: int) -> TrialCommand:
         here = self._here()
-        turn = 0.0 if self.memory.heading is None else self._pilot.turn_rate(now)
-        return TrialCommand(here.port, here.starboard, here.speed, turn)
+        return TrialCommand(here.port, here.starboard, here.speed, self._turn_rate(now))
+
+    def _turn_rate(self, now: int) -> float:
+        heading = self.memory.heading
+        if heading is None:
+            if math.isnan(heading := self.watch.value('heading')):
+                return 0.0
+            self._keep(heading=heading)
+        self._pilot.steer(HoldHeading(heading))
+        return self._pilot.turn_rate(now)

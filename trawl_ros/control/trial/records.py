@@ -70,6 +70,8 @@ class Knowledge:
         Share of all manoeuvres among which was chosen.
     proposals
         Ranked, the best one first.
+    trouble
+        Error of the advice, '' for none.
     """
 
     windows: int = 0
@@ -77,6 +79,7 @@ class Knowledge:
     advised: int = 0
     looked_up: float = 0.0
     proposals: tuple[Proposal, ...] = ()
+    trouble: str = ''
 
     def known(self, share: float) -> int:
         """Number of quantities whose std is below this share of their span."""

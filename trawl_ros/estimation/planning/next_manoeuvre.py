@@ -166,8 +166,7 @@ class Adviser:
         if not fit.windows or not known:
             return ()
         question = _Question.of(fit, self._gear)
-        informed = information_in(fit)
-        now = covariance_from(informed, fit.prior)
+        now = covariance_from(informed := information_in(fit), fit.prior)
         before, log_before = shortfall(question.quantities(now)), np.linalg.slogdet(now)[1]
         timetable, here = self._timetable(known), manoeuvre_of(fit)
         ranked = []
@@ -264,8 +263,9 @@ def _noise_of(fit: Fit) -> Mapping[str, float]:
 
 
 def _minutes(timetable: Timetable, fit: Fit, manoeuvre: Manoeuvre) -> float:
-    """Time from a fit's newest window until those of a manoeuvre are taken."""
-    depth = fit.windows[-1].window.means['net_depth']
+    """Time from a fit's newest window, which may lack a reading, until those of a manoeuvre."""
+    newest = fit.windows[-1]
+    depth = newest.window.means.get('net_depth', float(newest.state.observables.net_depth))
     return minutes_of(timetable.legs((manoeuvre_of(fit), manoeuvre), depth)[1:])
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from trawl_ros.control.trial.records import Knowledge, Proposal, TrialTarget
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages.diagnostics import OK, Status
+from trawl_ros.messages.diagnostics import OK, WARN, Status
 
 NAME = 'identification: proposals'
 NOW = 'now'
@@ -37,6 +37,8 @@ def knowledge_status(knowledge: Knowledge) -> Status:
         )
         for column, value in zip(_COLUMNS, numbers, strict=True):
             values[f'{number} {column}'] = f'{value:.9g}'
+    if knowledge.trouble:
+        return Status(NAME, WARN, knowledge.trouble, values)
     message = f'{len(knowledge.proposals)} manoeuvres after {knowledge.advised} windows'
     return Status(NAME, OK, message, values)
 
@@ -65,6 +67,7 @@ def read_knowledge(statuses: Sequence[Status]) -> Knowledge | None:
         advised=int(_number(status, 'advised')),
         looked_up=_number(status, 'looked up'),
         proposals=tuple(_proposal(number, rows[number]) for number in sorted(rows)),
+        trouble='' if status.level == OK else status.message,
     )
 
 
