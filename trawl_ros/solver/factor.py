@@ -10,7 +10,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.pattern import SparsityPattern
-from trawl_ros.solver.elimination import Elimination, elimination
+from trawl_ros.solver.frontal.elimination import Elimination, elimination
 from trawl_ros.solver.frontal.fronts import factorise, solve
 from trawl_ros.solver.frontal.many_rights import solve_many
 
