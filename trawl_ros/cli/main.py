@@ -37,6 +37,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'scenarios': ('cli.scenarios', 'List the scenarios that come with the package.'),
         'import-log': ('cli.import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
         'bag': ('cli.bag', 'Look into bags, check, repair and export them.'),
+        'policy': ('cli.policy', 'Write the rights of all nodes, for a graph with SROS 2.'),
         'plot': ('cli.plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
     }
 )

@@ -18,13 +18,12 @@ from trawl_ros.nodes.playback.recorded_qos import matching, profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
-from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import recorder_profile
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.runtime.stamping import header_stamp
-from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, TRUTH, absolute
+from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, SYNC, TRUTH, absolute
 
 CONTRACT = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
 NEVER = (CLOCK.name, '/rosout', '/parameter_events')

@@ -26,7 +26,6 @@ from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.model.water import build_water
 from trawl_ros.nodes.runtime.credit import HEADER, ConsumerProgress
-from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names
 from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED, STREAM
@@ -36,6 +35,7 @@ from trawl_ros.nodes.workers.proposals import read_knowledge
 from trawl_ros.nodes.workers.trial_parameters import TRIAL_SPECS, trial_settings
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import RangeSample
+from trawl_ros.records.topics import SYNC
 
 STATUS = 'trial/status'
 IDENTIFICATION = 'identification/status'

@@ -392,6 +392,9 @@ TRANSFORMS = Topic(
     '/tf', 'tf2_msgs/msg/TFMessage', '', 10.0, 'Frames in map, where tf2_msgs is installed.'
 )
 
+SYNC = 'sync/progress'
+"""Topic on which consumers tell how far they have come; sources wait for the slowest."""
+
 TOPICS = {
     topic.name: topic for topic in (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS, CLOCK, TRANSFORMS)
 }

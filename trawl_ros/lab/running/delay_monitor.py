@@ -7,9 +7,9 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.lab.running.monitor import Monitor
 from trawl_ros.messages.stamps import from_time, stamp_of
 from trawl_ros.nodes.runtime.credit import HEADER
-from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.records.topics import SYNC
 
 TRUTH = 'truth/winch'
 """The topic whose stamps are the simulation's present."""

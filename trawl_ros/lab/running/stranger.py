@@ -10,10 +10,9 @@ from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.stamps import header, stamp_of, to_time
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.runtime.credit import HEADER
-from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import STREAM
-from trawl_ros.records.topics import CLOCK, find_topic
+from trawl_ros.records.topics import CLOCK, SYNC, find_topic
 
 FACTOR = 1.15
 """By which a second publisher's readings differ."""

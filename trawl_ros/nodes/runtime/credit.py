@@ -15,9 +15,9 @@ from trawl_ros.core.errors import MessageError
 from trawl_ros.core.limits import CONSUMERS
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.stamps import from_time, header
-from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import STREAM
+from trawl_ros.records.topics import SYNC
 
 HEADER = 'std_msgs/msg/Header'
 INTERVAL_NS = SECOND // 2

@@ -9,9 +9,8 @@ from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
-from trawl_ros.records.topics import CLOCK, COMMANDS, find_topic
+from trawl_ros.records.topics import CLOCK, COMMANDS, SYNC, find_topic
 
-SYNC = 'sync/progress'
 SHARED = ('/diagnostics', SYNC, *(topic.name for topic in COMMANDS))
 """Topics on which several may speak."""
 

@@ -4,6 +4,7 @@ import re
 import signal
 import sys
 import time
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +20,7 @@ from rclpy.utilities import remove_ros_args
 
 from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.foreign import short
+from trawl_ros.nodes.runtime import security
 from trawl_ros.nodes.runtime.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import misspelt
@@ -37,6 +39,8 @@ LONGEST_DRAIN_S = 5.0
 
 SOURCE_PLACES = re.compile(r',?( at)? /project/\S+:\d+')
 """Places in the sources of ROS 2, which are of no use to a reader."""
+
+TAKEN = 'expected arguments and environment as it takes them'
 
 REFUSAL_WIDTH = 400
 """Signs of what ROS 2 says, which may hold the path of a file."""
@@ -123,18 +127,20 @@ def _refusals() -> Iterator[None]:
         if not frame.f_globals['__name__'].startswith('rclpy'):
             raise
         refusal = SOURCE_PLACES.sub('', short(reason, REFUSAL_WIDTH))
-        raise TrawlError(
-            f'ROS 2 refuses to start: {refusal}; expected arguments and environment as it '
-            'takes them'
-        ) from reason
+        # It has no words for an enclave without keys.
+        refusal = refusal.replace(': error not set', '').rstrip('.')
+        expected = security.EXPECTED if security.is_wanted() else TAKEN
+        raise TrawlError(f'ROS 2 refuses to start: {refusal}; {expected}') from reason
 
 
 def _spin(make: Callable[[], TrawlNode], stop: _StopSignals) -> int:
-    with _refusals():
+    with _refusals(), warnings.catch_warnings():
+        warnings.filterwarnings('ignore', message=security.FINISHING)
         node = make()
     node.introduce()
-    for sentence in misspelt(node):
-        node.get_logger().warning(sentence)
+    for sentence in (*misspelt(node), security.objection()):
+        if sentence:
+            node.get_logger().warning(sentence)
     executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
     executor.add_node(node)
     try:

@@ -38,13 +38,12 @@ from trawl_ros.nodes.door_sensor_node import DoorSensorNode
 from trawl_ros.nodes.identification_node import STATUS, IdentificationNode
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import HEADER
-from trawl_ros.nodes.runtime.graph_checks import SYNC
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.sim_node import SimNode
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
 from trawl_ros.nodes.vessel_node import VesselNode
 from trawl_ros.nodes.winch_node import WinchNode
-from trawl_ros.records.topics import absolute
+from trawl_ros.records.topics import SYNC, absolute
 from trawl_ros.scenario.recording import recorded_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import load_scenario

@@ -1,0 +1,98 @@
+"""Every node uses what its rights allow, and no more."""
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.nodes.autopilot_node import AutopilotNode  # noqa: E402
+from trawl_ros.nodes.autotrawl_node import AutotrawlNode  # noqa: E402
+from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
+from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
+from trawl_ros.nodes.discrepancy_node import DiscrepancyNode  # noqa: E402
+from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402
+from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
+from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
+from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
+from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
+from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
+from trawl_ros.records.rights import EVERY_NODE, RIGHTS  # noqa: E402
+from trawl_ros.records.topics import CLOCK, TRANSFORMS, absolute  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 116
+NODES = (
+    AutopilotNode,
+    AutotrawlNode,
+    BagPlayer,
+    BagRecorder,
+    DiscrepancyNode,
+    DoorSensorNode,
+    IdentificationNode,
+    SimNode,
+    TrawlSonarNode,
+    TrialNode,
+    VesselNode,
+    WinchNode,
+)
+AT_TIMES = {'/parameter_events', '/rosout', CLOCK.name, TRANSFORMS.name}
+"""Topics of ROS itself, and those that depend on parameters or on what is installed."""
+
+
+@pytest.fixture(scope='module')
+def used(open_graph, gear_path, tmp_path_factory):
+    """Names of what each node publishes, hears, answers and calls while all of them are there."""
+    with open_graph(DOMAIN) as graph:
+        gear = {'gear': str(gear_path)}
+        parameters = {
+            'SimNode': gear,
+            'IdentificationNode': gear,
+            'DiscrepancyNode': gear,
+            'TrialNode': gear,
+            'BagRecorder': {'output': str(tmp_path_factory.mktemp('rights') / 'bag')},
+            'BagPlayer': {'bag': 'bags/sea_trial', 'start_paused': True},
+        }
+        nodes = [graph.add(kind, **parameters.get(kind.__name__, {})) for kind in NODES]
+        recorder = nodes[NODES.index(BagRecorder)]
+        graph.until(lambda: '/trawl/truth/winch' in recorder.traffic.counts('received'))
+        graph.rest(1.0)
+        return {node.get_name(): names_of(node) for node in nodes}
+
+
+def names_of(node):
+    ways = ('publisher', 'subscriber', 'service', 'client')
+    return [
+        {
+            name
+            for name, _ in getattr(node, f'get_{way}_names_and_types_by_node')(
+                node.get_name(), node.get_namespace()
+            )
+        }
+        for way in ways
+    ]
+
+
+def full(names, node):
+    own = absolute(node)
+    return {name.replace('~', own) if name[0] == '~' else absolute(name) for name in names}
+
+
+def test_all_nodes_are_looked_at(used):
+    assert set(used) == set(RIGHTS)
+
+
+@pytest.mark.parametrize('node', RIGHTS)
+def test_a_node_uses_what_its_rights_allow(used, node):
+    rights = RIGHTS[node]
+    published, heard, answered, called = used[node]
+    allowed = full((*EVERY_NODE.publishes, *rights.publishes), node)
+    hearable = full((*EVERY_NODE.hears, *rights.hears), node)
+    assert published <= allowed
+    assert heard <= hearable
+    assert answered == full((*EVERY_NODE.answers, *rights.answers), node)
+    assert called == full(rights.calls, node)
+    # No right is idle, but those on which a player depends on its bag, and all on their use.
+    if node != 'bag_player':
+        assert allowed - published <= AT_TIMES
+        assert hearable - heard <= AT_TIMES

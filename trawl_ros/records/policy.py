@@ -1,0 +1,55 @@
+"""Policy of a secured graph: the rights of all nodes as SROS 2 reads them.
+
+The form is that of ``policy.xsd`` (0.2.0) of the package ``sros2``, which makes keys and
+permissions from it: ``ros2 security generate_artifacts -k KEYSTORE -p policy.xml``.
+"""
+
+from xml.etree import ElementTree
+
+from trawl_ros.records.rights import EVERY_NODE, OPERATOR, RIGHTS, Rights, operator_rights
+from trawl_ros.records.topics import NAMESPACE
+
+VERSION = '0.2.0'
+"""Version of the form."""
+
+
+def policy(namespace: str = NAMESPACE) -> str:
+    """Write the policy of all nodes in a namespace, each with an enclave of its own.
+
+    Parameters
+    ----------
+    namespace
+        Of the nodes, without slashes at its ends. The enclave of a node is its full name.
+
+    Returns
+    -------
+    str
+        XML, one line for each topic or service.
+    """
+    root = ElementTree.Element('policy', version=VERSION)
+    enclaves = ElementTree.SubElement(root, 'enclaves')
+    for node, rights in {**RIGHTS, OPERATOR: operator_rights()}.items():
+        enclave = ElementTree.SubElement(enclaves, 'enclave', path=f'/{namespace}/{node}')
+        profiles = ElementTree.SubElement(enclave, 'profiles')
+        profile = ElementTree.SubElement(profiles, 'profile', ns=f'/{namespace}', node=node)
+        for what, kind, names in _granted(rights):
+            granted = ElementTree.SubElement(profile, f'{what}s', {kind: 'ALLOW'})
+            for name in sorted(set(names)):
+                ElementTree.SubElement(granted, what).text = name
+    ElementTree.indent(root)
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<!-- Rights of each node, written by `trawl policy`. -->\n'
+        f'{ElementTree.tostring(root, encoding="unicode")}\n'
+    )
+
+
+def _granted(rights: Rights) -> list[tuple[str, str, tuple[str, ...]]]:
+    """Return element, attribute and names of each list that is not empty."""
+    lists = [
+        ('topic', 'publish', (*EVERY_NODE.publishes, *rights.publishes)),
+        ('topic', 'subscribe', (*EVERY_NODE.hears, *rights.hears)),
+        ('service', 'reply', (*EVERY_NODE.answers, *rights.answers)),
+        ('service', 'request', rights.calls),
+    ]
+    return [entry for entry in lists if entry[2]]
