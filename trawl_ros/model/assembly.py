@@ -52,7 +52,7 @@ class Points:
 def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     """Positions and velocities of all points at which bars can end."""
     fastening, outward, *moving = alike(
-        model.board.fastening_points,
+        model.board.fastening_by_side,
         OUTWARD,
         state.nodes,
         state.node_velocities,

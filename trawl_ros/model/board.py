@@ -27,6 +27,11 @@ from trawl_ros.model.numerics import STEP, angle, transpose
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.water import Water
 
+Angles = tuple[float, float, float]
+"""Installation angles ε, ζ, η, rad."""
+
+ALIKE: Angles = (0.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True)
 class Board:
@@ -59,6 +64,9 @@ class Board:
         Added mass along the board's axes, kg; zero as in eq. 15, or by the gear file.
     bend : Bend or None
         Modifier of the coefficients of the law; None leaves them as they are.
+    rerigged : tuple of tuples of float
+        By how much (rad) the installation angles of the port and of the starboard board differ
+        from ``installation``.
     law : TableLaw or None
         Law in place of eq. 14, whose coefficients are then corrections to it; None is eq. 14.
     """
@@ -70,7 +78,7 @@ class Board:
     span: float
     chord: float
     points: FloatArray
-    installation: tuple[float, float, float]
+    installation: Angles
     moment_signs: tuple[float, float, float]
     slip_sign: float
     flow_axes: bool
@@ -78,6 +86,7 @@ class Board:
     added_mass: FloatArray
     bend: CoefficientModifier | None = None
     law: TableLaw | None = None
+    rerigged: tuple[Angles, Angles] = (ALIKE, ALIKE)
 
     @property
     def law_range(self) -> tuple[float, float]:
@@ -87,13 +96,19 @@ class Board:
     @cached_property
     def installed(self) -> FloatArray:
         """Rotation (3, 3) of the installation angles: points times it are in the board frame."""
-        yaw, pitch, roll = self.installation
-        return about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
+        return _turn(self.installation)
 
     @cached_property
     def fastening_points(self) -> FloatArray:
         """Fastening points (3, 3) in the outward board frame, installation angles applied."""
         return self.points @ self.installed
+
+    @cached_property
+    def fastening_by_side(self) -> FloatArray:
+        """Fastening points (2, 3, 3) of either board in its outward frame."""
+        turns = [np.add(self.installation, own) for own in self.rerigged]
+        points: FloatArray = np.stack([self.points @ _turn(turn) for turn in turns])
+        return points
 
     @cached_property
     def rotary_resistance(self) -> FloatArray:
@@ -114,10 +129,23 @@ class Board:
         return levers
 
     @cached_property
-    def middle(self) -> FloatArray:
-        """Mean (3,) of the fastening points in the outward frame, m, whose velocity eq. 4 takes."""
-        mean: FloatArray = self.fastening_points.sum(0) / 3
-        return mean
+    def middles(self) -> FloatArray:
+        """Means (2, 3) of either board's fastening points in its outward frame, m: the places whose
+        velocity eq. 4 takes.
+        """
+        means: FloatArray = self.fastening_by_side.sum(1) / 3
+        return means
+
+    def middle(self, outward: FloatArray) -> FloatArray:
+        """Mean (..., 3) of the fastening points of the board on this side (...,)."""
+        port, starboard = self.middles
+        middle: FloatArray = np.where(np.real(outward)[..., None] > 0.0, port, starboard)
+        return middle
+
+
+def _turn(angles: Angles | FloatArray) -> FloatArray:
+    yaw, pitch, roll = angles
+    return about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
 
 
 def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) -> FloatArray:
@@ -190,7 +218,7 @@ def flow_at(
     outward = np.broadcast_to(outward, shape)
     relative = np.broadcast_to(water.current(position[..., 2]) - velocity, (*shape, 3))
     given = (
-        board.middle,
+        board.middle(outward.ravel()),
         outward.ravel(),
         np.broadcast_to(rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
         relative.reshape(-1, 3),
@@ -255,10 +283,11 @@ def own_load(
     shape = np.broadcast_shapes(
         np.shape(outward), position.shape[:-1], rotation.shape[:-2], velocity.shape[:-1]
     )
+    side = _flat(outward, shape)
     given = (
         values,
-        board.middle,
-        _flat(outward, shape),
+        board.middle(side),
+        side,
         _flat(position, shape, 3),
         _flat(rotation, shape, 3, 3),
         _flat(velocity, shape, 3),
@@ -319,7 +348,7 @@ def own_load_slopes(
     moving = position, rotation, velocity, rate
     steps = values + 1j * STEP * np.eye(len(values))
     if board.bend is None and board.law is None:
-        _, *rest = as_kind(complex, values, board.middle, outward, *moving)
+        _, *rest = as_kind(complex, values, board.middle(outward), outward, *moving)
         loads = [_by_formula(board, [step, *rest], water) for step in steps]
     else:
         loads = [own_load(board, step, outward, *moving, water) for step in steps]

@@ -121,8 +121,8 @@ def fill_flow(
     for n in range(len(flow)):
         turn, spin = rotation[n], rate[n]
         for i in range(3):
-            arm[i] = turn[i, 0] * middle[0] + turn[i, 2] * middle[2]
-            arm[i] += outward[n] * turn[i, 1] * middle[1]
+            arm[i] = turn[i, 0] * middle[n, 0] + turn[i, 2] * middle[n, 2]
+            arm[i] += outward[n] * turn[i, 1] * middle[n, 1]
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
             relative[i] = water_less_velocity[n, i] - (spin[j] * arm[k] - spin[k] * arm[j])

@@ -15,7 +15,7 @@ from trawl_ros.gear.polars import polar_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
-from trawl_ros.model.hooks import NodeForce
+from trawl_ros.model.hooks import CoefficientModifier, InTurn, NodeForce
 from trawl_ros.model.kite import Kite
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.net.catch import CodendCatch, place_catch
@@ -93,8 +93,8 @@ class GearModel:
     ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
     Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m², ``lump_added``
-    kg per kg/m³ of water. ``node_forces`` are forces beyond the paper's, ``catch`` what lies in the
-    codend.
+    kg per kg/m³ of water; ``floats`` (4, n) are those of the floats among them, in this order.
+    ``node_forces`` are forces beyond the paper's, ``catch`` what lies in the codend.
 
     Examples
     --------
@@ -117,6 +117,7 @@ class GearModel:
     lump_volume: FloatArray
     lump_drag_area: FloatArray
     lump_added: FloatArray
+    floats: FloatArray
     layout: NodeLayout
     first_guess: FloatArray
     net_mesh: NetMesh
@@ -179,6 +180,11 @@ class GearModel:
         # Names and types are the caller's: `replace` refuses what a board has not.
         board = replace(self.board, **changes)  # type: ignore[arg-type]
         return replace(self, board=board)
+
+    def with_modifier(self, modifier: CoefficientModifier) -> 'GearModel':
+        """The same gear whose boards' coefficients are modified, after any other modifier."""
+        bend = self.board.bend
+        return self.with_board(bend=modifier if bend is None else InTurn(bend, modifier))
 
     def with_net(self, drag: float, weight: float) -> 'GearModel':
         """The same gear with this many times the drag coefficients and the weight in water of all
@@ -331,6 +337,7 @@ def build_model(gear: GearRecord) -> GearModel:
     # Knots are made of the twine they join: their mass is the first body section's density.
     lumps[0, net] += mesh.knot_volume * mesh.knot_density
     clump, floats = gear.clump, gear.floats
+    buoyant = np.zeros(lumps.shape)
     for rim, force, density, drag_area in (
         (mesh.footrope, clump.weight_in_water_n, clump.density_kg_m3, clump.drag_area_m2),
         (mesh.headrope, -floats.buoyancy_n, floats.density_kg_m3, floats.drag_area_m2),
@@ -338,13 +345,15 @@ def build_model(gear: GearRecord) -> GearModel:
         volume = force / water.gravity / (density - water.density)
         # A compact body: half its volume of added mass, as a sphere.
         for tip in (net[rim[0]], net[rim[-1]]):
-            lumps[:, tip] += (density * volume, volume, drag_area, 0.5 * volume)
+            body = np.array([density * volume, volume, drag_area, 0.5 * volume])
+            (lumps if force > 0.0 else buoyant)[:, tip] += body
     for item in gear.hung:
         for nodes, shares, force in hung_places(build, item):
             volume = force / water.gravity / (item.density - water.density)
             body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
             # A rope passes each node once.
-            lumps[:, nodes] += body[:, None] * shares
+            (lumps if force > 0.0 else buoyant)[:, nodes] += body[:, None] * shares
+    lumps += buoyant
     guess = np.full((build.count, 3), np.nan)
     guess[net] = mesh.positions
     ends = np.array([[build.resolve(a), build.resolve(b)] for a, b in build.ends])
@@ -363,6 +372,7 @@ def build_model(gear: GearRecord) -> GearModel:
         lump_volume=lumps[1],
         lump_drag_area=lumps[2],
         lump_added=lumps[3],
+        floats=buoyant,
         layout=NodeLayout(
             warps=(warps[0], warps[1]),
             bridles=tuple(bridles),

@@ -5,12 +5,13 @@ these two are for what neither can say. Both are called with complex numbers as 
 derivatives are taken by the complex step.
 """
 
+from dataclasses import dataclass
 from typing import Protocol
 
 from trawl_ros.core.arrays import FloatArray
 
-LIFT = 1
-"""Place of C_y^F among the coefficients that a board's law gives."""
+DRAG, LIFT = 0, 1
+"""Places of C_x^F and C_y^F among the coefficients that a board's law gives."""
 
 
 class CoefficientModifier(Protocol):
@@ -32,6 +33,20 @@ class CoefficientModifier(Protocol):
             up.
         """
         ...
+
+
+@dataclass(frozen=True)
+class InTurn:
+    """Coefficient modifier that applies one after another."""
+
+    first: CoefficientModifier
+    then: CoefficientModifier
+
+    def __call__(
+        self, coefficients: FloatArray, attack: FloatArray, slip: FloatArray, lean: FloatArray
+    ) -> FloatArray:
+        """Return the coefficients modified by both."""
+        return self.then(self.first(coefficients, attack, slip, lean), attack, slip, lean)
 
 
 class NodeForce(Protocol):

@@ -26,7 +26,7 @@ def fill_points(
     arms: FloatArray,
 ) -> None:
     """Fill in positions and velocities (p, 3) of all points, and the arms (2, 3, 3) of the
-    fastening points (3, 3), which are given in the outward frame.
+    fastening points (2, 3, 3), which are given in the outward frame.
     """
     count = len(nodes)
     for n in range(count):
@@ -36,10 +36,11 @@ def fill_points(
         turn, spin = rotations[side], rates[side]
         for point in range(3):
             arm, row = arms[side, point], count + 3 * side + point
-            aside = fastening[point, 1] * outward[side]
+            fixed = fastening[side, point]
+            aside = fixed[1] * outward[side]
             for i in range(3):
-                arm[i] = turn[i, 0] * fastening[point, 0] + turn[i, 1] * aside
-                arm[i] += turn[i, 2] * fastening[point, 2]
+                arm[i] = turn[i, 0] * fixed[0] + turn[i, 1] * aside
+                arm[i] += turn[i, 2] * fixed[2]
             for i in range(3):
                 j, k = (i + 1) % 3, (i + 2) % 3
                 x[row, i] = boards[side, i] + arm[i]
