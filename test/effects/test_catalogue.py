@@ -15,7 +15,10 @@ PROMISED = {
     'current_shear', 'cross_current', 'speed_log', 'warp_strumming', 'counter_scale',
     'counter_offset', 'warp_asymmetry', 'catch_build_up', 'net_drag', 'board_stall', 'tilt_lift',
     'gear_weight', 'depth_sensor', 'tension_cell', 'spread_sensor', 'heave', 'bottom_contact',
-    'board_added_mass',
+    'board_added_mass', 'board_rigging', 'port_board_rigging', 'starboard_board_rigging',
+    'board_damage', 'port_board_damage', 'starboard_board_damage', 'bridle_length',
+    'port_bridle_length', 'starboard_bridle_length', 'floats', 'kite', 'port_clump',
+    'starboard_clump', 'swapped_doors', 'swapped_cells', 'attitude_mount', 'leeway',
 }  # fmt: skip
 
 FOREIGN = Effect(

@@ -60,7 +60,7 @@ def test_it_has_the_derivatives_it_claims(model, coefficients, plain, name):
     place = len(coefficients)
     for index in (1, *range(place, len(here))):
         std = [parameter.std for parameter in effect.parameters]
-        size = 0.01 * std[index - place] if place <= index < len(here) - 3 else 0.01
+        size = 0.001 * std[index - place] if place <= index < len(here) - 3 else 0.01
         step = size * np.eye(len(here))[index]
         slope = (predicted(here + step).values - predicted(here - step).values) / (2.0 * size)
         scale = 1e-3 * np.abs(slope).max()

@@ -32,6 +32,10 @@ def _print(effect: Effect, console: Console) -> None:
         table.add_row(f'   {parameter.name}', parameter.unit or '–', *map(_number, _of(parameter)))
     console.print(table)
     console.print(f'  Shown by {effect.excited_by}.', soft_wrap=True)
+    if effect.causes:
+        console.print(f'  Looks like this: {effect.causes}', soft_wrap=True)
+    if effect.direct:
+        console.print(f'  To check: {effect.direct}', soft_wrap=True)
     if effect.confused_with:
         console.print(f'  Easily confused with {", ".join(effect.confused_with)}.', soft_wrap=True)
     console.print()

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 from types import MappingProxyType
 
 import trawl_ros.effects.catalogue
@@ -49,11 +49,12 @@ def catalogue() -> Mapping[str, Effect]:
 
 
 def _own() -> Iterator[tuple[str, Effect]]:
-    own = trawl_ros.effects.catalogue
-    for module in iter_modules(own.__path__, f'{own.__name__}.'):
-        effect = getattr(import_module(module.name), 'EFFECT', None)
-        if isinstance(effect, Effect):
-            yield module.name, effect
+    folder = trawl_ros.effects.catalogue
+    for module in walk_packages(folder.__path__, f'{folder.__name__}.'):
+        own = import_module(module.name)
+        for effect in getattr(own, 'EFFECTS', (getattr(own, 'EFFECT', None),)):
+            if isinstance(effect, Effect):
+                yield module.name, effect
 
 
 def _foreign() -> Iterator[tuple[str, Effect]]:

@@ -32,8 +32,14 @@ DEPTHS = {
     'sonar': 'net_depth',
 }
 RANGES = {'spread': 'door_spread', 'opening_height': 'vertical_opening'}
+OTHER = {'port': 'starboard', 'starboard': 'port'}
 USUAL = np.array([500.0, 500.0, 2.0])
 """Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
+
+
+def _other_side(name: str) -> str:
+    side, _, quantity = name.partition('_')
+    return f'{OTHER[side]}_{quantity}' if side in OTHER else name
 
 
 class SensorEffects:
@@ -51,6 +57,7 @@ class SensorEffects:
         self._effect_set = effect_set
         self._water = water
         self._first: int | None = None
+        self._last: Readings = {}
 
     def __call__(self, sample: Sample) -> Sample:
         """Return the sample with the effects applied."""
@@ -93,8 +100,13 @@ class SensorEffects:
                 return sample
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
-        """Readings of sensors; each depends on one observable, so that others need not be known."""
-        return self._effect_set.apply_to_sensors({**dict.fromkeys(OBSERVABLES, 0.0), **known}, at)
+        """Readings of sensors; each depends on its own observable, and on that of the other side as
+        it was last, or is the same there before that is known.
+        """
+        self._last.update(known)
+        both = {_other_side(name): value for name, value in known.items()}
+        true = {**dict.fromkeys(OBSERVABLES, 0.0), **both, **self._last}
+        return self._effect_set.apply_to_sensors(true, at)
 
     def _instrument(self, true: FloatArray, at: Situation) -> FloatArray:
         """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""

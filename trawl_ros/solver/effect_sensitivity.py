@@ -69,7 +69,7 @@ def chained(
                     [(acting, one, replace(at, inputs=_three(one))) for one in both])
         )  # fmt: skip
     by_inputs = _carried(model, found, jacobian, acting, rows, at)
-    by_coefficients = sensor_slopes(acting, found, at)[:, None] * jacobian[:, :-3]
+    by_coefficients = sensor_slopes(acting, found, at) @ jacobian[:, :-3]
     return np.hstack((by_coefficients, by_inputs))
 
 
@@ -156,18 +156,24 @@ def _carried(
         shifts = solve_refined(rest_linearisation(gear, found.state, found.tow).factor, pushes)
         along = observed_slopes(gear, found.state, found.tow, shifts)[1]
     change = along + direct + jacobian[:, -3:] @ towed
-    readings: FloatArray = sensor_slopes(acting, found, at)[:, None] * change + shown
+    readings: FloatArray = sensor_slopes(acting, found, at) @ change + shown
     return readings
 
 
 def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> FloatArray:
-    """Gain (n_observables,) of each sensor: slope of its reading over the observable."""
+    """Slopes (n_observables, n_observables) of the sensors' readings by the observables.
+
+    Most sensors show their own observable alone; swapped ones show that of the other side.
+    """
     values = found.observables.array()
     if not acting:
-        return np.ones(len(values))
-    size = 1e-6 * np.maximum(np.abs(values), 1e-3)
-    up, down = (shown_values(acting, values + sign * size, at) for sign in (1.0, -1.0))
-    return (up - down) / (2.0 * size)
+        return np.eye(len(values))
+    sizes = 1e-6 * np.maximum(np.abs(values), 1e-3)
+    columns = []
+    for step, size in zip(np.diag(sizes), sizes, strict=True):
+        up, down = (shown_values(acting, values + sign * step, at) for sign in (1.0, -1.0))
+        columns.append((up - down) / (2.0 * size))
+    return np.column_stack(columns)
 
 
 def _three(inputs: FloatArray) -> tuple[float, float, float]:

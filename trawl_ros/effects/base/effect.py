@@ -110,6 +110,9 @@ class Effect:
         Direct check without any tow, in one sentence; empty where there is none.
     instrument
         Instrument whose error it is, where that may have others too; empty for physics.
+    causes
+        Causes on deck, in the gear or in an instrument that look like this, in one sentence; empty
+        where ``sentence`` says it.
 
     Examples
     --------
@@ -135,6 +138,7 @@ class Effect:
     dynamic: bool = False
     direct: str = ''
     instrument: str = ''
+    causes: str = ''
 
     @property
     def neutral(self) -> FloatArray:

@@ -1,1 +1,1 @@
-"""The known effects, one file each, with its `EFFECT`."""
+"""The known effects by what they act on, each file with its `EFFECT` or `EFFECTS`."""

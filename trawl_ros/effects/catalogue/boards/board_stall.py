@@ -37,7 +37,7 @@ class BoardStall(Effect):
 
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with boards that stall."""
-        return model.with_board(bend=Stalled(float(values[0])))
+        return model.with_modifier(Stalled(float(values[0])))
 
 
 EFFECT = BoardStall(

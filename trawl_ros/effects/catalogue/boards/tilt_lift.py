@@ -31,7 +31,7 @@ class TiltLift(Effect):
 
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with boards whose lift depends on their tilt."""
-        return model.with_board(bend=Tilted(float(values[0])))
+        return model.with_modifier(Tilted(float(values[0])))
 
 
 EFFECT = TiltLift(

@@ -1,0 +1,1 @@
+"""Effects of the boards: their law, their rigging, their damage."""

@@ -1,0 +1,1 @@
+"""Effects of ropes, weights, floats and net."""

@@ -1,0 +1,1 @@
+"""Effects of instruments: their errors."""

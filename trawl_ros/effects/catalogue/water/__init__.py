@@ -1,0 +1,1 @@
+"""Effects of the water: currents, leeway, sea and ground."""
