@@ -6,7 +6,7 @@ evidence for each is a χ², and so are rivalry and what a trial could have show
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtrc, ndtri
@@ -90,6 +90,11 @@ class Evidence:
             self.score - gain @ self.score[rows],
             self.root - taken @ self.root,
         )
+
+    def with_noise(self, chance: np.random.Generator) -> 'Evidence':
+        """Evidence of the same data with as much noise again, drawn by chance."""
+        drawn = chance.standard_normal(len(self.root)) @ self.root
+        return replace(self, score=self.score + drawn)
 
     def _of(self, block: Sequence[int]) -> FloatArray:
         return self.information[np.ix_(list(block), list(block))]

@@ -98,7 +98,7 @@ class HoldoutComparison:
 
 
 def errors(
-    fits: Sequence[tuple[Predictor, Refit]], windows: Sequence[SteadyWindow]
+    predictor: Predictor, refits: Sequence[Refit], windows: Sequence[SteadyWindow]
 ) -> list[HoldoutErrors]:
     """Errors of fits on windows that none of them was fitted to.
 
@@ -106,18 +106,20 @@ def errors(
 
     Parameters
     ----------
-    fits
-        The gear with the effects of each fit free, and the fit.
+    predictor
+        The gear.
+    refits
+        Of boards and effects.
     windows
         To be predicted.
     """
     rows = []
     for window in windows:
         try:
-            rows.append([_predicted(predictor, refit, window) for predictor, refit in fits])
+            rows.append([predicted(predictor, refit, window) for refit in refits])
         except NoSteadyState:
             continue
-    return [_gathered([row[place] for row in rows]) for place in range(len(fits))]
+    return [_gathered([row[place] for row in rows]) for place in range(len(refits))]
 
 
 def holdout_comparison(
@@ -141,11 +143,7 @@ def holdout_comparison(
     if not windows:
         return None
     refits = [refit for refit in (base, best, placebo) if refit is not None]
-    free = [
-        replace(predictor, free=tuple(candidate.effect for candidate in refit.wanted))
-        for refit in refits
-    ]
-    compared = iter(errors(list(zip(free, refits, strict=True)), windows))
+    compared = iter(errors(predictor, refits, windows))
     return HoldoutComparison(
         before=next(compared),
         after=None if best is None else next(compared),
@@ -154,11 +152,28 @@ def holdout_comparison(
     )
 
 
-def _predicted(predictor: Predictor, refit: Refit, window: SteadyWindow) -> Linearised:
+def predicted(predictor: Predictor, refit: Refit, window: SteadyWindow) -> Linearised:
+    """Predict a window that a refit was not fitted to, from the state nearest to it.
+
+    Parameters
+    ----------
+    predictor
+        The gear.
+    refit
+        Of boards and effects.
+    window
+        To be predicted.
+
+    Raises
+    ------
+    NoSteadyState
+        If the gear has none there.
+    """
+    free = replace(predictor, free=tuple(candidate.effect for candidate in refit.wanted))
     places = np.array([linear.inputs for linear in refit.fit.windows])
     away = np.abs(places / measured_inputs(window) - 1.0).sum(axis=1)
     near = refit.fit.windows[int(np.argmin(away))].state
-    return linearise(predictor, OBSERVABLES, window, refit.estimate.values, (near, None))
+    return linearise(free, OBSERVABLES, window, refit.estimate.values, (near, None))
 
 
 def _gathered(linearised: Sequence[Linearised]) -> HoldoutErrors:

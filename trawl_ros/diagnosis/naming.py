@@ -23,8 +23,10 @@ from trawl_ros.diagnosis.rules import (
 )
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, twins, weigh
+from trawl_ros.diagnosis.worsening import worsened
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.relinearise import with_those_of
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.solver.predict import Predictor
 
 REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)
@@ -71,6 +73,7 @@ def name(
     predictor: Predictor,
     base: Refit,
     test: ScoreTest,
+    kept_back: Sequence[SteadyWindow] = (),
     on_progress: OnProgress = ignore,
 ) -> Named:
     """Name the detected effect, or say why it cannot be named.
@@ -83,6 +86,8 @@ def name(
         Boards alone.
     test
         Result of the score test.
+    kept_back
+        Windows that decided nothing so far, on which the best effect is to make nothing worse.
     on_progress
         Called before each refit.
     """
@@ -115,6 +120,7 @@ def name(
     rivals = _rivals(test, weighed)
     grounds = Grounds(
         delta_bic=best.doubted_bic,
+        gain=best.gain[0],
         gain_low=best.gain[1],
         share=best.share,
         at_bound=best.refit.at_bound(),
@@ -122,6 +128,7 @@ def name(
         left_share=left.share,
         rivals=rivals,
         noise=max(best.refit.fit.scales),
+        worse=worsened(predictor, base, best.refit, kept_back),
     )
     verdict, reason = judge(grounds)
     if verdict == 'AMBIGUOUS':

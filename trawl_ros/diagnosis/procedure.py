@@ -95,14 +95,14 @@ def diagnose_windows(
             reason='nothing in the readings is beyond what boards and errors explain',
             holdout=holdout_comparison(predictor, base, None, None, kept_back),
         )
-    named = name(predictor, base, test, on_progress)
+    named = name(predictor, base, test, kept_back, on_progress)
     if named.lost:
         on_progress(_step('leaving out what has no steady state with the best effect'))
         remaining = tuple(window for window in deciding if window.index not in named.lost)
         if (again := fit(predictor, prior, remaining)) is not None:
             base, test = again, score_test(predictor, again.fit, catalogue())
             known = replace(known, base=base, score_test=test)
-            named = name(predictor, base, test, on_progress)
+            named = name(predictor, base, test, kept_back, on_progress)
     best = named.weighed[0].refit if named.weighed else None
     placebo, term = None, None
     if named.verdict == 'UNKNOWN':

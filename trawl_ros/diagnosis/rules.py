@@ -39,6 +39,10 @@ where it is less, for at sea no effect has the very form that a catalogue gives 
 FIT_AT_ALL = 1e-8
 """Probability below which even a small part of what is explained is too much to be left over."""
 
+WORSE, WORSE_BY = 1e-3, 10.0
+"""A repair makes a quantity worse where what it misses by, on what was kept back, has a smaller
+probability than the first from errors, and a χ² larger by the second than with the boards alone."""
+
 ALIKE = 0.98
 """Cosine from where two effects are one class for the trial at hand: with less than 0.98 the right
 one of two is named in 97 % of trials at six times the detectable size."""
@@ -54,10 +58,10 @@ FEWEST_STATES = 3
 """Steady states without which nothing can be tested."""
 
 FEWEST_TOWS = 8
-"""So many tows are drawn anew; of fewer each is left out in turn."""
+"""So many tows are drawn anew; where there are fewer it is noise that is drawn."""
 
 FEWEST_UNITS = 3
-"""With fewer tows it is steady states that are left out."""
+"""With fewer tows it is steady states that are left out to find what each gains."""
 
 NOWHERE_NEAR, NEAR = 10.0, 3.0
 """Noise found over noise stated, boards alone, from where it is another gear if no effect has a
@@ -83,8 +87,8 @@ class Grounds:
     ----------
     delta_bic
         By how much it lowers the criterion, with errors as large as they may be.
-    gain_low
-        Lower end of the interval of what left-out tows gain, χ² per tow.
+    gain, gain_low
+        Mean of what left-out tows gain, χ² per tow, and the lower end of its interval.
     share
         Part of the resampled trials in which it is the best.
     at_bound
@@ -95,9 +99,12 @@ class Grounds:
         Effects that are not excluded and not of its class.
     noise
         Largest noise found over noise stated, with the effect.
+    worse
+        Quantities that it makes worse on what was kept back, beyond their errors.
     """
 
     delta_bic: float
+    gain: float
     gain_low: float
     share: float
     at_bound: bool
@@ -105,6 +112,7 @@ class Grounds:
     left_share: float
     rivals: tuple[str, ...]
     noise: float = 1.0
+    worse: tuple[str, ...] = ()
 
 
 def leaves_too_much(left_over: float, left_share: float) -> bool:
@@ -123,17 +131,27 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
         return 'UNKNOWN', (
             f'with the best effect noise would have to be {grounds.noise:.1f} times what is stated'
         )
+    if grounds.worse:
+        listed = ' and '.join(name.replace('_', ' ') for name in grounds.worse)
+        return 'AMBIGUOUS' if grounds.rivals else 'UNKNOWN', (
+            f'on what was kept back the best effect makes {listed} worse than the boards alone, '
+            'beyond what errors explain'
+        )
     if grounds.rivals:
         return 'AMBIGUOUS', f'{", ".join(grounds.rivals)} would explain it nearly as well'
-    if grounds.delta_bic < LEAST_BIC:
-        return 'UNKNOWN', (
-            f'with errors {DOUBT:g} times as large the best effect lowers BIC by '
-            f'{grounds.delta_bic:.1f} only'
-        )
     if grounds.at_bound:
         return 'UNKNOWN', 'the best effect would have to be stronger than is possible'
-    if grounds.gain_low <= 0.0:
+    if grounds.delta_bic <= 0.0 or grounds.gain <= 0.0:
         return 'UNKNOWN', 'the best effect does not help to predict what was left out'
+    if grounds.delta_bic < LEAST_BIC:
+        return 'AMBIGUOUS', (
+            f'the evidence is too weak to name it: with errors {DOUBT:g} times as large it lowers '
+            f'BIC by {grounds.delta_bic:.1f} only'
+        )
+    if grounds.gain_low <= 0.0:
+        return 'AMBIGUOUS', (
+            'the evidence is too weak to name it: not all that was left out is predicted better'
+        )
     if grounds.share < LEAST_SHARE:
         return 'AMBIGUOUS', (
             f'in {1.0 - grounds.share:.0%} of the resampled trials another effect is the best'

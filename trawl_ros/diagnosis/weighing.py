@@ -13,7 +13,7 @@ from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, l
 from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
 
 DRAWS = 100
-"""Number of bootstrap draws of the tows."""
+"""Number of bootstrap draws of the tows, or of the noise."""
 
 CONFIDENCE = 0.95
 GAIN_DRAWS = 2000
@@ -105,7 +105,7 @@ def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
 def _resampled(
     test: ScoreTest, refits: Sequence[Refit], criteria: Sequence[float]
 ) -> tuple[list[FloatArray], list[str]]:
-    """Bootstrap: gains of each unit left out, and the best effect of each resampled trial.
+    """Bootstrap: gains of each unit left out, and the best effect of each trial drawn anew.
 
     Both to first order; ``criteria`` are what refits came to, by which the order is set right.
     """
@@ -122,12 +122,14 @@ def _resampled(
             test.of_windows([row for row, own in enumerate(states) if own != state])
             for state in dict.fromkeys(states)
         ]
-    trials = left_out
-    if number >= FEWEST_TOWS:
-        chance = np.random.default_rng(0)
-        trials = [
-            test.resampled(chance.integers(number, size=number).tolist()) for _ in range(DRAWS)
-        ]
+    chance = np.random.default_rng(0)
+    trials = [
+        # Of few tows one may hold all the evidence there is: then it is noise that is drawn anew.
+        test.resampled(chance.integers(number, size=number).tolist())
+        if number >= FEWEST_TOWS
+        else test.evidence.with_noise(chance)
+        for _ in range(DRAWS)
+    ]
     gains = [
         np.array([test.evidence.chi2(block) - rest.chi2(block) for rest in left_out])
         for block in blocks
