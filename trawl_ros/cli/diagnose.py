@@ -18,6 +18,7 @@ from trawl_ros.cli.options import (
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.what_to_do import what_to_do
 from trawl_ros.diagnosis.report.writing import MODEL
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
@@ -74,6 +75,7 @@ def _print(diagnosis: Diagnosis, out: Path) -> None:
     console.print(f'{diagnosis.verdict}. {headline(diagnosis)}', style='bold', markup=False)
     for sentence in sentences(diagnosis):
         console.print(sentence, markup=False)
+    console.print(f'What to do now: {what_to_do(diagnosis)}', markup=False)
     console.print(f'Report: {out / "report.html"}', markup=False)
     if diagnosis.repair is not None:
         console.print(f'The gear with that in it: {out / MODEL}', markup=False)

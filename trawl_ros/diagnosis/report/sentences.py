@@ -1,6 +1,7 @@
 """Sentences of a diagnosis, the verdict first."""
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
+from trawl_ros.diagnosis.report.common_units import in_common_unit
 from trawl_ros.diagnosis.rules import FALSE_ALARMS
 from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.gear.parts import own_parts
@@ -30,7 +31,12 @@ def _headline(diagnosis: Diagnosis) -> str:
         return f'{start}, and the effect is {_effects(diagnosis)}.'
     if diagnosis.verdict == 'AMBIGUOUS':
         return f'{start}, and the effect may be {_effects(diagnosis)}, but {diagnosis.reason}.'
-    return f'{start}, and no effect of the catalogue explains it: {diagnosis.reason}.'
+    if best := diagnosis.best:
+        # A name without its size would be taken for a finding.
+        partly = f'; the gear acts partly like {_names(best)}, which is not enough'
+    else:
+        partly = ''
+    return f'{start}, and no effect of the catalogue explains it{partly}: {diagnosis.reason}.'
 
 
 def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -97,7 +103,7 @@ def _effects(diagnosis: Diagnosis) -> str:
     for name, values in values_of(best.refit).items():
         listed = ', '.join(
             f'{parameter.replace("_", " ")} {value:.3g}{" " + unit if unit else ""} '
-            f'({low:.3g} to {high:.3g})'
+            f'({low:.3g} to {high:.3g}){in_common_unit(value, low, high, unit)}'
             for parameter, (value, low, high, unit) in values.items()
         )
         phrases.append(f'{name.replace("_", " ")}, {listed}')

@@ -9,6 +9,7 @@ from trawl_ros.diagnosis.repair import SourceBag, gear_text, repaired
 from trawl_ros.diagnosis.report.figures import drawings
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.what_to_do import what_to_do
 from trawl_ros.report.pictures import by_section, draw, embedded
 from trawl_ros.report.rendering import page
 
@@ -46,6 +47,7 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
             result={**numbers, 'gear': diagnosis.gear.name},
             headline=headline(diagnosis),
             sentences=sentences(diagnosis),
+            what_to_do=what_to_do(diagnosis),
             sections=by_section(pictures),
             repaired=gear is not None,
             added_as=diagnosis.added_as,
