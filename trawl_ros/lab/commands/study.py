@@ -280,6 +280,9 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
 @click.option('--poor', default=DiscrepancyPlan.poor, show_default=True,
               type=click.IntRange(0, 1000), help='Trials of a few states, of each effect '
               'that they cannot tell.')  # fmt: skip
+@click.option('--deck', default=DiscrepancyPlan.deck, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each cause on deck and '
+              'strength.')  # fmt: skip
 @click.option('--dynamic', default=DiscrepancyPlan.dynamic, show_default=True,
               type=click.IntRange(0, 100), help='Trials, of all, that are towed in time '
               'too.')  # fmt: skip
@@ -296,6 +299,7 @@ def discrepancy(
     outside: int,
     pairs: int,
     poor: int,
+    deck: int,
     dynamic: int,
     around: int,
     scheduler: str | None,
@@ -307,7 +311,7 @@ def discrepancy(
     on where it was.
     """
     load_gear(gear)
-    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, around)
+    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, deck, around)
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         trials = run_blind(plan, out, display, scheduler=scheduler, force=force)
     rows = write_discrepancy(out, plan, trials, read_classes(out))

@@ -11,6 +11,7 @@ from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import ON_DECK, RIGHT
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.studies.discrepancy.scoring.costs import cost_rows, keep_cost
 from trawl_ros.lab.studies.discrepancy.scoring.figure import kind_of
@@ -83,14 +84,21 @@ def value(rows, what):
 
 def test_everything_of_the_catalogue_that_shows_in_steady_tows_is_hidden():
     shows = {name for name, effect in catalogue().items() if not effect.dynamic}
-    assert set(INSIDE) == shows
+    right = {name for names in RIGHT.values() for name in names}
+    assert set(RIGHT) == set(ON_DECK)
+    assert set(INSIDE) <= shows
+    # Both boards alike are damaged as their coefficients say; one side stands for the other.
+    mirrored = {
+        'board_damage', 'port_bridle_length', 'starboard_board_rigging', 'starboard_clump',
+    }  # fmt: skip
+    assert set(INSIDE) | right | mirrored == shows
     assert len(OUTSIDE) >= 10
-    assert not set(OUTSIDE) & set(catalogue())
+    assert not (set(OUTSIDE) | set(ON_DECK)) & set(catalogue())
 
 
-@pytest.mark.parametrize('name', [*INSIDE, *OUTSIDE])
+@pytest.mark.parametrize('name', [*INSIDE, *OUTSIDE, *ON_DECK])
 def test_what_is_hidden_shows_in_examined_tows_alone(plant, name):
-    hidden = {**INSIDE, **OUTSIDE}[name](np.random.default_rng(3))
+    hidden = {**INSIDE, **OUTSIDE, **ON_DECK}[name](np.random.default_rng(3))
     clean = np.array([[look.values for look in tow] for tow in plant.towed(())])
     there = np.array(
         [[look.values for look in tow] for tow in plant.towed([(hidden, 1.0 * hidden.probe)])]
@@ -99,7 +107,8 @@ def test_what_is_hidden_shows_in_examined_tows_alone(plant, name):
     scale = np.abs(clean).max(axis=(0, 1))
     changed = np.abs(there - clean) / scale
     assert not changed[: FULL.baseline].any()
-    if name != 'board_stall' or _stalls(plant):
+    # Cells of sides that pull alike show nothing when they are swapped.
+    if name not in ('board_stall', 'cells_swapped') or (name == 'board_stall' and _stalls(plant)):
         assert changed[FULL.baseline :].max() > 1e-4
     np.testing.assert_allclose(nothing / scale, clean / scale, atol=1e-5)
 
@@ -258,7 +267,8 @@ def test_trials_per_hour_count_all_stages_of_a_trial(tmp_path):
 def test_the_command_makes_a_page_and_goes_on_where_it_was(tmp_path):
     out = tmp_path / 'report'
     few = ['study', 'discrepancy', '--out', str(out), '--seed', '1', '--clean', '1', '--inside',
-           '0', '--outside', '0', '--pairs', '0', '--poor', '0', '--dynamic', '0']  # fmt: skip
+           '0', '--outside', '0', '--pairs', '0', '--poor', '0', '--deck', '0',
+           '--dynamic', '0']  # fmt: skip
     first = CliRunner().invoke(trawl, few)
     assert first.exit_code == 0, first.output
     records = json.loads((out / 'discrepancy.json').read_text())['rows']

@@ -37,33 +37,6 @@ class MoreLoad:
         return bent
 
 
-def port_board_lift(chance: np.random.Generator) -> Hidden:
-    """A port board that is bent or has lost a slat."""
-
-    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=MoreLoad(size, LIFT, 1.0, side=0))
-
-    return Hidden('port_board_lift', '', 0.1, (0.6, 0.6), gear=gear)
-
-
-def starboard_board_drag(chance: np.random.Generator) -> Hidden:
-    """A starboard board that drags something along."""
-
-    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=MoreLoad(-size, AHEAD, 0.0, side=1))
-
-    return Hidden('starboard_board_drag', '', 0.1, (0.0, 1.0), gear=gear)
-
-
-def kite_lift(chance: np.random.Generator) -> Hidden:
-    """A kite that is torn, or larger than drawn."""
-
-    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return replace(model, kite=replace(model.kite, area=model.kite.area * (1.0 + size)))
-
-    return Hidden('kite_lift', '', 0.3, (0.9, 2.0), gear=gear)
-
-
 def net_weight(chance: np.random.Generator) -> Hidden:
     """Sand, mud or water-logged floats in the net."""
 
@@ -174,8 +147,8 @@ def spread_by_hours(chance: np.random.Generator) -> Hidden:
 OUTSIDE: Mapping[str, Draw] = {
     draw.__name__: draw
     for draw in (
-        bridle_weed, counter_drift, jet, kite_lift, net_weight, opening_by_depth, pitch_mount,
-        port_board_lift, port_depth_sensor, spread_by_hours, starboard_board_drag, starboard_cell,
+        bridle_weed, counter_drift, jet, net_weight, opening_by_depth, pitch_mount,
+        port_depth_sensor, spread_by_hours, starboard_cell,
         tide,
     )
 }  # fmt: skip

@@ -16,6 +16,7 @@ from trawl_ros.diagnosis import rules
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, Section, write_page
+from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import FRICTION, NORMAL_DRAG
 from trawl_ros.lab.studies.discrepancy.scoring.costs import cost_rows
 from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.scoring.rows import all_sections
@@ -27,7 +28,6 @@ from trawl_ros.lab.studies.discrepancy.trials.plan import (
     POOR_STRENGTH,
     BlindStudyPlan,
 )
-from trawl_ros.lab.studies.discrepancy.trials.plant import FRICTION, NORMAL_DRAG
 from trawl_ros.lab.studies.discrepancy.trials.towing import HAULING_SPEED
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored

@@ -10,6 +10,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import values_vector
 from trawl_ros.diagnosis.rules import ALIKE
+from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import RIGHT
 from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
@@ -52,7 +53,13 @@ def verdict_word(trial: Scored) -> str:
 
 def right(trial: Scored, names: set[str], classes: Classes) -> bool:
     """True if all hidden effects are among names, by their own or that of their class."""
-    return all(names & {name, *classes.get(name, ())} for name in hidden_names(trial))
+    return all(names & right_names(name, classes) for name in hidden_names(trial))
+
+
+def right_names(hidden: str, classes: Classes) -> set[str]:
+    """Names that count as right for what is hidden: its own, or that of its cause; and classes."""
+    own = RIGHT.get(hidden, (hidden,))
+    return {*own, *(other for name in own for other in classes.get(name, ()))}
 
 
 def named_right(trial: Scored, classes: Classes) -> bool:

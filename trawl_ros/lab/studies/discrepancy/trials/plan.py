@@ -7,6 +7,7 @@ from itertools import count, product
 import numpy as np
 
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
+from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import ON_DECK
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.studies.discrepancy.trials.trial import Form, Spec
 from trawl_ros.lab.studies.identification.plant import Cut
@@ -21,6 +22,7 @@ PLANTS = 8
 STRENGTHS = (1.5, 3.0, 6.0)
 OUTSIDE_STRENGTHS = (6.0, 10.0)
 PAIR_STRENGTH = 3.0
+DECK_STRENGTHS = (3.0, 6.0)
 POOR_STRENGTH = 2.0
 
 PAIRS = (
@@ -66,6 +68,8 @@ class BlindStudyPlan:
     dynamic
         So many trials, or all if these are fewer, are towed in time too. Some of them will not be
         possible; 20 of the default are to be left.
+    deck
+        Trials of each cause on deck and strength, to both sides in turn.
     around
         Meshes around the mouth of the model's net.
     """
@@ -78,6 +82,7 @@ class BlindStudyPlan:
     pairs: int = 2
     poor: int = 2
     dynamic: int = 23
+    deck: int = 1
     around: int = FINER.around
 
     @property
@@ -136,3 +141,10 @@ class BlindStudyPlan:
                     for name in names
                 )
                 yield spec('pair', names, PAIR_STRENGTH, sides)
+        # Last, so that the draws of all others stay what they were.
+        for name, strength in product(ON_DECK, DECK_STRENGTHS):
+            signs = ON_DECK[name](np.random.default_rng(0)).signs
+            first = int(chance.integers(len(signs)))
+            for turn in range(self.deck):
+                side = signs[(first + turn) % len(signs)]
+                yield spec('deck', (name,), strength, (side,))

@@ -9,6 +9,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
+from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import with_other_law
 from trawl_ros.lab.studies.discrepancy.trials.tows import (
     FULL,
     STATES,
@@ -30,9 +31,6 @@ MOST_DRAWS = 100
 BOARD_SPREAD = 0.5
 """Boards are drawn with this part of the prior's std: the gear is known as well as from its drawing
 and an earlier trial."""
-
-NORMAL_DRAG, FRICTION = 0.985, 1.15
-"""The plant's netting and its ropes have another law of drag: less across, more along the twine."""
 
 
 @dataclass(frozen=True)
@@ -145,14 +143,3 @@ def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
             continue
         return Plant(board, drawn, clean)
     raise TrawlError(f'none of {MOST_DRAWS} boards drawn can be towed in all states of the plan')
-
-
-def with_other_law(model: GearModel) -> GearModel:
-    """Gear with another law of drag of netting and its ropes."""
-    net = np.isin(model.ends, model.layout.net).all(axis=1)
-    bars = replace(
-        model.bars,
-        normal_drag=np.where(net, NORMAL_DRAG, 1.0) * model.bars.normal_drag,
-        friction=np.where(net, FRICTION, 1.0) * model.bars.friction,
-    )
-    return replace(model, bars=bars)
