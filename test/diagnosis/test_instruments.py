@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from trawl_ros.diagnosis.instruments import over_ground
+from trawl_ros.diagnosis.instruments import frozen, over_ground
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import sentences
 from trawl_ros.estimation.windows.over_ground import GroundTrack
@@ -45,3 +46,24 @@ def test_a_log_over_ground_is_told_tow_by_tow(coarse, hide):
     assert found.verdict == 'NOT_TESTABLE'
     assert said not in sentences(found)
     assert sentences(replace(found, remarks=(said,)))[0] == said
+
+
+def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):
+    windows = hide.trial(coarse, hide.nothing, 7, tows=2)
+    assert frozen(windows, ['first', 'second']) == ()
+    noise = np.random.default_rng(1)
+    stuck = [
+        replace(
+            window,
+            means={
+                **window.means,
+                'net_depth': 120.0 + window.noise['net_depth'] * noise.standard_normal(),
+            },
+        )
+        if window.tow == 1
+        else window
+        for window in windows
+    ]
+    (said,) = frozen(stuck, ['first', 'second'])
+    assert said.startswith('second: net depth (sonar/pressure) stays at 120 m from 302 to 803')
+    assert frozen(stuck[:6], ['first', 'second']) == ()

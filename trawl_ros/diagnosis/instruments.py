@@ -1,17 +1,24 @@
-"""Faults of instruments told without any effect: wrong units, a log over ground."""
+"""Faults of instruments told without any effect: units, a log over ground, frozen sensors."""
 
 from collections.abc import Sequence
+
+import numpy as np
 
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.screening import Screening
 from trawl_ros.estimation.windows.over_ground import OverGround
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 UNIT = 'wrong unit'
 JUDGED = 5
 """So many steady states are asked for their units: all of a tow have the same."""
+
+FROZEN_STATES, FROZEN_LENGTHS, FROZEN_NOISE = 3, 1.5, 4.0
+"""A sensor is frozen that shows the same in at least so many states of a tow, between which the
+warps become so many times as long, within so many times its noise."""
 
 
 def wrong_unit(
@@ -34,3 +41,29 @@ def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[s
         if sentence is not None:
             sentences[window.tow] = f'{tows[window.tow]}: {sentence}.'
     return tuple(sentences.values())
+
+
+def frozen(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, ...]:
+    """Sentences on sensors that show the same value whatever the warps.
+
+    Depths, spread and tension all change with the length of the warps; readings that scatter
+    around one value pass for those of a working sensor in each state alone.
+    """
+    sentences = []
+    for tow in sorted({window.tow for window in windows}):
+        own = [window for window in windows if window.tow == tow]
+        for name in (name for name, channel in CHANNELS.items() if channel.settles):
+            shown = [window for window in own if name in window.means]
+            if len({window.state for window in shown}) < FROZEN_STATES:
+                continue
+            lengths = [window.means['port_length'] for window in shown]
+            values = [window.means[name] for window in shown]
+            noise = float(np.median([window.noise[name] for window in shown]))
+            same = float(np.ptp(values)) < FROZEN_NOISE * noise
+            if same and max(lengths) > FROZEN_LENGTHS * min(lengths):
+                sentences.append(
+                    f'{tows[tow]}: {name.replace("_", " ")} ({CHANNELS[name].topic}) stays at '
+                    f'{np.mean(values):.4g} {CHANNELS[name].unit} from {min(lengths):.0f} to '
+                    f'{max(lengths):.0f} m of warp: the sensor seems to be frozen.'
+                )
+    return tuple(sentences)

@@ -11,7 +11,7 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.empirical import empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
 from trawl_ros.diagnosis.holdout import holdout_comparison, split
-from trawl_ros.diagnosis.instruments import over_ground, wrong_unit
+from trawl_ros.diagnosis.instruments import frozen, over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import telling
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
@@ -63,9 +63,8 @@ def diagnose_windows(
     # Effects found by an earlier diagnosis are those that the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
     predictor = Predictor(model, effects_of(gear), without=baseline, new=new)
-    known = Diagnosis(
-        'NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=over_ground(windows, tows)
-    )
+    remarks = (*over_ground(windows, tows), *frozen(windows, tows))
+    known = Diagnosis('NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=remarks)
     examined = {window.state for window in windows if window.tow not in baseline}
     if len(examined) < FEWEST_STATES:
         return replace(
