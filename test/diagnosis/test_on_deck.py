@@ -19,27 +19,11 @@ TURN = 2.5
 """Degrees that boards are turned by a shackle in a wrong hole."""
 
 RIVALS = ('board_rigging', 'net_drag', 'spread_sensor')
-"""Effects that are looked for; all of them are in the slow tests."""
+"""Effects that are looked for."""
 
 
 def turned(model, hours):
     return model.with_board(installation=(np.radians(TURN), 0.0, 0.0))
-
-
-def fewer_floats(model, hours):
-    less = model.gear.floats.model_copy(
-        update={'buoyancy_n': 0.7 * model.gear.floats.buoyancy_n, 'drag_area_m2': 0.98}
-    )
-    return build_model(model.gear.model_copy(update={'floats': less}))
-
-
-def swapped(values):
-    def other(name):
-        side, _, quantity = name.partition('_')
-        there = {'port': 'starboard', 'starboard': 'port'}.get(side)
-        return f'{there}_{quantity}' if quantity in ('door_depth', 'pitch', 'roll') else name
-
-    return {name: values[other(name)] for name in values}
 
 
 def diagnosed(coarse, hide, hidden, states=5, seed=3):
@@ -100,16 +84,3 @@ def test_a_wrong_repair_makes_something_worse(coarse, rerigged):
     wrong = replace(wrong, estimate=replace(wrong.estimate, values=values))
     worse = worsened(predictor, rerigged.base, wrong, rerigged.split.kept_back)
     assert 'vertical_opening' in worse
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ('hidden', 'name', 'parameter', 'size'),
-    [
-        ({'gear': turned}, 'board_rigging', 'epsilon', np.radians(TURN)),
-        ({'gear': fewer_floats}, 'floats', 'lost', 0.3),
-        ({'shown': swapped}, 'swapped_doors', 'share', 1.0),
-    ],
-)
-def test_what_went_wrong_on_deck_is_named_among_all(coarse, hide, hidden, name, parameter, size):
-    is_right(diagnosed(coarse, hide, hide.Hidden(**hidden)), name, parameter, size)
