@@ -346,7 +346,7 @@ def build_model(gear: GearRecord) -> GearModel:
         # A compact body: half its volume of added mass, as a sphere.
         for tip in (net[rim[0]], net[rim[-1]]):
             body = np.array([density * volume, volume, drag_area, 0.5 * volume])
-            (lumps if force > 0.0 else buoyant)[:, tip] += body
+            (buoyant if rim is mesh.headrope else lumps)[:, tip] += body
     for item in gear.hung:
         for nodes, shares, force in hung_places(build, item):
             volume = force / water.gravity / (item.density - water.density)
