@@ -10,8 +10,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
-from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.remedy_command import remedy_command
+from trawl_ros.solver.operating_point import OperatingPoint, remedy_command
 from trawl_ros.solver.stability import stability
 
 

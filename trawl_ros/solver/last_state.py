@@ -19,7 +19,7 @@ from trawl_ros.solver.continuation import BranchPoint, branch
 from trawl_ros.solver.first_guess import ATTACK, LEAN, first_guess
 from trawl_ros.solver.growing_mode import growing_mode
 from trawl_ros.solver.modes import linearised_motion
-from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
+from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
 from trawl_ros.solver.relax import (
     TOLERANCE,
     WARM_LIMIT,
@@ -27,7 +27,6 @@ from trawl_ros.solver.relax import (
     relax,
     without_attitude,
 )
-from trawl_ros.solver.remedy_command import remedy_command
 from trawl_ros.solver.stability import stability
 
 USUAL = 2.1
