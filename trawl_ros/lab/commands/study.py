@@ -46,6 +46,9 @@ from trawl_ros.lab.studies.instruments.wire_steps import read_steps
 from trawl_ros.lab.studies.robustness.report import REPORT as ROBUSTNESS_REPORT
 from trawl_ros.lab.studies.robustness.report import write_robustness
 from trawl_ros.lab.studies.robustness.study import LENGTHS, RobustnessPlan, run_robustness
+from trawl_ros.lab.studies.sailing.report import REPORT as SAILING_REPORT
+from trawl_ros.lab.studies.sailing.report import write_sailing
+from trawl_ros.lab.studies.sailing.study import SailingPlan, run_sailing
 from trawl_ros.lab.studies.soak.report import REPORT, write_soak
 from trawl_ros.lab.studies.soak.study import SoakPlan, run_soak
 from trawl_ros.lab.studies.sonar.report import REPORT as SONAR_REPORT
@@ -354,6 +357,31 @@ def robustness(
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         trials = run_robustness(plan, out, display)
     print_outcome(write_robustness(out, trials), out / ROBUSTNESS_REPORT)
+
+
+@command.command('sailing')
+@REPORT_OPTION
+@FORCE_OPTION
+@GEAR_OPTION
+@click.option('--around', default=SailingPlan.around, show_default=True,
+              type=click.IntRange(12, 96), help='Meshes around the net.')  # fmt: skip
+@click.option('--hours', default=SailingPlan.hours, show_default=True,
+              type=click.FloatRange(0.5, 48.0), help='Time at sea of each course.')  # fmt: skip
+@click.option('--boards', default=SailingPlan.boards, show_default=True,
+              type=click.IntRange(1, 1000), help='Random boards.')  # fmt: skip
+@click.option('--seed', default=SailingPlan.seed, show_default=True, type=click.IntRange(0))
+def sailing(
+    out: Path, force: bool, gear: str, around: int, hours: float, boards: int, seed: int
+) -> None:
+    """Sail trials that run themselves, beside a planned trial and the paper's sweep.
+
+    Writes sailing.json, .md and .html.
+    """
+    empty_folder(out, force=force)
+    plan = SailingPlan(gear, around, hours, boards, seed)
+    with stoppable() as (display, _):
+        towed = run_sailing(plan, display)
+    print_outcome(write_sailing(out, plan, towed), out / SAILING_REPORT)
 
 
 @contextmanager

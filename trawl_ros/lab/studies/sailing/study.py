@@ -1,0 +1,77 @@
+"""Study of sailed trials: random boards, each towed on three courses of the same hours."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.planning.plan import plan_for
+from trawl_ros.lab.studies.identification.plant import TOWS, Cut, draw_board
+from trawl_ros.lab.studies.sailing.courses import Course, Sea, planned_course, sailed_course
+
+SEED = 2100
+
+
+@dataclass(frozen=True)
+class SailingPlan:
+    """Plan: gear, meshes around its net, hours of each course, number of boards, and the seed."""
+
+    gear: str = 'kaifuha'
+    around: int = 12
+    hours: float = 6.0
+    boards: int = 10
+    seed: int = SEED
+
+
+@dataclass(frozen=True)
+class SailedBoard:
+    """Board, towed on each course: sailed by itself, as planned beforehand, and in a sweep."""
+
+    number: int
+    coefficients: list[float]
+    sailed: Course
+    planned: Course
+    sweep: Course
+
+    @property
+    def over_plan(self) -> float:
+        """Mean std when sailed over that as planned."""
+        return self.sailed.mean_std / self.planned.mean_std
+
+    @property
+    def over_sweep(self) -> float:
+        """Mean std when sailed over that of the sweep."""
+        return self.sailed.mean_std / self.sweep.mean_std
+
+
+def run_sailing(plan: SailingPlan, on_progress: OnProgress = ignore) -> list[SailedBoard]:
+    """Tow each board on the three courses.
+
+    The plan is made once, with the board as identification starts; readings err alike on all
+    courses, and the plant is the model.
+    """
+    gear = Cut(plan.around).model(plan.gear)
+    trial = plan_for(gear, hours=plan.hours, on_progress=on_progress)
+    boards = []
+    for number in range(plan.boards):
+        drawn = draw_board(
+            gear, board_prior(gear), TOWS[:1], np.random.default_rng([plan.seed, number])
+        )
+
+        def on_state(text: str, number: int = number) -> None:
+            on_progress(WorkProgress('boards', number, plan.boards, 'boards', text))
+
+        def sea(coefficients: object = drawn.coefficients, number: int = number) -> Sea:
+            return Sea(gear, np.asarray(coefficients), (plan.seed, number, 1))
+
+        boards.append(
+            SailedBoard(
+                number,
+                drawn.coefficients.tolist(),
+                sailed_course(sea(), gear, plan.hours, on_state),
+                planned_course(sea(), gear, trial.trial.legs),
+                planned_course(sea(), gear, trial.sweeps[0].legs),
+            )
+        )
+    return boards
