@@ -80,6 +80,9 @@ def test_a_slow_adviser_is_waited_for_and_a_poor_one_not_for_ever():
     assert waiting_for_advice(Knowledge(), settings, 0.0) == 'for the first window'
     late = Knowledge(windows=4, advised=2, looked_up=1.0)
     assert waiting_for_advice(late, settings, 1e5).startswith('for advice after 4 windows')
+    older = Knowledge(4, {}, 2, 1.0, PROPOSALS)
+    assert waiting_for_advice(older, settings, 599.0).startswith('for advice after 4 windows')
+    assert waiting_for_advice(older, settings, 600.0) == ''
     poor = Knowledge(windows=4, advised=4, looked_up=0.1)
     assert '10 % are' in waiting_for_advice(poor, settings, 599.0)
     assert waiting_for_advice(poor, settings, 600.0) == ''

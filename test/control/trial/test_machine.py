@@ -197,13 +197,22 @@ def test_a_state_without_windows_is_left_and_not_sought_again(ship):
 def test_it_waits_steadily_for_a_slow_adviser(sailing):
     ship = sailing(SETTINGS)
     ship.sail(5.0)
-    ship.windows(2, advised=1)
+    ship.windows(2, (), advised=1)
     assert not moved(ship, 1800.0)
     assert str(ship.state) == 'waits: for advice after 2 windows, for 30 min'
     assert ship.state.hours == pytest.approx(0.5, abs=0.01)
     ship.windows(2)
     ship.sail(1.0)
     assert ship.state.phase == 'transit'
+
+
+def test_without_new_advice_it_goes_by_the_older_after_ten_minutes(ship):
+    ship.sail(400.0)
+    ship.windows(4, (), advised=0)
+    ship.sail(590.0)
+    assert ship.state.waits == 'for advice after 4 windows, for 10 min'
+    ship.sail(15.0)
+    assert str(ship.state) == 'on the way to 500 m at 2.10 m/s'
 
 
 def test_it_ends_when_enough_is_known_or_the_time_is_up(sailing):

@@ -42,10 +42,11 @@ def waiting_for_advice(knowledge: Knowledge, settings: TrialSettings, waited: fl
     """Return what advice is lacking after ``waited`` seconds; '' where one may choose."""
     if knowledge.windows == 0:
         return 'for the first window'
-    if knowledge.advised < knowledge.windows:
+    patient = waited < settings.advice_patience
+    if knowledge.advised < knowledge.windows and (patient or not knowledge.proposals):
         wish = f'for advice after {knowledge.windows} windows, for {waited / 60.0:.0f} min'
         return f'{wish}: {knowledge.trouble}' if knowledge.trouble else wish
-    if knowledge.looked_up < settings.least_looked_up and waited < settings.advice_patience:
+    if knowledge.looked_up < settings.least_looked_up and patient:
         return (
             f'until {100 * settings.least_looked_up:.0f} % of the manoeuvres are looked up; '
             f'{100 * knowledge.looked_up:.0f} % are'

@@ -75,7 +75,7 @@ class Trial:
 
     def learn(self, knowledge: Knowledge) -> None:
         """Take what the estimator knows by now."""
-        self._knowledge = knowledge
+        self._knowledge = knowledge.after(self._knowledge)
 
     def change(self, settings: TrialSettings) -> None:
         """Change the settings, which counts from the next update on."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from trawl_ros.core.schema import Record
@@ -85,6 +85,18 @@ class Knowledge:
         """Number of quantities whose std is below this share of their span."""
         return sum(ratio <= share for ratio in self.ratios.values())
 
+    def after(self, before: 'Knowledge') -> 'Knowledge':
+        """Return this knowledge, with the proposals from before where it has none of its own."""
+        if self.proposals or not self.windows:
+            return self
+        return replace(
+            self,
+            ratios=self.ratios or before.ratios,
+            advised=before.advised,
+            looked_up=before.looked_up,
+            proposals=before.proposals,
+        )
+
 
 @dataclass(frozen=True)
 class TrialSettings:
@@ -109,8 +121,8 @@ class TrialSettings:
     windows
         Windows that are taken in each state.
     least_looked_up, advice_patience
-        No target is chosen before so much of the manoeuvres is looked up, or so many seconds have
-        gone by.
+        No target is chosen before the advice rests on all windows and so much of the manoeuvres is
+        looked up, or so many seconds have gone by.
     stale
         Age (s) at which a reading is stale, where it usually comes more often.
     """
