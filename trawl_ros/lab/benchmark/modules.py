@@ -14,6 +14,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
     {
         'gear': 'The full gear in motion',
         'derivatives': 'Derivatives of the motion',
+        'motion': 'Estimates from a tow in motion',
         'web': 'MoorDyn on a web as large as the gear',
         'wire': 'One wire in motion',
         'equilibrium': 'Steady states of the full gear',

@@ -5,7 +5,7 @@ Memory is that of one state and its derivatives, however long the tow.
 
 from collections.abc import Callable
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties
@@ -142,6 +142,21 @@ class DifferentiatedTow:
             self._net = model.bars, net_loads(model)
         gear = GearAtPoint(self._plain, self._acting, point)
         return pushes(model, gear, self.parameters, end, course.slopes, self._net[1])
+
+    def forget(self, columns: Slice) -> None:
+        """Set derivatives by some parameters to nought, as if these began to act now."""
+        for slopes in self.slopes.arrays:
+            slopes[:, columns] = 0.0
+        course = self.course
+        for slopes in (
+            course.way.slopes,
+            course.velocity_slopes,
+            course.slopes.blocks,
+            course.slopes.block_velocities,
+            course.slopes.lengths,
+            course.slopes.length_rates,
+        ):
+            slopes[columns] = 0.0
 
     def observed(self) -> MotionPrediction:
         """Observables of the present instant with their derivatives."""

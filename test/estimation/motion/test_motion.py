@@ -1,0 +1,206 @@
+"""Stretches in motion: derivatives, what is left out, whitening, and calibrated estimates."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.error_terms import GROUPS
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, on_grid
+from trawl_ros.estimation.motion.knots import hats, knots_of_log
+from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows
+from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
+from trawl_ros.estimation.motion.towing import TowedGear, TowedPoint, linearise_tow
+from trawl_ros.lab.benchmark.motion import BAND, course_tow, run_motion_trial
+from trawl_ros.model.gear_model import build_model
+
+SHORT_S = 120.0
+NO_ERRORS = np.zeros(len(INPUT_ERRORS))
+
+
+@pytest.fixture(scope='module')
+def coarse(gear):
+    """The gear with its netting as coarse as it may be."""
+    return build_model(
+        gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
+    )
+
+
+@pytest.fixture(scope='module')
+def short_tow():
+    """Two minutes of hauling, whose log's knots outnumber the columns that they share."""
+    tow = course_tow(SHORT_S)
+    knots = knots_of_log(np.arange(0.0, SHORT_S), 0.03, SHORT_S, tow.stretch_s, 60.0)
+    assert knots.columns < knots.number
+    return replace(tow, inputs=replace(tow.inputs, knots=knots))
+
+
+@pytest.fixture(scope='module')
+def towed(coarse, short_tow):
+    knots = short_tow.inputs.knots
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(knots.number))
+    return linearise_tow(TowedGear(coarse), short_tow, point)
+
+
+def changed(towed, model, **changes):
+    """Change of the means, and what the derivatives say of it, in the noise of a stretch."""
+    point = replace(towed.point, **changes)
+    again = linearise_tow(TowedGear(model), towed.tow, point)
+    told = (
+        towed.by_errors @ point.errors
+        + towed.by_log @ point.log
+        + towed.by_added_mass[..., 0] * point.added_mass
+        + towed.by_coefficients @ (point.coefficients - towed.point.coefficients)
+    )
+    return (again.values - towed.values) / towed.tow.noise, told / towed.tow.noise
+
+
+@pytest.mark.parametrize('knot', [2, 5])
+def test_an_error_of_the_log_at_a_knot_does_what_its_derivative_says(towed, coarse, knot):
+    log = np.zeros(towed.tow.inputs.knots.number)
+    log[knot] = 0.002
+    real, told = changed(towed, coarse, log=log)
+    assert np.abs(real).max() > 0.1
+    np.testing.assert_allclose(told, real, atol=0.02 * np.abs(real).max())
+
+
+def test_an_error_of_the_log_is_forgotten_when_another_takes_its_column(towed):
+    knots = towed.tow.inputs.knots
+    # It began to act a spacing before its knot.
+    last = knots.columns - 1
+    assert towed.by_log[last - 1, :, 0].any()
+    assert not towed.by_log[last:, :, 0].any()
+    assert towed.by_log[last, :, knots.columns].any()
+
+
+@pytest.mark.parametrize('error', range(len(INPUT_ERRORS)))
+def test_errors_of_counters_and_log_do_what_their_derivatives_say(towed, coarse, error):
+    errors = 0.02 * np.eye(len(INPUT_ERRORS))[error]
+    real, told = changed(towed, coarse, errors=errors)
+    assert np.abs(real).max() > 0.001
+    np.testing.assert_allclose(told, real, atol=0.03 * np.abs(real).max())
+
+
+def test_a_counter_that_reads_too_long_has_the_gear_towed_on_less_warp(towed):
+    depth = towed.tow.channels.index('port_door_depth')
+    offset = [error.name for error in INPUT_ERRORS].index('port_length offset')
+    starboard = [error.name for error in INPUT_ERRORS].index('starboard_length offset')
+    both = towed.by_errors[..., offset] + towed.by_errors[..., starboard]
+    assert np.all(both[:, depth] < 0.0)
+
+
+def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
+    tow = course_tow(100.0)
+    gone = replace(tow.inputs, values=tow.inputs.values * [1.0, 1.0, 0.3])
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(0))
+    there = linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point)
+    assert not there.towed.any()
+    assert len(there.left_out) == len(tow)
+    assert 'towed' in there.left_out[0].why or 'surface' in there.left_out[0].why
+    needed = np.ones(len(tow), dtype=bool)
+    with pytest.raises(NoSteadyState, match='0 s after the beginning'):
+        linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
+
+
+def rows(chance, number=60, noise=0.5, model=1.0):
+    return GroupRows(
+        stretches=np.repeat(np.arange(number), 2),
+        channels=np.tile([0, 1], number),
+        times=20.0 * np.repeat(np.arange(number), 2),
+        noise=np.full(2 * number, noise),
+        drift=np.ones(2 * number),
+        model=np.full(2 * number, model),
+    )
+
+
+def test_tows_that_are_joined_are_one_least_squares_problem():
+    chance, sizes, times = np.random.default_rng(5), np.array([1.0, 0.3, 2.0]), ErrorTimes()
+    shared, own = 3, 4
+    groups = []
+    for _ in range(2):
+        columns = chance.standard_normal((120, shared + own))
+        groups.append(LinearGroup(rows(chance), columns, chance.standard_normal(120)))
+    precision = np.array([1.0] * shared + [4.0] * own)
+    tows = [group.information(sizes, times) for group in groups]
+    found = joined(tows, [precision, precision], shared)
+    mean = np.linalg.solve(found.matrix + np.eye(shared), found.right)
+
+    whole = np.zeros((240, shared + 2 * own))
+    covariance = np.zeros((240, 240))
+    for number, group in enumerate(groups):
+        at = slice(120 * number, 120 * (number + 1))
+        whole[at, :shared] = group.columns[:, :shared]
+        first = shared + own * number
+        whole[at, first : first + own] = group.columns[:, shared:]
+        covariance[at, at] = group.rows.covariance(sizes, times)
+    prior = np.diag(np.concatenate((np.ones(shared), np.full(2 * own, 0.25))))
+    residual = np.concatenate([group.residual for group in groups])
+    total = covariance + whole @ prior @ whole.T
+    gain = prior @ whole.T @ np.linalg.inv(total)
+    np.testing.assert_allclose(mean, (gain @ residual)[:shared], atol=1e-9)
+    np.testing.assert_allclose(
+        own_values(tows[1], precision, mean), (gain @ residual)[shared + own :], atol=1e-9
+    )
+    likelihood = 0.5 * (np.linalg.slogdet(total)[1] + residual @ np.linalg.solve(total, residual))
+    assert found.negative_log_likelihood == pytest.approx(likelihood)
+
+
+def test_sizes_of_noise_and_of_the_models_error_are_found():
+    chance, truth, times = np.random.default_rng(8), np.array([1.6, 0.1, 3.0]), ErrorTimes()
+    own = rows(chance, 200)
+    root = np.linalg.cholesky(own.covariance(truth, times))
+    columns = chance.standard_normal((400, 14))
+    nothing = GroupRows(*(np.zeros(0, dtype=int),) * 2, *np.zeros((4, 0)))
+    empty = LinearGroup(nothing, np.zeros((0, 14)), np.zeros(0))
+    one = LinearGroup(own, columns, root @ chance.standard_normal(400))
+    groups = (one, *(empty,) * (len(GROUPS) - 1))
+    data = LinearData((groups,), (slice(14, 14),), 14, times)
+    found = estimated_sizes(data, ErrorSizes(), ErrorSizes())
+    assert found.noise[0] == pytest.approx(1.6, rel=0.15)
+    assert found.model[0] == pytest.approx(3.0, rel=0.4)
+    assert found.noise[1] == 1.0
+
+
+def test_knots_know_the_log_as_well_as_its_readings_allow():
+    knots = knots_of_log(np.arange(0.0, 200.0), 0.03, 200.0, 20.0, 100.0)
+    middle = np.sqrt(np.diag(knots.root @ knots.root.T))[5]
+    assert 0.03 / np.sqrt(20.0) < middle < 0.03 / np.sqrt(10.0)
+    np.testing.assert_allclose(hats(np.linspace(0.0, 200.0, 33), 11, 20.0).sum(axis=1), 1.0)
+
+
+def test_smoothing_keeps_a_ramp_and_its_rate():
+    times = np.arange(0.0, 60.0, 0.5)
+    values, rates = on_grid(times, 3.0 + 0.4 * times, np.arange(5.0, 50.0), 5.0)
+    np.testing.assert_allclose(values, 3.0 + 0.4 * np.arange(5.0, 50.0))
+    np.testing.assert_allclose(rates, 0.4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('errors', [False, True])
+def test_errors_of_the_estimate_are_as_large_as_it_says(gear, errors):
+    """Twelve squared errors in the metric of the posterior are 12 in the mean."""
+    netting = gear.netting.model_copy(update={'around': 24})
+    model = build_model(gear.model_copy(update={'netting': netting}))
+    known = board_prior(gear)
+    prior = replace(known, std=0.3 * known.std)
+    trials = [run_motion_trial(TowedGear(model), prior, seed, errors) for seed in (1, 2, 3, 4)]
+    assert all(trial.fit.converged for trial in trials)
+    squares = [trial.squared_error for trial in trials]
+    assert 6.4 < np.mean(squares) < 17.3
+    assert np.mean([BAND[0] <= square <= BAND[1] for square in squares]) >= 0.75
+
+
+def test_the_fit_of_a_short_tow_is_calibrated(coarse, gear):
+    """The same on the coarsest net, near the prior's mean, where a few steps lead to rest."""
+    known = board_prior(gear)
+    prior = replace(known, std=0.05 * known.std)
+    trials = [
+        run_motion_trial(TowedGear(coarse), prior, seed, duration_s=80.0) for seed in range(11, 15)
+    ]
+    assert all(trial.fit.converged for trial in trials)
+    # Of 48 normal errors: 99 % of the sums of their squares lie here.
+    assert 6.6 < np.mean([trial.squared_error for trial in trials]) < 19.3
+    assert all(trial.fit.misfit < 1.3 for trial in trials)

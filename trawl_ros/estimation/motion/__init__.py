@@ -1,0 +1,1 @@
+"""Estimation from all of a tow: stretches in motion, towed with derivatives."""

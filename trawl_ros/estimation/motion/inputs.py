@@ -1,0 +1,180 @@
+"""Inputs of a tow: warp lengths, speed and heading as instruments show them, and their errors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.motion.knots import Knots
+from trawl_ros.records.channels import CHANNELS, INPUTS
+from trawl_ros.solver.motion.course import InputPoint
+
+
+@dataclass(frozen=True)
+class InputError:
+    """Error of an input that stays through the tow: what the instrument reads too much, as a part
+    of the value where ``relative``, and its std.
+    """
+
+    channel: str
+    std: float
+    relative: bool
+
+    @property
+    def name(self) -> str:
+        """Name of the parameter."""
+        return f'{self.channel} {"scale" if self.relative else "offset"}'
+
+
+INPUT_ERRORS = tuple(
+    InputError(name, std, relative)
+    for name in INPUTS
+    for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
+    if std > 0.0
+)
+"""Errors of counters and log through a tow, by the channel table."""
+
+
+@dataclass(frozen=True)
+class TowInputs:
+    """Inputs of a tow, smoothed, on a grid of equal steps.
+
+    Attributes
+    ----------
+    grid_s
+        Step of the grid.
+    values, rates : (t, 3) arrays
+        Port and starboard warp length (m) and speed (m/s), and their rates of change.
+    headings, yaw_rates : (t,) arrays
+        ENU yaw (rad) without leaps, and rate of turn (rad/s).
+    knots
+        Of the log's error; None where the log is taken to have none but those of `INPUT_ERRORS`.
+    """
+
+    grid_s: float
+    values: FloatArray
+    rates: FloatArray
+    headings: FloatArray
+    yaw_rates: FloatArray
+    knots: Knots | None = None
+
+    @property
+    def duration_s(self) -> float:
+        """Time from the first to the last of the grid."""
+        return (len(self.values) - 1) * self.grid_s
+
+    def at(self, time: float) -> tuple[FloatArray, FloatArray, float, float]:
+        """Inputs (3,) and rates (3,) on the cubic through the grid, heading and rate of turn."""
+        place = min(max(time / self.grid_s, 0.0), len(self.values) - 1.0)
+        first = min(int(place), len(self.values) - 2)
+        x, h = place - first, self.grid_s
+        (a, b), (v, w) = self.values[first : first + 2], self.rates[first : first + 2]
+        rise, slope = b - a, (v * (1 - x) - w * x) * (1 - x) * x * h
+        value = a + rise * x * x * (3 - 2 * x) + slope
+        rate = rise / h * 6 * x * (1 - x) + v * (1 - x) * (1 - 3 * x) + w * x * (3 * x - 2)
+        heading = float(np.interp(place, [first, first + 1], self.headings[first : first + 2]))
+        yaw_rate = float(np.interp(place, [first, first + 1], self.yaw_rates[first : first + 2]))
+        return value, rate, heading, yaw_rate
+
+
+@dataclass(frozen=True)
+class CorrectedInputs:
+    """Inputs of a tow, corrected for errors of their instruments, with their derivatives.
+
+    Attributes
+    ----------
+    inputs
+        As the instruments show them.
+    errors : (e,) array
+        Errors of `INPUT_ERRORS`, in std.
+    log : (knots,) array
+        Error of the log at its knots, m/s.
+    begin
+        Time (s) of the tow at which the motion is begun.
+    """
+
+    inputs: TowInputs
+    errors: FloatArray
+    log: FloatArray
+    begin: float = 0.0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the additions to the inputs by which a motion is differentiated."""
+        knots = self.inputs.knots
+        columns = 0 if knots is None else knots.columns
+        return (
+            *(error.name for error in INPUT_ERRORS),
+            *(f'log {number + 1}' for number in range(columns)),
+        )
+
+    def __call__(self, time: float) -> InputPoint:
+        """Inputs so many seconds after the motion began."""
+        time += self.begin
+        shown, rates, heading, yaw_rate = self.inputs.at(time)
+        additions, paces = self._additions(time, shown, rates)
+        value, rate = shown.copy(), rates.copy()
+        stays = len(INPUT_ERRORS)
+        value += self.errors @ additions[:stays]
+        rate += self.errors @ paces[:stays]
+        knots = self.inputs.knots
+        if knots is not None:
+            value[2] -= knots.hats(time) @ self.log
+        return InputPoint(value, rate, heading, yaw_rate, time / 3600.0, additions, paces)
+
+    def _additions(
+        self, time: float, shown: FloatArray, rates: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Additions to inputs and rates, both (m, 3), by a unit of each parameter; what is shown
+        too large is less in truth.
+        """
+        additions, paces = np.zeros((2, len(self.names), 3))
+        for row, error in enumerate(INPUT_ERRORS):
+            column = INPUTS.index(error.channel)
+            additions[row, column] = -error.std * (shown[column] if error.relative else 1.0)
+            paces[row, column] = -error.std * (rates[column] if error.relative else 0.0)
+        knots = self.inputs.knots
+        if knots is not None:
+            values = knots.hats(time)
+            for knot in knots.acting(time):
+                additions[len(INPUT_ERRORS) + knot % knots.columns, 2] = -values[knot]
+        return additions, paces
+
+
+def without_errors(inputs: TowInputs, begin: float = 0.0) -> CorrectedInputs:
+    """Inputs taken as they are shown."""
+    knots = inputs.knots
+    return CorrectedInputs(
+        inputs, np.zeros(len(INPUT_ERRORS)), np.zeros(0 if knots is None else knots.number), begin
+    )
+
+
+def on_grid(
+    times: FloatArray, values: FloatArray, grid: FloatArray, reach_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """Smooth readings (n,) at times (n,) on a grid (t,), by local lines with tricube weights.
+
+    Returns
+    -------
+    tuple
+        Values and rates (t,), by the readings within ``reach_s``, or by the nearest four.
+    """
+    smooth, rates = np.empty((2, len(grid)))
+    for place, time in enumerate(grid):
+        first, last = np.searchsorted(times, (time - reach_s, time + reach_s))
+        if last - first < 4:
+            first = max(0, min(first - 2, len(times) - 4))
+            last = min(first + 4, len(times))
+        away = times[first:last] - time
+        far = 1.0001 * max(reach_s, float(np.max(np.abs(away))))
+        weights = (1.0 - np.abs(away / far) ** 3) ** 1.5
+        rows = np.column_stack((weights, weights * away))
+        line, *_ = np.linalg.lstsq(rows, weights * values[first:last], rcond=None)
+        smooth[place], rates[place] = line
+    return smooth, rates
+
+
+def stacked(series: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:
+    """Values and rates (t, m) of m series."""
+    return np.column_stack([s[0] for s in series]), np.column_stack([s[1] for s in series])

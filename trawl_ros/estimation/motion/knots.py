@@ -1,0 +1,79 @@
+"""Errors of the speed log along a tow: hat functions on equal knots, with their covariance.
+
+A log is wrong anew with each reading, and the gear feels its speed in all channels at once. So the
+course of that error is estimated along: its values at the knots are parameters, whose covariance
+before the fit is that of a least-squares fit of the knots to the log's readings.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cholesky_banded, solve_triangular
+
+from trawl_ros.core.arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Knots:
+    """Equal knots from the beginning of a tow on.
+
+    Attributes
+    ----------
+    number
+        Of the knots.
+    spacing_s
+        Time between two of them: that of a stretch, or of several.
+    columns
+        Knots that act on the gear at one time: later ones have been forgotten by it.
+    root : (number, number) array
+        Root S of the covariance S Sᵀ of the errors (m/s) at the knots.
+    """
+
+    number: int
+    spacing_s: float
+    columns: int
+    root: FloatArray
+
+    def hats(self, time: float) -> FloatArray:
+        """Values (number,) of the hat functions at a time, s since the tow began."""
+        values: FloatArray = hats(np.array([time]), self.number, self.spacing_s)[0]
+        return values
+
+    def acting(self, time: float) -> range:
+        """Knots that act at a time: from a spacing before them to where they are forgotten."""
+        last = min(int(time / self.spacing_s) + 1, self.number - 1)
+        return range(max(0, last - self.columns + 1), last + 1)
+
+
+def hats(times: FloatArray, number: int, spacing_s: float) -> FloatArray:
+    """Hat functions (n, number) at times (n,), s since the tow began."""
+    away = np.abs(times[:, None] / spacing_s - np.arange(number))
+    return np.maximum(0.0, 1.0 - away)
+
+
+def knots_of_log(
+    times: FloatArray, std: float, duration_s: float, spacing_s: float, memory_s: float
+) -> Knots:
+    """Knots of a log's error.
+
+    Parameters
+    ----------
+    times
+        Of the log's readings (n,), s since the tow began.
+    std
+        Standard deviation of a reading, m/s.
+    duration_s
+        Of the tow.
+    spacing_s, memory_s
+        Time between knots; time after which the gear has forgotten an error.
+    """
+    number = int(np.ceil(duration_s / spacing_s)) + 1
+    rows = hats(times, number, spacing_s) / std
+    normal = rows.T @ rows
+    # Where the log is silent its error is a reading's, no more.
+    banded = np.zeros((2, number))
+    banded[0], banded[1, :-1] = np.diag(normal) + std**-2, np.diag(normal, 1)
+    lower = cholesky_banded(banded, lower=True)
+    factor = np.diag(lower[0]) + np.diag(lower[1, :-1], -1)
+    root = solve_triangular(factor, np.eye(number), lower=True).T
+    return Knots(number, spacing_s, int(np.ceil(memory_s / spacing_s)) + 2, root)

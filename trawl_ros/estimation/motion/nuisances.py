@@ -1,0 +1,154 @@
+"""Columns of a linearised tow by all its parameters, each in units of its prior std.
+
+Parameters that all tows share come first: coefficients, added mass and the constant part of the
+model's error. Those of one tow follow: slow motions at its beginning, errors of its inputs and of
+its log along the way, and calibration errors of its sensors.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray, Slice
+from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.towing import LinearisedTow, TowedPoint
+from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.coefficients import COEFFICIENTS
+
+MOTION_STD_M = 3.0
+"""Prior std (m) of the slow motions with which a tow begins; assumed."""
+
+ADDED_MASS_STD = 0.5
+"""Prior std of the boards' added mass, as a part of the cylinder of water around them: that of
+the effect of the catalogue."""
+
+
+@dataclass(frozen=True)
+class CalibrationError:
+    """Calibration error of a sensor through a tow: its channel, its std, and if it is a part of
+    the value.
+    """
+
+    channel: str
+    std: float
+    relative: bool
+
+
+def calibration_errors(channels: tuple[str, ...]) -> tuple[CalibrationError, ...]:
+    """Calibration errors of channels, by the channel table."""
+    return tuple(
+        CalibrationError(name, std, relative)
+        for name in channels
+        for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
+        if std > 0.0
+    )
+
+
+@dataclass(frozen=True)
+class TowLayout:
+    """Layout of the parameters that a fit of one tow sees: names and slices of their kinds.
+
+    Attributes
+    ----------
+    motions, knots
+        Number of slow motions, and of knots of the log's error.
+    channels
+        Measured channels.
+    model
+        Std of the model's constant error, as a factor on what is stated; 0 for an exact model.
+    """
+
+    motions: int
+    knots: int
+    channels: tuple[str, ...]
+    model: float = 1.0
+
+    @property
+    def shared(self) -> int:
+        """Number of the parameters that all tows share."""
+        return len(COEFFICIENTS) + 1 + len(GROUPS)
+
+    @property
+    def of_model(self) -> Slice:
+        """Slice of the constant errors of the model."""
+        return slice(len(COEFFICIENTS) + 1, self.shared)
+
+    @property
+    def of_motions(self) -> Slice:
+        """Slice of the slow motions."""
+        return slice(self.shared, self.shared + self.motions)
+
+    @property
+    def of_errors(self) -> Slice:
+        """Slice of the errors of the inputs."""
+        return slice(self.of_motions.stop, self.of_motions.stop + len(INPUT_ERRORS))
+
+    @property
+    def of_log(self) -> Slice:
+        """Slice of the log's errors at its knots."""
+        return slice(self.of_errors.stop, self.of_errors.stop + self.knots)
+
+    @property
+    def of_calibration(self) -> Slice:
+        """Slice of the calibration errors."""
+        return slice(self.of_log.stop, len(self))
+
+    def __len__(self) -> int:
+        return self.of_log.stop + len(calibration_errors(self.channels))
+
+
+def layout_of(tow: MovingTow, motions: int, model: float) -> TowLayout:
+    """Layout of a tow."""
+    knots = tow.inputs.knots
+    return TowLayout(motions, 0 if knots is None else knots.number, tow.channels, model)
+
+
+def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:
+    """Derivatives (n, k, p) of measured means by all parameters, in units of their prior std."""
+    n, k = linear.values.shape
+    total = np.zeros((n, k, len(layout)))
+    total[..., :12] = linear.by_coefficients * prior_std
+    total[..., 12:13] = linear.by_added_mass * ADDED_MASS_STD
+    for column, group in enumerate(GROUPS, start=layout.of_model.start):
+        for row, name in enumerate(layout.channels):
+            if group_of(name) == group:
+                angle = CHANNELS[name].unit == 'rad'
+                values = np.abs(np.nan_to_num(linear.values[:, row]))
+                total[:, row, column] = layout.model * (
+                    MODEL_ANGLE if angle else MODEL_FRACTION * values
+                )
+    total[..., layout.of_motions] = linear.by_motions * MOTION_STD_M
+    total[..., layout.of_errors] = linear.by_errors
+    knots = linear.tow.inputs.knots
+    if knots is not None:
+        total[..., layout.of_log] = linear.by_log @ knots.root
+    for number, error in enumerate(calibration_errors(layout.channels)):
+        row = layout.channels.index(error.channel)
+        values = np.nan_to_num(linear.values[:, row]) if error.relative else np.ones(n)
+        total[:, row, layout.of_calibration.start + number] = error.std * values
+    return total
+
+
+def point_of(
+    tow: MovingTow, layout: TowLayout, z: FloatArray, start: FloatArray, prior_std: FloatArray
+) -> TowedPoint:
+    """Point at which to tow, from parameters (p,) in units of their prior std."""
+    knots = tow.inputs.knots
+    return TowedPoint(
+        coefficients=start + prior_std * z[:12],
+        added_mass=float(ADDED_MASS_STD * z[12]),
+        errors=z[layout.of_errors],
+        log=np.zeros(0) if knots is None else knots.root @ z[layout.of_log],
+    )
+
+
+def linear_part(layout: TowLayout) -> FloatArray:
+    """Flags (p,), 1 for parameters that stay where the tow is linearised about nought: slow
+    motions, calibration and the constant errors of the model.
+    """
+    flags = np.zeros(len(layout))
+    for part in (layout.of_model, layout.of_motions, layout.of_calibration):
+        flags[part] = 1.0
+    return flags

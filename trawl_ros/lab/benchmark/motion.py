@@ -1,0 +1,223 @@
+"""Estimates from all of a tow in motion, with the model as its own plant: are they calibrated?"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.special import chdtri
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
+from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.fit import MotionFit, MotionOptions, fit_motion
+from trawl_ros.estimation.motion.inputs import TowInputs
+from trawl_ros.estimation.motion.knots import knots_of_log
+from trawl_ros.estimation.motion.nuisances import columns, layout_of, linear_part, point_of
+from trawl_ros.estimation.motion.processes import EXACT_MODEL, group_rows
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, linearise_tow
+from trawl_ros.lab.benchmark.gears import default_gear, with_around
+from trawl_ros.lab.benchmark.timing import timed
+from trawl_ros.lab.report.measured import MeasuredValue, between
+from trawl_ros.lab.report.page import Findings
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.channels import MEASURED
+
+AROUND = 24
+"""Meshes around the mouth of the net."""
+
+SEEDS = (1, 2, 3, 4, 5, 6)
+
+NARROWER = 0.3
+"""Part of its std to which the boards' prior is narrowed, from which they are drawn: of boards from
+all of it hardly one in five tows this course."""
+
+MOVES = (
+    (20.0, 110.0, -80.0, 0.0),
+    (130.0, 160.0, 0.0, -0.2),
+    (220.0, 250.0, 0.0, 0.3),
+    (270.0, 400.0, 40.0, 0.0),
+)
+"""Changes: from and to (s), of both warps (m) and of the speed (m/s). Warp is paid out at speed:
+at a lower one boards lose their lift meanwhile, and bars go slack."""
+
+START = np.array([520.0, 520.0, 2.3])
+
+NOISE = dict(zip(GROUPS, (500.0, 0.1, 0.4, 0.1, 0.003, 0.003, 0.3), strict=True))
+"""Standard deviations (SI) of the means of a stretch of 20 s, about those of the instruments."""
+
+STEP_S, STRETCH_S, DURATION_S = 2.0, 20.0, 420.0
+
+LOG_STD, MEMORY_S = 0.03, 160.0
+"""Std (m/s) of a reading of the log, one a second; time (s) after which an error is forgotten."""
+
+MOST_DRAWS = 60
+
+BAND = tuple(float(chdtri(12, tail)) for tail in (0.975, 0.025))
+"""Band that holds 95 % of the squared normalised errors of twelve coefficients."""
+
+
+@dataclass(frozen=True)
+class MotionTrial:
+    """Trial: the truth (12,), the fit, and the tow of the truth."""
+
+    truth: FloatArray
+    prior: ParameterVector
+    fit: MotionFit
+    towed: LinearisedTow
+
+    @property
+    def squared_error(self) -> float:
+        """Squared error of the coefficients in the metric of the posterior, 12 in the mean."""
+        away = self.fit.values - self.truth
+        return float(away @ np.linalg.solve(self.fit.covariance, away))
+
+    @property
+    def shrunk(self) -> FloatArray:
+        """Posterior over prior std (12,)."""
+        return np.sqrt(np.diag(self.fit.covariance)) / self.prior.std
+
+
+def course_tow(duration_s: float = DURATION_S) -> MovingTow:
+    """Tow of the course without any reading; its stretches are averaged alike everywhere."""
+    grid = np.arange(0.0, duration_s + 0.5)
+    values, rates = np.tile(START, (len(grid), 1)), np.zeros((len(grid), 3))
+    for begin, end, warp, speed in MOVES:
+        part = np.clip((grid - begin) / (end - begin), 0.0, 1.0)[:, None]
+        change = np.array([warp, warp, speed])
+        values += change * part**2 * (3.0 - 2.0 * part)
+        rates += change * 6.0 * part * (1.0 - part) / (end - begin)
+    n, k, steps = int(duration_s / STRETCH_S), len(MEASURED), round(STRETCH_S / STEP_S)
+    weights = np.full((n, k, steps + 1), 1.0 / steps)
+    weights[..., [0, -1]] *= 0.5
+    noise = np.tile([NOISE[group_of(name)] for name in MEASURED], (n, 1))
+    still = np.zeros(len(grid))
+    return MovingTow(
+        'course', 0, STEP_S, STRETCH_S, MEASURED, np.zeros((n, k)), noise,
+        np.ones((n, k), dtype=int), weights, TowInputs(1.0, values, rates, still, still),
+    )  # fmt: skip
+
+
+def run_motion_trial(
+    gear: TowedGear,
+    prior: ParameterVector,
+    seed: int,
+    errors: bool = False,
+    duration_s: float = DURATION_S,
+) -> MotionTrial:
+    """Draw a board from a prior, tow it, add noise, and fit from the prior's mean.
+
+    Parameters
+    ----------
+    gear, prior
+        The gear that is towed, and the prior of its board.
+    seed
+        Of the trial.
+    errors
+        True if all is drawn that the fit counts with: added mass, errors of counters and of the
+        log, calibration, drifts of sensors and errors of the model; else white noise alone.
+    duration_s
+        Length of the tow.
+
+    Raises
+    ------
+    TrawlError
+        If none of `MOST_DRAWS` boards tows the course.
+    """
+    chance, tow = np.random.default_rng(seed), course_tow(duration_s)
+    if errors:
+        readings = np.arange(0.0, duration_s)
+        knots = knots_of_log(readings, LOG_STD, duration_s, STRETCH_S, MEMORY_S)
+        tow = replace(tow, inputs=replace(tow.inputs, knots=knots))
+        options = MotionOptions(estimate_sizes=False)
+    else:
+        options = MotionOptions(
+            sizes=EXACT_MODEL, estimate_sizes=False, nuisances=False, tolerance=0.02
+        )
+    layout = layout_of(tow, 0, options.model)
+    for _ in range(MOST_DRAWS):
+        z = chance.standard_normal(len(layout))
+        z[len(prior)] = abs(z[len(prior)])
+        if not errors:
+            z[len(prior) :] = 0.0
+        point = point_of(tow, layout, z, prior.start, prior.std)
+        if np.any((point.coefficients < prior.low) | (point.coefficients > prior.high)):
+            continue
+        try:
+            towed = linearise_tow(gear, tow, point, np.ones(len(tow), dtype=bool))
+        except NoSteadyState:
+            continue
+        means = towed.values + columns(towed, layout, prior.std) @ (z * linear_part(layout))
+        for number, rows in enumerate(group_rows(replace(tow, means=means), means, tow.noise)):
+            covariance = rows.covariance(options.sizes.of_group(number), options.times)
+            noise = np.linalg.cholesky(covariance) @ chance.standard_normal(len(covariance))
+            means[rows.stretches, rows.channels] += noise
+        fit = fit_motion(gear, [replace(tow, means=means)], prior, options)
+        return MotionTrial(point.coefficients, prior, fit, towed)
+    raise TrawlError(f'none of {MOST_DRAWS} boards drawn from the prior tows the course')
+
+
+def narrowed(prior: ParameterVector) -> ParameterVector:
+    """Prior of the trials."""
+    return replace(prior, std=NARROWER * prior.std)
+
+
+def measure(small: bool) -> Findings:
+    """Run the trials."""
+    record = default_gear(small=small)
+    if not small:
+        record = with_around(record, AROUND)
+    gear, prior = TowedGear(build_model(record)), narrowed(board_prior(record))
+    if small:
+        prior = replace(prior, std=0.2 * prior.std)
+    rows: list[MeasuredValue] = []
+    for words, errors in (('white noise', False), ('all errors as stated', True)):
+        if not (small and errors):
+            rows += _rows(gear, prior, words, errors, small)
+    return Findings(
+        tuple(rows),
+        text=f'{DURATION_S:.0f} s of hauling, two speed steps and veering, in stretches of '
+        f'{STRETCH_S:.0f} s; the model, with {AROUND} meshes around its net, is its own plant and '
+        f'is towed in the same steps of {STEP_S:g} s. Boards are drawn from {NARROWER:g} of the '
+        "gear file's prior; the fit begins at the mean of that, and knows it. With *white noise* "
+        'inputs and sensors are else exact; with *all errors as stated* added mass, counters, log, '
+        'calibration, drifts and errors of the model are drawn from what the fit takes them for.',
+    )
+
+
+def _rows(
+    gear: TowedGear, prior: ParameterVector, words: str, errors: bool, small: bool
+) -> list[MeasuredValue]:
+    seeds, duration = (SEEDS[:1], 80.0) if small else (SEEDS, DURATION_S)
+    trials, seconds = [], []
+    for seed in seeds:
+        trial, took = timed(partial(run_motion_trial, gear, prior, seed, errors, duration))
+        trials.append(trial)
+        seconds.append(took)
+    squares = np.array([trial.squared_error for trial in trials])
+    inside = np.mean((squares >= BAND[0]) & (squares <= BAND[1]))
+    shrunk = np.exp(np.mean([np.log(trial.shrunk).mean() for trial in trials]))
+    at_rest = sum(trial.fit.converged for trial in trials)
+    # The mean over n trials of the sum of twelve squared normal errors has a band of its own.
+    freedom = 12 * len(trials)
+    low, high = (float(chdtri(freedom, tail)) / len(trials) for tail in (0.975, 0.025))
+    each = ', '.join(f'{square:.1f}' for square in squares)
+    return [
+        MeasuredValue(
+            f'{words}: squared normalised error of twelve coefficients, mean of the trials',
+            float(squares.mean()),
+            '',
+            between(low, high),
+            f'{each}; {at_rest} of {len(trials)} came to rest',
+        ),
+        MeasuredValue(
+            f'{words}: trials with it within {BAND[0]:.1f} to {BAND[1]:.1f}',
+            100.0 * float(inside),
+            '%',
+            note='95 % of them belong there',
+        ),
+        MeasuredValue(f'{words}: posterior over prior std, geometric mean', float(shrunk), ''),
+        MeasuredValue(f'{words}: processor time of a trial', float(np.mean(seconds)), 's'),
+    ]
