@@ -20,6 +20,8 @@ NODES = (
     'discrepancy_node',
     'bag_recorder',
     'bag_player',
+    'nmea_in',
+    'nmea_out',
 )
 
 # ROS 2 itself, for machines that do not have it. It is an extra because a machine with a full

@@ -18,7 +18,7 @@ from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.fields import FIELDS, WaterColumn, fields_of_sample
 from trawl_ros.records.samples import RangeSample
 from trawl_ros.records.topics import absolute
-from trawl_ros.sentences.framing import framed
+from trawl_ros.sentences.framing import framed, tag_block
 from trawl_ros.sentences.table import load_table, packaged_systems
 
 SEA_TRIAL = Path(__file__).parents[2] / 'bags/sea_trial'
@@ -171,3 +171,18 @@ def test_of_two_systems_that_tell_a_topic_the_first_named_is_used(tmp_path):
         "sentence @IITDS: field 2 is 'f', expected 'M'": 1,
         'a line without a sentence ($…)': 1,
     }
+
+
+def test_times_of_a_recorder_and_of_tag_blocks_are_those_of_gear_too(tmp_path):
+    spread = checked('MPMSD,T,PD,23,XST,m,84.50')
+    tag = tag_block(1_785_580_732_000 * 1_000_000).encode()
+    lines = [b'2026-08-01T10:38:51.250Z,' + spread, b'2026-08-01T10:38:52.250Z,@IITDS,80.0,M']
+    recorder = 'time: recorder\n  recorder: {format: iso}'
+    done, found = imported(tmp_path, lines, 'marport', recorder)
+    ((_, stamp),) = found
+    assert stamp == 1_785_580_731_250 * 1_000_000
+    assert done.left_out == {'a line without a sentence ($…)': 1}
+    (tmp_path / 'tagged').mkdir()
+    recorder = 'time: recorder\n  recorder: {format: milliseconds}'
+    _, found = imported(tmp_path / 'tagged', [tag + spread], 'marport', recorder)
+    assert [stamp for _, stamp in found] == [1_785_580_732_000 * 1_000_000]

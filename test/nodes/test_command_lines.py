@@ -19,6 +19,8 @@ NODES = (
     'discrepancy_node',
     'bag_recorder',
     'bag_player',
+    'nmea_in',
+    'nmea_out',
 )
 
 FILES = {

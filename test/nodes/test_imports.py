@@ -33,6 +33,8 @@ OTHERS = [
     ('autopilot_node', 'AutopilotNode'),
     ('trial_node', 'TrialNode'),
     ('autotrawl_node', 'AutotrawlNode'),
+    ('nmea_in', 'NmeaIn'),
+    ('nmea_out', 'NmeaOut'),
 ]
 ESTIMATORS = [
     ('identification_node', 'IdentificationNode'),

@@ -23,6 +23,8 @@ EXECUTABLES = {
     'discrepancy_node',
     'bag_recorder',
     'bag_player',
+    'nmea_in',
+    'nmea_out',
     'trawl',
 }
 

@@ -36,8 +36,10 @@ NODES = (
     'bag_recorder',
     'bag_player',
     'discrepancy_node',
+    'nmea_in',
+    'nmea_out',
 )
-DOMAINS = (*range(70, 80), 81)
+DOMAINS = (*range(70, 80), 81, 223, 224)
 # What is installed elsewhere is compiled anew there, which takes sim_node a quarter of a minute.
 QUICK = ('vessel_node', 'winch_node')
 START_S = 60.0  # the bound for a machine busy with other tests; one to three seconds are usual

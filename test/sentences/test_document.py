@@ -48,8 +48,9 @@ def rows() -> list[str]:
             form = f' (read only: {row.form})' if row.form else ''
             front = f'| `{system}` | `{picture(row)}`{form}'
             back = f'{row.source} | {row.assumed}'
-            if row.is_clock:
-                lines.append(f'{front} | date and time | | {back} |')
+            if not row.topics:
+                said = 'passed over' if row.passed_over else 'date and time'
+                lines.append(f'{front} | {said} | | {back} |')
             for field in (field for field in row.fields if field.reading):
                 step = f'{UNITS[field.unit].name}, {10.0**-field.decimals:g}'
                 flipped = ', other sign' if field.scale < 0 else ''
@@ -82,6 +83,14 @@ def test_the_sentence_of_ones_own_reads_what_that_ship_sent(tmp_path):
         ('winch/joint_states', 'port_length'): -43.83,
         ('winch/joint_states', 'port_tension'): 0.0,
     }
+
+
+def test_the_guides_set_points_are_read():
+    guide = (DOCUMENT.parent / 'guides/sentences.md').read_text('utf-8')
+    reader = SentenceReader([load_table('set_points')])
+    block = re.search(r'```text set_points.nmea\n(.*?)```', guide, re.DOTALL)[1]
+    names = [reader.read(parse_line(line.encode())).name for line in block.splitlines()]
+    assert names == ['warps', 'ship']
 
 
 if __name__ == '__main__':

@@ -16,6 +16,7 @@ from trawl_ros.sentences.codec import SentenceReader
 from trawl_ros.sentences.framing import (
     HEADER,
     LONGEST_LINE,
+    Foreign,
     LineSplitter,
     Unreadable,
     framed,
@@ -117,6 +118,13 @@ def test_tag_blocks_headers_and_what_a_recorder_wrote_are_no_hindrance(reader):
 def test_a_line_that_cannot_be_read_says_why(reader, line, reason):
     with pytest.raises(Unreadable, match=reason):
         reader.read(parse_line(line))
+
+
+def test_what_others_say_is_told_apart_from_what_is_broken(reader):
+    with pytest.raises(Foreign):
+        reader.read(parse_line(checked('GPGSV,1,1,00')))
+    temperature = reader.read(parse_line(b'$MPMSD,T,HR,11,TMP,c,14.53*0E'))
+    assert (temperature.system, temperature.readings) == ('marport', {})
 
 
 def test_noise_never_does_more_than_be_refused(reader):

@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from trawl_ros.sentences.framing import Frame, Unreadable, framed
+from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, framed
 from trawl_ros.sentences.numbers import read_number, write_number
 from trawl_ros.sentences.table import SentenceField, SentenceRow, SentenceTable
 from trawl_ros.sentences.times import SaidTime, read_day, read_time, write_time
@@ -63,12 +63,14 @@ class SentenceReader:
 
         Raises
         ------
+        Foreign
+            If no table has its address.
         Unreadable
             If no row fits; the reason names the sentence, and the field that comes nearest.
         """
         found = self._candidates(frame)
         if not found:
-            raise Unreadable(f'sentence {_name(frame)}, which no table has')
+            raise Foreign(f'sentence {_name(frame)}, which no table has')
         best, reason = -1, ''
         for (system, name), address in found:
             row = self.rows[system, name]

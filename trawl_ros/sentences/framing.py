@@ -25,6 +25,10 @@ class Unreadable(ValueError):
     """Line that gives no reading; the text is the reason, the same for all such lines."""
 
 
+class Foreign(Unreadable):
+    """Sentence that is whole, and of an address that no table has."""
+
+
 @dataclass(frozen=True)
 class Frame:
     """Frame of one sentence.
@@ -74,7 +78,7 @@ def parse_line(line: bytes) -> Frame:
         if calc_checksum(content) != checksum.upper():
             raise Unreadable('a tag block whose checksum is wrong')
         if said := _TAG_TIME.search(content):
-            tag_time = _unix_ns(int(said[1]))
+            tag_time = _unix_ns(said[1])
         text = _TAG_BLOCK.sub('', text)
     at = max(text.rfind(start) for start in STARTS)
     if at < 0:
@@ -97,14 +101,14 @@ def framed(start: str, body: str, *, checksum: bool) -> str:
 
 
 def tag_block(stamp: int) -> str:
-    """Give the tag block that says a UNIX time (ns), in milliseconds."""
-    content = f'c:{stamp // 1_000_000}'
+    """Give the tag block that says a UNIX time (ns), in milliseconds of thirteen digits."""
+    content = f'c:{stamp // 1_000_000:013d}'
     return f'\\{content}*{calc_checksum(content)}\\'
 
 
-def _unix_ns(number: int) -> int:
-    """Convert UNIX time in seconds or, where so many digits stand there, in milliseconds."""
-    return number * (1_000_000 if number >= 10**11 else 1_000_000_000)
+def _unix_ns(digits: str) -> int:
+    """Convert UNIX time in seconds or, with more than ten digits, in milliseconds."""
+    return int(digits) * (1_000_000 if len(digits) > 10 else 1_000_000_000)
 
 
 class LineSplitter:

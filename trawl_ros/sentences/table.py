@@ -143,6 +143,9 @@ class SentenceRow(Record):
         makes samples with sentences of the same form only.
     optional, more
         Number of fields at the end that older forms do not have; true if further ones may follow.
+    passed_over
+        True for a sentence without a reading for the project, such as a temperature: it is
+        known, and no fault.
     least_interval_s
         Least time between two of these sentences; readings between are not sent.
     source, assumed
@@ -158,6 +161,7 @@ class SentenceRow(Record):
     form: str = ''
     optional: Annotated[int, Field(ge=0, le=10)] = 0
     more: bool = False
+    passed_over: bool = False
     least_interval_s: Annotated[float, Field(ge=0.0, le=3600.0)] = 0.0
     source: Annotated[str, Field(min_length=3)]
     assumed: str = ''
@@ -170,7 +174,7 @@ class SentenceRow(Record):
     @property
     def is_clock(self) -> bool:
         """True if it says date and time and nothing else."""
-        return not self.topics
+        return not self.topics and not self.passed_over
 
     @model_validator(mode='after')
     def _fits_together(self) -> 'SentenceRow':
@@ -179,6 +183,8 @@ class SentenceRow(Record):
         targets = [field.target for field in self.fields if field.reading]
         if len(set(targets)) < len(targets):
             raise ValueError('fields: a reading twice, expected each once')
+        if self.passed_over and targets:
+            raise ValueError('passed_over: true, expected no reading')
         if self.is_clock:
             said = {field.kind for field in self.fields}
             if not {'time', 'date'} <= said:

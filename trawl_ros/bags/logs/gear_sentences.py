@@ -130,6 +130,9 @@ class GearListening:
         kept = []
         for spoken, stamp in stamped:
             topics = {topic for topic, _ in spoken.readings}
+            if not topics:
+                self._left['a sentence that is passed over'] += 1
+                continue
             if all(teller[topic] != spoken.system for topic in topics):
                 topic = min(topics)
                 self._left[f'{topic} by {spoken.system}, which {teller[topic]} tells'] += 1

@@ -20,6 +20,7 @@ from trawl_ros.gear.polars import load_door
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.scenario.scenario import load_scenario
+from trawl_ros.sentences.table import load_table
 
 FILE = 'given.yaml'
 PLAN = 'given.csv'
@@ -189,4 +190,5 @@ TARGETS = (
     _target('instruments', 'instruments', load_instruments, 'winch'),
     _target('csv-mapping', 'logs', load_mapping, 'clock'),
     _target('nmea-mapping', 'logs', load_nmea_mapping, 'nmea'),
+    _target('sentences', 'sentences', load_table, 'system'),
 )

@@ -1,0 +1,176 @@
+"""Links are opened again when they are lost, and hold a bounded number of lines."""
+
+import os
+import pty
+import socket
+import time
+import tty
+
+import pytest
+
+from trawl_ros.core.errors import SentenceError
+from trawl_ros.nodes.links import threads
+from trawl_ros.nodes.links.channels import LOCAL, parse_link
+from trawl_ros.nodes.links.threads import WAITING_LINES, LineSource, SentenceSink
+
+LINE = b'$SCWTP,4.25,T*00'
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch):
+    monkeypatch.setattr(threads, 'RETRY_S', 0.05)
+
+
+@pytest.fixture
+def opened():
+    """Open links that are closed at the end."""
+    links = []
+
+    def open_link(kind, text):
+        links.append(kind(parse_link(text)))
+        return links[-1]
+
+    yield open_link
+    for link in links:
+        link.close()
+
+
+def until(condition):
+    end = time.monotonic() + 20.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind((LOCAL, 0))
+        return probe.getsockname()[1]
+
+
+def arrive(sink, source, count=3):
+    """Send until lines arrive, and give the first of them."""
+    lines = []
+
+    def come():
+        sink.put(LINE + b'\r\n')
+        lines.extend(source.take(100))
+        return len(lines) >= count
+
+    until(come)
+    return lines[0]
+
+
+def test_without_a_host_it_is_this_machine_alone():
+    assert parse_link('udp://:10110').host == LOCAL
+    assert parse_link('tcp-listen://:10110').host == LOCAL
+    assert parse_link('udp://239.192.0.1:60001').is_multicast
+
+
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        ('10110', 'expected one of udp://'),
+        ('udp:10110', 'expected as udp://HOST:PORT'),
+        ('udp://:70000', 'found port 70000'),
+        ('udp://:x', 'expected as udp://HOST:PORT'),
+        ('tcp://:1?baud=4800', "option 'baud', expected none"),
+        ('serial:', 'no path'),
+        ('serial:/dev/ttyS0?baud=4801', "baud '4801'"),
+    ],
+)
+def test_an_address_that_is_none_is_refused_with_what_was_found(text, complaint):
+    with pytest.raises(SentenceError, match=complaint):
+        parse_link(text)
+
+
+@pytest.mark.parametrize(
+    ('listens', 'sends'),
+    [
+        ('udp://:{port}', 'udp://:{port}'),
+        ('udp://239.192.0.7:{port}', 'udp://239.192.0.7:{port}'),
+        ('udp://127.255.255.255:{port}', 'udp://127.255.255.255:{port}?broadcast'),
+        ('tcp-listen://:{port}', 'tcp://:{port}'),
+        ('tcp://:{port}', 'tcp-listen://:{port}'),
+        ('serial:{path}', 'pty:{path}'),
+        ('pty:{path}', 'serial:{path}?baud=115200'),
+    ],
+)
+def test_lines_go_from_one_end_to_the_other(listens, sends, opened, tmp_path):
+    place = {'port': free_port(), 'path': tmp_path / 'tty'}
+    source = opened(LineSource, listens.format(**place))
+    sink = opened(SentenceSink, sends.format(**place))
+    assert arrive(sink, source) == LINE
+    assert (source.state, sink.state) == ('', '')
+
+
+def test_a_connection_that_breaks_is_made_again(opened):
+    port = free_port()
+    sink = opened(SentenceSink, f'tcp-listen://:{port}')
+    source = opened(LineSource, f'tcp://:{port}')
+    arrive(sink, source)
+    sink.close()
+    until(lambda: source.state)
+    assert 'refused' in source.state.lower() or 'closed' in source.state
+    again = opened(SentenceSink, f'tcp-listen://:{port}')
+    arrive(again, source)
+    assert source.opened >= 2
+
+
+def test_a_serial_port_that_vanishes_is_opened_when_it_is_back(opened, tmp_path):
+    path = tmp_path / 'tty'
+    source = opened(LineSource, f'serial:{path}')
+    until(lambda: source.state == 'No such file or directory')
+    for _ in range(2):
+        sink = SentenceSink(parse_link(f'pty:{path}'))
+        arrive(sink, source)
+        sink.close()
+        until(lambda: source.state)
+
+
+def test_a_flood_is_given_up_in_part_and_counted(opened):
+    port = free_port()
+    source = opened(LineSource, f'tcp-listen://:{port}')
+    until(lambda: source.state == '')
+    block = (LINE + b'\r\n') * 1000
+    with socket.create_connection((LOCAL, port)) as client:
+        for _ in range(100):
+            client.sendall(block)
+        client.sendall(b'x' * 5000 + b'\n')
+    until(lambda: source.too_long == 1)
+    assert source.lines == 100_000
+    assert source.lost == 100_000 - WAITING_LINES
+    assert len(source.take(10**6)) == WAITING_LINES
+
+
+def test_a_reader_that_stands_still_holds_nobody_up(opened, tmp_path):
+    """A pseudo-terminal that nobody reads is full after some kilobytes."""
+    sink = opened(SentenceSink, f'pty:{tmp_path / "tty"}')
+    until(lambda: sink.state == '')
+    for _ in range(3 * WAITING_LINES):
+        sink.put(LINE + b'\r\n')
+    assert sink.lost >= WAITING_LINES
+
+
+def test_a_file_in_the_place_of_a_pseudo_terminal_stays(opened, tmp_path):
+    path = tmp_path / 'notes'
+    path.write_text('mine')
+    sink = opened(SentenceSink, f'pty:{path}')
+    until(lambda: 'a file already' in sink.state)
+    assert path.read_text() == 'mine'
+
+
+def test_half_lines_of_a_port_are_put_together(opened):
+    master, slave = pty.openpty()
+    tty.setraw(slave)
+    source = opened(LineSource, f'serial:{os.ttyname(slave)}')
+    until(lambda: source.state == '')
+    lines = []
+    for piece in (LINE[:5], LINE[5:] + b'\r', b'\n' + LINE[:1], LINE[1:] + b'\r\n'):
+        os.write(master, piece)
+        time.sleep(0.01)
+    until(lambda: lines.extend(source.take(9)) or len(lines) == 2)
+    assert lines == [LINE, LINE]
+    os.close(master)
+    until(lambda: source.state)
+    os.close(slave)

@@ -1,0 +1,138 @@
+"""Threads beside a node that keep links open: lines in, sentences out, in bounded memory."""
+
+import time
+from collections import deque
+from threading import Event, Lock, Thread
+
+from trawl_ros.core.foreign import short
+from trawl_ros.nodes.links.channels import Channel, LinkAddress, open_channel
+from trawl_ros.sentences.framing import LineSplitter
+
+WAITING_LINES = 5000
+"""Lines that wait at most, in or out; older ones are given up and counted."""
+
+POLL_S = 0.1
+RETRY_S = 1.0
+
+
+class LinkThread:
+    """Thread that opens a link, and again whenever it is lost.
+
+    Attributes
+    ----------
+    address : LinkAddress
+        Of the link.
+    state : str
+        Empty while it is open, else why it is not.
+    opened : int
+        Times that it was opened.
+    lines, lost : int
+        Lines that came or went, and those given up.
+    """
+
+    LISTENS = True
+
+    def __init__(self, address: LinkAddress) -> None:
+        self.address = address
+        self.state = 'not open yet'
+        self.opened = 0
+        self.lines = 0
+        self.lost = 0
+        self._lock = Lock()
+        self._waiting: deque[bytes] = deque()
+        self._stop = Event()
+        self._thread = Thread(target=self._run, name=address.text, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the thread, and wait until it has."""
+        self._stop.set()
+        self._thread.join(5.0)
+
+    def _run(self) -> None:
+        while not self._stop.is_set():
+            try:
+                channel = open_channel(self.address, listens=self.LISTENS)
+            except OSError as reason:
+                self.state = short(reason)
+                self._stop.wait(RETRY_S)
+                continue
+            self.state = ''
+            self.opened += 1
+            try:
+                self._work(channel)
+            except OSError as reason:
+                self.state = short(reason)
+            finally:
+                channel.close()
+            self._stop.wait(0.0 if self._stop.is_set() else RETRY_S)
+
+    def _work(self, channel: Channel) -> None:
+        raise NotImplementedError
+
+    def _put(self, line: bytes) -> None:
+        with self._lock:
+            self._waiting.append(line)
+            if len(self._waiting) > WAITING_LINES:
+                self._waiting.popleft()
+                self.lost += 1
+
+    def _take(self, most: int) -> list[bytes]:
+        with self._lock:
+            count = min(most, len(self._waiting))
+            return [self._waiting.popleft() for _ in range(count)]
+
+
+class LineSource(LinkThread):
+    """Source of lines from a link.
+
+    ``too_long`` counts lines that were longer than any sentence.
+    """
+
+    def __init__(self, address: LinkAddress) -> None:
+        self.too_long = 0
+        super().__init__(address)
+
+    def take(self, most: int) -> list[bytes]:
+        """Take the lines that wait, the oldest first."""
+        return self._take(most)
+
+    def _work(self, channel: Channel) -> None:
+        splitters: dict[int, LineSplitter] = {}
+        while not self._stop.is_set():
+            for source, data in channel.poll(POLL_S):
+                splitter = splitters.setdefault(source, LineSplitter())
+                before = splitter.too_long
+                feed = splitter.datagram if channel.datagrams else splitter.feed
+                for line in feed(data):
+                    self.lines += 1
+                    self._put(line)
+                self.too_long += splitter.too_long - before
+                if not data:
+                    del splitters[source]
+
+
+class SentenceSink(LinkThread):
+    """Sink of sentences to a link; those that nobody takes are given up."""
+
+    LISTENS = False
+
+    def put(self, text: bytes) -> None:
+        """Hand a sentence over, with its end."""
+        self._put(text)
+
+    def _work(self, channel: Channel) -> None:
+        while not self._stop.is_set():
+            # Bytes that come back are thrown away: a pseudo-terminal would fill.
+            if not channel.datagrams:
+                channel.poll(0.0)
+            texts = self._take(100)
+            if not texts:
+                time.sleep(0.01)
+            for text in texts:
+                if self._stop.is_set():
+                    break
+                if channel.send(text):
+                    self.lines += 1
+                else:
+                    self.lost += 1

@@ -1,0 +1,44 @@
+"""One teller for each topic: of two that say the same, the first is believed while it speaks."""
+
+from collections.abc import Iterable
+
+from trawl_ros.core.time import SECOND
+from trawl_ros.sentences.codec import Spoken
+
+SILENT_NS = 15 * SECOND
+"""Silence (ns) after which another teller is believed: acoustic sensors speak every few seconds."""
+
+
+class Tellers:
+    """Choice of one source for each topic, among links, systems, talkers and forms."""
+
+    def __init__(self) -> None:
+        self._told: dict[str, tuple[tuple[str, str, str], int]] = {}
+
+    def takes(self, spoken: Spoken, link: str, form: str, now: int) -> bool:
+        """Say whether a sentence is of the source that is believed.
+
+        Parameters
+        ----------
+        spoken
+            The sentence.
+        link
+            Name of the link it came by.
+        form
+            Form of its row.
+        now
+            Monotonic time, ns.
+        """
+        source = (link, spoken.system, f'{spoken.talker} {form}')
+        topics = _topics(spoken)
+        for topic in topics:
+            owner, heard = self._told.get(topic, (source, now))
+            if owner != source and now - heard < SILENT_NS:
+                return False
+        for topic in topics:
+            self._told[topic] = (source, now)
+        return True
+
+
+def _topics(spoken: Spoken) -> Iterable[str]:
+    return {topic for topic, _ in spoken.readings}
