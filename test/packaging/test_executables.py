@@ -39,7 +39,7 @@ NODES = (
     'nmea_in',
     'nmea_out',
 )
-DOMAINS = (*range(70, 80), 81, 223, 224)
+DOMAINS = (*range(70, 80), 81, 223, 224, 225)
 # What is installed elsewhere is compiled anew there, which takes sim_node a quarter of a minute.
 QUICK = ('vessel_node', 'winch_node')
 START_S = 60.0  # the bound for a machine busy with other tests; one to three seconds are usual
