@@ -11,6 +11,8 @@ from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
 from trawl_ros.nodes.discrepancy_node import DiscrepancyNode  # noqa: E402
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
+from trawl_ros.nodes.nmea_in import NmeaIn  # noqa: E402
+from trawl_ros.nodes.nmea_out import NmeaOut  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
@@ -30,6 +32,8 @@ NODES = (
     DiscrepancyNode,
     DoorSensorNode,
     IdentificationNode,
+    NmeaIn,
+    NmeaOut,
     SimNode,
     TrawlSonarNode,
     TrialNode,
@@ -51,6 +55,11 @@ def used(open_graph, gear_path, tmp_path_factory):
             'DiscrepancyNode': gear,
             'TrialNode': gear,
             'BagRecorder': {'output': str(tmp_path_factory.mktemp('rights') / 'bag')},
+            'NmeaIn': {
+                'links': ['udp://:20232'],
+                'systems': ['marport', 'scantrol', 'ship', 'set_points'],
+                'commands': True,
+            },
             'BagPlayer': {'bag': 'bags/sea_trial', 'start_paused': True},
         }
         nodes = [graph.add(kind, **parameters.get(kind.__name__, {})) for kind in NODES]

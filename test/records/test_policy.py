@@ -40,8 +40,8 @@ def test_every_node_of_the_package_has_rights() -> None:
 def test_nobody_but_controllers_and_an_operator_commands() -> None:
     commands = {topic.name for topic in COMMANDS}
     may = {path for path, names in granted('trawl', 'publish').items() if names & commands}
-    controllers = {'/trawl/autotrawl_node', '/trawl/autopilot_node', '/trawl/trial_node'}
-    assert may == controllers | {f'/trawl/{OPERATOR}'}
+    nodes = ('autotrawl_node', 'autopilot_node', 'nmea_in', 'trial_node', OPERATOR)
+    assert may == {f'/trawl/{node}' for node in nodes}
 
 
 def test_no_instrument_sees_what_is_to_be_estimated() -> None:

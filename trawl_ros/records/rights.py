@@ -71,6 +71,14 @@ _READINGS = (
 )
 """Readings from which boards are identified."""
 
+_SPOKEN = (
+    *_READINGS,
+    'sonar/bottom',
+    'vessel/fix',
+    'vessel/echo_sounder/depth',
+)
+"""Readings that ships' instruments send as sentences."""
+
 
 def _consumer(
     publishes: tuple[str, ...], hears: tuple[str, ...], answers: tuple[str, ...] = ()
@@ -135,6 +143,9 @@ RIGHTS = {
         ),
         ('trial/pause', 'trial/resume', 'trial/veto', 'trial/take_over'),
     ),
+    # Set points of its links are commands, where it is told to pass them on.
+    'nmea_in': Rights((*_SPOKEN, 'command/winch', 'command/vessel'), ('winch/joint_states',)),
+    'nmea_out': _consumer((), _SPOKEN),
     'identification_node': _consumer(
         _names(ESTIMATES, 'identification/'), _READINGS, ('identification/finish',)
     ),
