@@ -446,8 +446,43 @@ def test_half_of_the_bars_of_square_meshes_lie_across() -> None:
     assert codend_drag(changed) - codend_drag(gear) == pytest.approx(after - before, rel=0.05)
 
 
-def test_square_meshes_ahead_of_the_codend_are_refused(tmp_path: Path) -> None:
-    data = plan_data()
-    data['netting']['plan']['pieces'][6]['orientation'] = 'square'
-    with pytest.raises(GearError, match='found square in the body, expected T0 or T90'):
+def squared(data: dict[str, Any], section: str) -> dict[str, Any]:
+    """A plan with a section of square meshes as long as it was, and half as wide as stretched."""
+    row = next(row for row in data['netting']['plan']['pieces'] if row.get('section') == section)
+    row['orientation'] = 'square'
+    row['long_meshes'] *= 2  # counted in bars
+    return data
+
+
+def test_square_meshes_ahead_of_the_codend_are_a_part_of_its_line(tmp_path: Path) -> None:
+    gear = loaded(tmp_path, squared(plan_data(), '22 mm aft'))
+    plan, model, before = plan_of(gear), build_model(gear), build_model(load_gear('krill_800'))
+    area = sum(bar.area * bar.rest for bar in model.net_mesh.bars)
+    assert area == pytest.approx(sum(p.twine_area for p in plan.pieces), rel=0.02)
+    steps = [bar.rest for bar in model.net_mesh.bars[-gear.netting.codend_segments + 1 :]]
+    long = gear.netting.codend_segments * steps[0]
+    tail = sum(p.length for p in plan.pieces if p.part == 'codend')
+    square = next(p for p in plan.pieces if p.orientation == 'square')
+    assert tail + square.length <= long <= tail + square.length + 1.0
+    assert len(model.net_mesh.positions) < len(before.net_mesh.positions)
+    # Its bars across have more drag than slanting ones.
+    line, was = (m.lump_drag_area[m.layout.net].sum() for m in (model, before))
+    assert line > was
+
+
+@pytest.mark.parametrize(
+    ('section', 'message'),
+    [
+        ('800 mm', 'found square in the upper body, expected T0 or T90: bars of square meshes'),
+        ('120 mm', None),
+    ],
+)
+def test_square_meshes_are_refused_in_panels_alone(
+    tmp_path: Path, section: str, message: str | None
+) -> None:
+    data = squared(plan_data(), section)
+    if message is None:
+        assert build_model(loaded(tmp_path, data)).nodes > 100
+        return
+    with pytest.raises(GearError, match=message):
         loaded(tmp_path, data)

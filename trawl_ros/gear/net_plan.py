@@ -98,10 +98,11 @@ class PieceRecord(Record):
         allowed = WING_PANELS if self.part == 'wing' else BODY_PANELS
         if self.panel not in allowed:
             raise ValueError(f'panel: found {self.panel}, expected one of {", ".join(allowed)}')
-        if self.orientation == 'square' and self.part != 'codend':
+        if self.orientation == 'square' and (self.part == 'wing' or self.panel != 'all'):
             raise ValueError(
-                f'orientation: found square in the {self.part}, expected T0 or T90: bars of square '
-                'meshes lie along and across the flow, which is modelled in the codend only'
+                f'orientation: found square in the {self.panel} {self.part}, expected T0 or T90: '
+                'bars of square meshes lie along and across the flow, which is modelled in netting '
+                'that goes all around ahead of the codend, and in the codend'
             )
         if self.cut is not None:
             try:

@@ -86,10 +86,15 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
 
 
 def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | None) -> NetMesh:
-    """Group the netting of a plan; see `PlannedMouth` and `PlannedCloth`."""
+    """Group the netting of a plan; see `PlannedMouth` and `PlannedCloth`.
+
+    Square meshes keep their width: from the first section of them on the net is one line.
+    """
     mouth = PlannedMouth(plan, net.around)
     cloth = PlannedCloth(net, mouth)
-    body = cloth.bodies['upper']
+    sections = cloth.bodies['upper'].sections
+    drawn = next((n for n, section in enumerate(sections) if section.square), len(sections))
+    body = Profile(sections[:drawn])
     halved = net.halved_at_circumference_m or (plan.circumference / 2, plan.circumference / 4)
     rows = rows_of(body, net.around, halved)
     wings = [
@@ -110,7 +115,8 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
     made = weave(net, body, wings, rows, lambda k, j: mouth.holds(k, 2 * j + k % 2), sums, rest)
     last, codend = rows[-1], sections_of(net, plan, 'codend', 'upper')
     ring = [made.index[len(rows), j] for j in range(last.columns)]
-    add_codend(net, Profile((*body.behind(last.back), *codend.sections)), ring, made)
+    line = *body.behind(last.back), *sections[drawn:], *codend.sections
+    add_codend(net, Profile(line), ring, made)
 
     def nodes(places: tuple[Place, ...], *, mirrored: bool = False) -> list[int]:
         around = 2 * net.around
