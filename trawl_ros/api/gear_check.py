@@ -131,7 +131,8 @@ def weights_of(model: GearModel) -> dict[str, float]:
         for rope in ropes_of(item):
             own = next(numbers for name, _, numbers in model.layout.lines if name == rope)
             force = item.force_on(float(model.rest[own].sum()))
-            found[item.name] = found.get(item.name, 0.0) + force
+            if force:  # kites may have none
+                found[item.name] = found.get(item.name, 0.0) + force
     if gear.catch is not None:
         fish = gear.catch.mass_kg / gear.catch.density_kg_m3
         found['catch'] = water.gravity * (gear.catch.mass_kg - water.density * fish)

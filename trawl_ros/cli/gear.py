@@ -29,7 +29,8 @@ def check(gear: str, out: Path | None) -> None:
     with code 3 if anything does.
     """
     from trawl_ros.api.gear_check import check_gear, drag_of_model, draw_gear
-    from trawl_ros.gear.drag_bands import BANDS
+    from trawl_ros.gear.drag_bands import BANDS, KNOT
+    from trawl_ros.model.rigging import ropes_of
 
     found = check_gear(gear)
     console, plan = output_console(), found.gear.netting.plan
@@ -80,6 +81,11 @@ def check(gear: str, out: Path | None) -> None:
             f'catch: {body.volume:.3g} m³ in {body.length:.3g} m of the codend, '
             f'{2 * body.radius:.3g} m across'
         )
+    head = 0.5 * model.water.density * (2.0 * KNOT) ** 2
+    for item in found.gear.hung:
+        if item.lift_area_m2:
+            lift = head * item.lift_area_m2 * len(ropes_of(item))
+            click.echo(f'{item.name}: lift of {lift:.0f} N at 2 knots')
     table = plain_table('weight in water', 'N', right=('N',))
     for name, weight in found.weights.items():
         table.add_row(name, f'{weight:.0f}')

@@ -61,13 +61,15 @@ class OwnBridleRecord(OwnMake):
 
 
 class HungRecord(Record):
-    """Weights, chain or floats on a rope, spread evenly from one share of its length to another.
+    """Weights, chain, floats or kites on a rope, spread evenly from one share of it to another.
 
     Shares of a bridle or sweep count from the board to the net, those of headrope, footrope and
     side ropes from port to starboard or from the top down. What hangs on a bridle, a sweep or a
     side rope hangs there on either side; on headrope and footrope the figures are those of the
     whole rope.
-    Figures in N/m are those of each metre of rope over which it is spread, as of a chain.
+    Figures in N/m are those of each metre of rope over which it is spread, as of a chain. Kites
+    have ``lift_area_m2``, C_L times their area, negative where they dive; their weight or buoyancy
+    may be left out.
     """
 
     name: str
@@ -80,6 +82,7 @@ class HungRecord(Record):
     buoyancy_n_m: NotNegative = 0.0
     density_kg_m3: Annotated[float, Field(gt=0, le=20_000)] | None = None
     drag_area_m2: NotNegative = 0.0
+    lift_area_m2: Annotated[float, Field(ge=-1000, le=1000)] = 0.0
 
     @model_validator(mode='after')
     def _sinks_or_floats(self) -> 'HungRecord':
@@ -89,10 +92,11 @@ class HungRecord(Record):
             self.weight_in_water_n_m,
             self.buoyancy_n_m,
         ]
-        if sum(force > 0 for force in given) != 1:
+        found = sum(force > 0 for force in given)
+        if found != 1 and not (found == 0 and self.lift_area_m2):
             raise ValueError(
                 'needs either weight_in_water_n or buoyancy_n, or one of them per metre (_n_m), '
-                f'found {sum(force > 0 for force in given)} of them'
+                f'or lift_area_m2, found {found} of them'
             )
         if self.to_share < self.from_share:
             raise ValueError(

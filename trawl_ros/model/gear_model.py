@@ -17,6 +17,7 @@ from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import CoefficientModifier, InTurn, NodeForce
 from trawl_ros.model.kite import Kite
+from trawl_ros.model.lifting import LiftingBodies
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
@@ -94,7 +95,8 @@ class GearModel:
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
     Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m², ``lump_added``
     kg per kg/m³ of water; ``floats`` (4, n) are those of the floats among them, in this order.
-    ``node_forces`` are forces beyond the paper's, ``catch`` what lies in the codend.
+    ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
+    codend.
 
     Examples
     --------
@@ -347,8 +349,12 @@ def build_model(gear: GearRecord) -> GearModel:
         for tip in (net[rim[0]], net[rim[-1]]):
             body = np.array([density * volume, volume, drag_area, 0.5 * volume])
             (buoyant if rim is mesh.headrope else lumps)[:, tip] += body
+    lifting: list[NodeForce] = []
     for item in gear.hung:
         for nodes, shares, force in hung_places(build, item):
+            if item.lift_area_m2:
+                on = nodes[shares > 0.0]
+                lifting.append(LiftingBodies(on, item.lift_area_m2 * shares[shares > 0.0], water))
             volume = force / water.gravity / (item.density - water.density)
             body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
             # A rope passes each node once.
@@ -391,6 +397,7 @@ def build_model(gear: GearRecord) -> GearModel:
         first_guess=guess,
         net_mesh=mesh,
         pattern=build_pattern(build.count, ends, kite.nodes),
+        node_forces=tuple(lifting),
         catch=catch,
     )
 

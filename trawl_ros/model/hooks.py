@@ -8,7 +8,7 @@ derivatives are taken by the complex step.
 from dataclasses import dataclass
 from typing import Protocol
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 
 DRAG, LIFT = 0, 1
 """Places of C_x^F and C_y^F among the coefficients that a board's law gives."""
@@ -53,7 +53,7 @@ class NodeForce(Protocol):
     """A force on some nodes, each by its own position and velocity alone."""
 
     @property
-    def nodes(self) -> FloatArray:
+    def nodes(self) -> IntArray:
         """Numbers (k,) of the nodes, each once."""
         ...
 

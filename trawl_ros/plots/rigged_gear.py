@@ -8,6 +8,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.catch import CatchBody
 from trawl_ros.model.assembly import points_of
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.lifting import LiftingBodies
 from trawl_ros.model.state import State, Tow
 from trawl_ros.report import style
 from trawl_ros.solver.first_guess import first_guess
@@ -21,6 +22,11 @@ VIEWS = (
     ('from the side', (0, 2), ('astern / m', 'up / m')),
     ('from ahead', (1, 2), ('to port / m', 'up / m')),
 )
+
+ASTERN = np.array([-1.0, 1.0, 1.0])
+"""Signs of axes astern, to port and up."""
+
+KITE = '#d98c00'
 
 THICK = ('_bridle', '_sweep', '_backstrop', 'headrope', 'footrope', '_wing_end')
 COLOURS = {
@@ -42,6 +48,7 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
     shape = first_guess(model, tow, 0.0) if state is None else state
     lines = _lines(model, shape, tow)
     points = np.concatenate([piece.reshape(-1, 3) for _, piece in lines])
+    origin = shape.board_positions.mean(axis=0)
     figure = Figure(figsize=(13.0, 9.0), layout='constrained')
     grid = figure.add_gridspec(2, 2, width_ratios=(2.3, 1.0))
     places = grid[0, 0], grid[1, 0], grid[:, 1]
@@ -58,6 +65,11 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
                     zorder=3 if thick else 2,
                 )
             )
+        for force in model.node_forces:
+            if isinstance(force, LiftingBodies):
+                places = (shape.nodes[force.nodes] - origin) * ASTERN
+                sign = '^' if force.area.sum() > 0.0 else 'v'
+                axes.plot(*places[:, plane].T, sign, color=KITE, markersize=4, zorder=4)
         low, high = points[:, plane].min(axis=0), points[:, plane].max(axis=0)
         margin = 0.04 * float((high - low).max())
         axes.set_xlim(low[0] - margin, high[0] + margin)
@@ -74,7 +86,7 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
 def _lines(model: GearModel, state: State, tow: Tow) -> list[tuple[str, FloatArray]]:
     """Pieces (n, 2, 3) of all lines but the warps, astern of the boards, to port, up of them."""
     points = points_of(model, state, tow).positions
-    turn = np.array([-1.0, 1.0, 1.0])
+    turn = ASTERN
     origin = state.board_positions.mean(axis=0)
     grouped: dict[str, list[FloatArray]] = {}
     for name, numbers, _ in model.layout.lines:

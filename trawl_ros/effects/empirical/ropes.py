@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.base.term import EmpiricalTerm, size
 from trawl_ros.model.numerics import dot
@@ -58,7 +58,7 @@ class NetWeight(EmpiricalTerm):
 class Lifted:
     """Node force: lift that goes with the square of the speed, ½ρU² times an area."""
 
-    nodes: FloatArray
+    nodes: IntArray
     factor: float
 
     def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:

@@ -109,6 +109,8 @@ def hung_changes(gear: GearRecord) -> tuple[RigChange, ...]:
     """Changes of what hangs on ropes and wing tips, as shares of what is there."""
     found = []
     for number, item in enumerate(gear.hung):
+        if item.force_on(1.0) == 0.0:  # a kite alone
+            continue
         kind = 'weight' if item.sinks else 'buoyancy'
         found.append(
             _share('weights' if item.sinks else 'floats', f"{kind} of '{item.name}'", _hung(number))

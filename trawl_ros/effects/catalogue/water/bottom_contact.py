@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
 from trawl_ros.model.numerics import length
 
@@ -23,7 +23,7 @@ SLOW = 0.1
 class Ground:
     """Ground force on nodes below a depth: friction, and a vertical reaction of the same size."""
 
-    nodes: FloatArray
+    nodes: IntArray
     depth: float
     friction: float
 

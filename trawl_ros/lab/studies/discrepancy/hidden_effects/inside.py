@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
 from trawl_ros.model.gear_model import GearModel
@@ -258,7 +258,7 @@ def heave(chance: np.random.Generator) -> Hidden:
 class Drag:
     """Node force: mud or sand that holds what is below a depth."""
 
-    nodes: FloatArray
+    nodes: IntArray
     depth: float
     hold: float
     carry: float
