@@ -79,6 +79,10 @@ def test_a_catch_that_the_codend_cannot_hold_is_refused(gear: GearRecord) -> Non
         build_model(with_catch(gear, mass_kg=9e5))
     with pytest.raises(ValidationError, match='mass_kg'):
         CatchRecord(mass_kg=0.0)
+    with pytest.raises(
+        ValidationError, match='found 1000, expected no more than density_kg_m3, 950'
+    ):
+        CatchRecord(mass_kg=1.0, density_kg_m3=950.0, bulk_kg_m3=1000.0)
 
 
 def test_a_catch_adds_its_drag_less_that_of_the_netting_that_it_fills(gear: GearRecord) -> None:

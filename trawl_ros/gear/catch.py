@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import atan, pi, sin, sqrt
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
 from trawl_ros.gear.numbers import NotNegative
@@ -29,6 +29,15 @@ class CatchRecord(Record):
     density_kg_m3: Annotated[float, Field(ge=900, le=1300)] = 1050.0
     bulk_kg_m3: Annotated[float, Field(ge=100, le=1000)] = 800.0
     drag_coefficient: NotNegative = 1.4
+
+    @model_validator(mode='after')
+    def _fits(self) -> 'CatchRecord':
+        if self.bulk_kg_m3 > self.density_kg_m3:
+            raise ValueError(
+                f'bulk_kg_m3: found {self.bulk_kg_m3:g}, expected no more than density_kg_m3, '
+                f'{self.density_kg_m3:g}'
+            )
+        return self
 
 
 @dataclass(frozen=True)

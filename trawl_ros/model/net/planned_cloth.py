@@ -22,7 +22,7 @@ LEAST_SHARE = 0.3
 """Part of its column that a bar at the edge of a wing has at least, so that it can bear a load."""
 
 PANELS = ('upper', 'side_upper', 'side_lower', 'lower')
-"""Panels from the top to the bottom; a side that is one piece is both of the side's."""
+"""Panels from the top to the bottom; a side that is one piece is the upper of both."""
 
 
 def mesh_angle(piece: PieceRecord, net: NettingRecord) -> float:
@@ -134,10 +134,10 @@ class PlannedCloth:
         """Ends of the upper panel and of both parts of the side at a distance (m) behind the mouth,
         as parts of the circumference from the top.
 
-        A side that is one piece is halved.
+        A side that is one piece is all of it the upper part.
         """
         upper, lower, share = self._sides(x)
-        return upper, upper + share * (lower - upper), lower
+        return upper, lower if share == 1.0 else upper + share * (lower - upper), lower
 
     def _sides(self, x: float) -> tuple[float, float, float]:
         """Ends of the upper panel and of the side, and the part of it that is its upper panel."""
@@ -145,7 +145,7 @@ class PlannedCloth:
             upper, lower = self.mouth.seams
             around, side = 2 * self.mouth.around, self.plan.mouth_width('side')
             own = self.plan.mouth_width('side_upper')
-            return upper / around, lower / around, own / side if own else 0.5
+            return upper / around, lower / around, own / side if own else 1.0
         for number, (_, pieces) in enumerate(self.plan.sections('body')):
             long = self.bodies['upper'].sections[number].length_m
             if x <= long or number == len(self.bodies['upper'].sections) - 1:
@@ -164,7 +164,7 @@ class PlannedCloth:
             width = {p.panel: p.widths[1] for p in pieces}
             if 'all' not in width:
                 return _sides_of(width, sum(p.count * p.widths[1] for p in pieces))
-        return 0.25, 0.25, 0.5
+        return 0.25, 0.25, 1.0
 
     def sums(self, row: NettingRow, middle: float) -> dict[str, float]:
         """Sums of `Profile.per_mesh_column` for the bar of a row whose middle lies at this part of
@@ -230,4 +230,4 @@ def _sides_of(width: Mapping[Panel, float], whole: float) -> tuple[float, float,
     """
     upper, lower = 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
     own = width.get('side_upper')
-    return upper, lower, 0.5 if own is None else own / (own + width['side_lower'])
+    return upper, lower, 1.0 if own is None else own / (own + width['side_lower'])
