@@ -235,3 +235,17 @@ def test_bands_grow_with_speed_and_area() -> None:
         drag = np.array([band(300.0, knots) for knots in (1.0, 2.0, 3.0, 4.0)])
         assert np.all(np.diff(drag) > 0)
         assert band(600.0, 3.0) == pytest.approx(2 * band(300.0, 3.0))
+
+
+def test_catch_and_kites_are_told(tmp_path: Path) -> None:
+    def change(data: dict[str, Any]) -> None:
+        data['catch'] = {'mass_kg': 5000.0}
+        data['hung'].append({'name': 'side kites', 'rope': 'side_rope', 'lift_area_m2': 1.0})
+
+    result = CliRunner().invoke(
+        trawl, ['gear', 'check', str(changed(tmp_path, 'krill_800', change))]
+    )
+    assert result.exit_code == 0, result.output
+    assert 'catch: 6.25 m³ in 2.33 m of the codend, 2.25 m across' in result.output
+    # ½ ρ (2 knots)² of 1 m² on either side.
+    assert 'side kites: lift of 1085 N at 2 knots' in result.output
