@@ -12,7 +12,7 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.lifting import LiftingBodies
+from trawl_ros.model.kite import LiftingBodies
 from trawl_ros.solver.advising.rig_changes import hung_changes
 from trawl_ros.solver.equilibrium import steady_state
 

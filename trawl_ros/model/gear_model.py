@@ -16,8 +16,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import CoefficientModifier, InTurn, NodeForce
-from trawl_ros.model.kite import Kite
-from trawl_ros.model.lifting import LiftingBodies
+from trawl_ros.model.kite import Kite, LiftingBodies
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
@@ -358,7 +357,7 @@ def build_model(gear: GearRecord) -> GearModel:
             volume = force / water.gravity / (item.density - water.density)
             body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
             # A rope passes each node once.
-            (lumps if force > 0.0 else buoyant)[:, nodes] += body[:, None] * shares
+            (buoyant if force < 0.0 else lumps)[:, nodes] += body[:, None] * shares
     lumps += buoyant
     guess = np.full((build.count, 3), np.nan)
     guess[net] = mesh.positions

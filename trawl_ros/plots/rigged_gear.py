@@ -8,7 +8,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.catch import CatchBody
 from trawl_ros.model.assembly import points_of
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.lifting import LiftingBodies
+from trawl_ros.model.kite import LiftingBodies
 from trawl_ros.model.state import State, Tow
 from trawl_ros.report import style
 from trawl_ros.solver.first_guess import first_guess

@@ -46,6 +46,10 @@ def _net_drag(gear: GearRecord) -> GearRecord:
     return gear.model_copy(update={'effects': (*gear.effects, effect)})
 
 
+def _no_floats(gear: GearRecord) -> GearRecord:
+    return gear.model_copy(update={'hung': tuple(item for item in gear.hung if item.sinks)})
+
+
 def _unshielded(gear: GearRecord) -> GearRecord:
     netting = gear.netting
     assert netting.plan is not None
@@ -61,6 +65,7 @@ CHANGES = (
     Change(f'{100 * (FASTER - 1):.0f} % faster', speed=FASTER),
     Change('the last three', lambda gear: _strumming(_net_drag(gear)), FASTER),
     Change('twine by its Reynolds number', settled=with_twine_drag),
+    Change('no floats', _no_floats),
 )
 
 ROUNDS = 3
