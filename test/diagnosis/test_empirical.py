@@ -38,6 +38,7 @@ def found(coarse, hide, windows):
     return diagnose_windows(coarse, windows, hide.names[:4])
 
 
+@pytest.mark.slow
 def test_it_is_unknown_and_the_term_is_called_empirical(found):
     assert found.verdict == 'UNKNOWN', found.reason
     assert found.empirical.term.name.startswith('empirical_port_door_depth')
@@ -48,6 +49,7 @@ def test_it_is_unknown_and_the_term_is_called_empirical(found):
     assert 'a sensor of port door depth' in said
 
 
+@pytest.mark.slow
 def test_it_closes_the_gap_from_the_gear_file(found, windows, hide, tmp_path):
     assert found.holdout.removed > 0.5
     write_diagnosis(found, [], tmp_path)

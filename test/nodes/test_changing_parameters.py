@@ -85,8 +85,9 @@ def another_value(node, name):
     if isinstance(present, bool):
         return not present
     if isinstance(spec, Number):
-        inside = spec.low + 0.4 * (spec.high - spec.low)
-        return round(inside) if spec.whole else inside
+        inside = [spec.low + share * (spec.high - spec.low) for share in (0.4, 0.6)]
+        values = [round(value) if spec.whole else value for value in inside]
+        return next(value for value in values if value != present)
     if isinstance(present, (int, float)):
         return present + 1
     if isinstance(spec, Text) and spec.choices:

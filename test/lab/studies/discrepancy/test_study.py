@@ -96,7 +96,15 @@ def test_everything_of_the_catalogue_that_shows_in_steady_tows_is_hidden():
     assert not (set(OUTSIDE) | set(ON_DECK)) & set(catalogue())
 
 
-@pytest.mark.parametrize('name', [*INSIDE, *OUTSIDE, *ON_DECK])
+@pytest.mark.parametrize(
+    'name',
+    [
+        *INSIDE,
+        *OUTSIDE,
+        *list(ON_DECK)[:3],
+        *(pytest.param(name, marks=pytest.mark.slow) for name in list(ON_DECK)[3:]),
+    ],
+)
 def test_what_is_hidden_shows_in_examined_tows_alone(plant, name):
     hidden = {**INSIDE, **OUTSIDE, **ON_DECK}[name](np.random.default_rng(3))
     clean = np.array([[look.values for look in tow] for tow in plant.towed(())])
