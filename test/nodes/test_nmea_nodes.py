@@ -27,7 +27,7 @@ from trawl_ros.records.samples import (  # noqa: E402
     WinchSample,
 )
 from trawl_ros.sentences.framing import framed  # noqa: E402
-from trawl_ros.sentences.table import load_table  # noqa: E402
+from trawl_ros.sentences.table import COMMANDS, load_table  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -224,6 +224,35 @@ def test_set_points_are_not_passed_on_unasked(graph, ship, port):
     assert ship.commands == []
 
 
+PARTLY = """\
+system: partly
+title: Set points that leave something out
+sentences:
+  speed:
+    address: PXYZS
+    fields: [{reading: command/vessel speed, unit: kn, decimals: 1}]
+    source: its manual
+  turn:
+    address: PXYZR
+    fields: [{reading: command/vessel turn_to_port, unit: deg/min, decimals: 1}]
+    source: its manual
+"""
+
+
+def test_set_points_that_leave_something_out_are_refused_and_the_node_goes_on(
+    graph, ship, port, tmp_path
+):
+    path = tmp_path / 'partly.yaml'
+    path.write_text(PARTLY)
+    heard(graph, links=[f'udp://:{port}'], systems=[str(path)], commands=True)
+    opened(graph, ship, f'udp://:{port}')
+    say(port, 'PXYZS,4.0', 'PXYZR,1.0')
+    refused = 'not understood: a set point that is refused: '
+    reasons = {f'{refused}a rate of turn beyond 0.02 rad/s', f'{refused}a speed beyond 0 to 4 m/s'}
+    graph.until(lambda: reasons <= ship.report('sentences').values.keys())
+    assert ship.commands == []
+
+
 @pytest.mark.parametrize(
     ('kind', 'parameters', 'complaint'),
     [
@@ -239,5 +268,6 @@ def test_what_cannot_be_is_refused_at_the_start(graph, kind, parameters, complai
 
 
 def test_the_sentences_of_set_points_command_and_nothing_else():
-    assert load_table('set_points').commands
-    assert not load_table('ship').commands
+    for system, command in (('set_points', True), ('ship', False)):
+        rows = load_table(system).sentences.values()
+        assert {topic in COMMANDS for row in rows for topic in row.topics} == {command}

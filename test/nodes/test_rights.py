@@ -18,7 +18,7 @@ from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
-from trawl_ros.records.rights import EVERY_NODE, RIGHTS  # noqa: E402
+from trawl_ros.records.rights import EVERY_NODE, OPERATOR, SET_POINTS, enclaves  # noqa: E402
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
@@ -40,6 +40,8 @@ NODES = (
     VesselNode,
     WinchNode,
 )
+SPOKEN = ['marport', 'scantrol', 'ship']
+NODE_RIGHTS = {name: own for name, own in enclaves().items() if name != OPERATOR}
 AT_TIMES = {'/parameter_events', '/rosout', CLOCK.name, TRANSFORMS.name}
 """Topics of ROS itself, and those that depend on parameters or on what is installed."""
 
@@ -55,18 +57,19 @@ def used(open_graph, gear_path, tmp_path_factory):
             'DiscrepancyNode': gear,
             'TrialNode': gear,
             'BagRecorder': {'output': str(tmp_path_factory.mktemp('rights') / 'bag')},
-            'NmeaIn': {
-                'links': ['udp://:20232'],
-                'systems': ['marport', 'scantrol', 'ship', 'set_points'],
-                'commands': True,
-            },
+            'NmeaIn': {'links': ['udp://:20232'], 'systems': SPOKEN},
             'BagPlayer': {'bag': 'bags/sea_trial', 'start_paused': True},
         }
         nodes = [graph.add(kind, **parameters.get(kind.__name__, {})) for kind in NODES]
+        renamed = ['--ros-args', '-r', f'__node:={SET_POINTS}']
+        commanding = graph.add(
+            lambda **given: NmeaIn(cli_args=renamed, **given),
+            links=['udp://:20233'], systems=[*SPOKEN, 'set_points'], commands=True,
+        )  # fmt: skip
         recorder = nodes[NODES.index(BagRecorder)]
         graph.until(lambda: '/trawl/truth/winch' in recorder.traffic.counts('received'))
         graph.rest(1.0)
-        return {node.get_name(): names_of(node) for node in nodes}
+        return {node.get_name(): names_of(node) for node in (*nodes, commanding)}
 
 
 def names_of(node):
@@ -88,12 +91,12 @@ def full(names, node):
 
 
 def test_all_nodes_are_looked_at(used):
-    assert set(used) == set(RIGHTS)
+    assert set(used) == set(NODE_RIGHTS)
 
 
-@pytest.mark.parametrize('node', RIGHTS)
+@pytest.mark.parametrize('node', NODE_RIGHTS)
 def test_a_node_uses_what_its_rights_allow(used, node):
-    rights = RIGHTS[node]
+    rights = NODE_RIGHTS[node]
     published, heard, answered, called = used[node]
     allowed = full((*EVERY_NODE.publishes, *rights.publishes), node)
     hearable = full((*EVERY_NODE.hears, *rights.hears), node)

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from trawl_ros.cli.policy import command
 from trawl_ros.core.resources import share_path
 from trawl_ros.records.policy import policy
-from trawl_ros.records.rights import OPERATOR, RIGHTS
+from trawl_ros.records.rights import OPERATOR, RIGHTS, SET_POINTS
 from trawl_ros.records.topics import COMMANDS, SYNC, TOPICS
 
 
@@ -37,10 +37,10 @@ def test_every_node_of_the_package_has_rights() -> None:
     assert set(RIGHTS) == programs - {'trawl'}
 
 
-def test_nobody_but_controllers_and_an_operator_commands() -> None:
+def test_nobody_but_controllers_set_points_and_an_operator_commands() -> None:
     commands = {topic.name for topic in COMMANDS}
     may = {path for path, names in granted('trawl', 'publish').items() if names & commands}
-    nodes = ('autotrawl_node', 'autopilot_node', 'nmea_in', 'trial_node', OPERATOR)
+    nodes = ('autotrawl_node', 'autopilot_node', 'trial_node', SET_POINTS, OPERATOR)
     assert may == {f'/trawl/{node}' for node in nodes}
 
 
@@ -58,7 +58,7 @@ def test_topics_are_those_of_the_table() -> None:
 
 def test_enclaves_and_services_follow_the_namespace() -> None:
     paths = granted('fleet/one', 'reply')
-    assert set(paths) == {f'/fleet/one/{node}' for node in (*RIGHTS, OPERATOR)}
+    assert set(paths) == {f'/fleet/one/{node}' for node in (*RIGHTS, SET_POINTS, OPERATOR)}
     assert 'winch_node/set_parameters' in granted('fleet/one', 'request')[f'/fleet/one/{OPERATOR}']
 
 

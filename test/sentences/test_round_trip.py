@@ -54,11 +54,9 @@ def steps(table):
     }
 
 
-@pytest.mark.parametrize('system', packaged_systems())
+@pytest.mark.parametrize('system', [one for one in packaged_systems() if one != 'set_points'])
 def test_each_reading_comes_back_within_half_a_step_and_is_written_as_before(system, samples):
     table = load_table(system)
-    if table.commands:
-        pytest.skip('commands are no samples')
     reader = SentenceReader([table])
     texts = spoken(table, samples)
     assert all(len(text) <= 120 and text.isascii() for text, _ in texts)

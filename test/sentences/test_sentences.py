@@ -232,6 +232,16 @@ def test_a_user_adds_a_sentence_of_her_own(tmp_path):
     assert spoken.readings == {('winch/joint_states', 'port_length'): pytest.approx(30.48)}
 
 
+def test_a_distance_without_a_least_one_keeps_its_largest(tmp_path):
+    path = tmp_path / 'own.yaml'
+    topics = 'topics: {door/spread: {max_range: {value: 300, unit: m}}}\n'
+    path.write_text(
+        topics + TABLE.replace('winch/joint_states port_length', 'door/spread distance')
+    )
+    stated = load_table(path).stated('door/spread', WaterColumn(density_kg_m3=1025.0))
+    assert (stated.min_range, stated.max_range) == (0.0, 300.0)
+
+
 @pytest.mark.parametrize(
     ('old', 'new', 'complaint'),
     [

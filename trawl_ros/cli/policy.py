@@ -26,6 +26,6 @@ def command(namespace: str) -> None:
     """Print which topics and services each node may use, as a policy of SROS 2.
 
     Each node has an enclave named as it is, /trawl/winch_node for instance, with the rights that it
-    uses and no more. Only controllers and the enclave `operator` may write commands.
+    uses and no more. Only controllers and the enclaves `operator` and `set_points` may command.
     """
     click.echo(policy(namespace), nl=False)

@@ -15,6 +15,11 @@ class Quantity(Record):
         return self.value * UNITS[self.unit].size
 
 
+def in_si(quantity: Quantity | None) -> float:
+    """Value of a quantity in SI units; 0 of one that is not given."""
+    return 0.0 if quantity is None else quantity.si()
+
+
 def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
     """Refuse a quantity of another kind than wanted, or below zero.
 

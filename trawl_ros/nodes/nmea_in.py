@@ -217,17 +217,15 @@ class NmeaIn(TrawlNode):
     def _command(self, spoken: Spoken) -> None:
         if not self.parameters['commands']:
             raise Unreadable('a set point, while parameter commands is false')
-        values = spoken.readings
+        told = {topic for topic, _ in spoken.readings}
         try:
-            if (VESSEL_COMMAND, 'speed') in values:
-                speed, turn = (values[VESSEL_COMMAND, name] for name in ('speed', 'turn_to_port'))
+            if VESSEL_COMMAND in told:
+                # A sentence that lacks one of them is refused.
+                speed, turn = _said(spoken, VESSEL_COMMAND)
                 self.send(*vessel_command(self.now(), *self._guard.ship(speed, turn)))
-            else:
-                wanted = [
-                    values.get((WINCH_COMMAND, f'{side}_length'), math.nan)
-                    for side in ('port', 'starboard')
-                ]
-                lengths = self._guard.warps((wanted[0], wanted[1]), time.monotonic_ns())
+            if WINCH_COMMAND in told:
+                port, starboard = _said(spoken, WINCH_COMMAND)
+                lengths = self._guard.warps((port, starboard), time.monotonic_ns())
                 self.send(*winch_command(self.now(), *lengths))
         except ValueError as reason:
             raise Unreadable(f'a set point that is refused: {reason}') from None
@@ -237,6 +235,11 @@ class NmeaIn(TrawlNode):
         if not isinstance(sample, WinchSample):
             raise MessageError(f'{WINCH}: expected counters and load cells')
         self._guard.see(sample.lengths)
+
+
+def _said(spoken: Spoken, topic: str) -> list[float]:
+    """Values of all fields of a command, NaN for those that a sentence leaves out."""
+    return [spoken.readings.get((topic, name), math.nan) for name in COMMANDS[topic]]
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -57,7 +57,6 @@ class NmeaOut(TrawlNode):
         if not addresses:
             raise SentenceError('parameter links: found none, expected where sentences go')
         self._sinks = [SentenceSink(address) for address in addresses]
-        self._sentences = 0
         self._progress = ConsumerProgress(self, idle=lambda: True)
         for topic in topics:
             self._listen_to(topic)

@@ -6,7 +6,7 @@ permissions from it: ``ros2 security generate_artifacts -k KEYSTORE -p policy.xm
 
 from xml.etree import ElementTree
 
-from trawl_ros.records.rights import EVERY_NODE, OPERATOR, RIGHTS, Rights, operator_rights
+from trawl_ros.records.rights import EVERY_NODE, SET_POINTS, Rights, enclaves
 from trawl_ros.records.topics import NAMESPACE
 
 VERSION = '0.2.0'
@@ -27,10 +27,11 @@ def policy(namespace: str = NAMESPACE) -> str:
         XML, one line for each topic or service.
     """
     root = ElementTree.Element('policy', version=VERSION)
-    enclaves = ElementTree.SubElement(root, 'enclaves')
-    for node, rights in {**RIGHTS, OPERATOR: operator_rights()}.items():
-        enclave = ElementTree.SubElement(enclaves, 'enclave', path=f'/{namespace}/{node}')
+    every = ElementTree.SubElement(root, 'enclaves')
+    for name, rights in enclaves().items():
+        enclave = ElementTree.SubElement(every, 'enclave', path=f'/{namespace}/{name}')
         profiles = ElementTree.SubElement(enclave, 'profiles')
+        node = 'nmea_in' if name == SET_POINTS else name
         profile = ElementTree.SubElement(profiles, 'profile', ns=f'/{namespace}', node=node)
         for what, kind, names in _granted(rights):
             granted = ElementTree.SubElement(profile, f'{what}s', {kind: 'ALLOW'})

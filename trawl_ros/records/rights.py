@@ -1,7 +1,7 @@
 """Rights of each node: which topics it publishes and hears, which services it answers.
 
 A node has no more than it uses, so that on a secured graph (SROS 2) an instrument cannot command
-and nobody but controllers and an operator writes ``command/*``.
+and nobody but controllers, set points and an operator writes ``command/*``.
 """
 
 from dataclasses import dataclass
@@ -143,8 +143,7 @@ RIGHTS = {
         ),
         ('trial/pause', 'trial/resume', 'trial/veto', 'trial/take_over'),
     ),
-    # Set points of its links are commands, where it is told to pass them on.
-    'nmea_in': Rights((*_SPOKEN, 'command/winch', 'command/vessel'), ('winch/joint_states',)),
+    'nmea_in': Rights(_SPOKEN, ()),
     'nmea_out': _consumer((), _SPOKEN),
     'identification_node': _consumer(
         _names(ESTIMATES, 'identification/'), _READINGS, ('identification/finish',)
@@ -164,6 +163,17 @@ RIGHTS = {
 
 OPERATOR = 'operator'
 """Enclave of the people on the bridge: whoever holds its keys may command."""
+
+SET_POINTS = 'set_points'
+"""Enclave of an ``nmea_in`` that passes set points on. Nobody signs sentences: whoever reaches its
+links commands then, so these rights are in an enclave of their own."""
+
+
+def enclaves() -> dict[str, Rights]:
+    """Return the rights by enclave: those of the nodes, of set points and of an operator."""
+    said = RIGHTS['nmea_in'].publishes
+    commanding = Rights((*said, 'command/winch', 'command/vessel'), ('winch/joint_states',))
+    return {**RIGHTS, SET_POINTS: commanding, OPERATOR: operator_rights()}
 
 
 def operator_rights() -> Rights:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.core.errors import SentenceError
-from trawl_ros.core.quantity import Quantity, check_quantity, check_unit
+from trawl_ros.core.quantity import Quantity, check_quantity, check_unit, in_si
 from trawl_ros.core.resources import packaged, share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.core.units import UNITS
@@ -201,11 +201,10 @@ class StatedTopic(Record):
 
     def si(self, topic: str, water: WaterColumn) -> Stated:
         """Give noise and limits in SI units; noise of a depth becomes that of its pressure."""
-        std = self.std.si() if self.std else 0.0
+        std = in_si(self.std)
         if STD_QUANTITIES.get(topic) == 'pressure':
             std = water.depth_to_difference(std)
-        limits = [limit.si() for limit in (self.min_range, self.max_range) if limit]
-        return Stated(std, *limits)
+        return Stated(std, in_si(self.min_range), in_si(self.max_range))
 
 
 class SentenceTable(Record):
@@ -215,11 +214,6 @@ class SentenceTable(Record):
     title: str
     topics: dict[str, StatedTopic] = Field(default_factory=dict)
     sentences: Annotated[dict[str, SentenceRow], Field(min_length=1, max_length=200)]
-
-    @property
-    def commands(self) -> bool:
-        """True if it has sentences that command."""
-        return any(topic in COMMANDS for row in self.sentences.values() for topic in row.topics)
 
     def stated(self, topic: str, water: WaterColumn) -> Stated:
         """Give the noise and limits of a topic, SI; nothing for one of which it says nothing."""

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import date, datetime, timedelta, timezone
+from datetime import date, datetime, timezone
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.sentences.table import SentenceField
@@ -89,8 +89,3 @@ def write_time(stamp: int, field: SentenceField) -> str:
         return form
     text = when.strftime('%H:%M:%S' if ':' in form else '%H%M%S')
     return f'{text}.{stamp % SECOND // step:0{decimals}d}' if decimals else text
-
-
-def day_of(stamp: int) -> date:
-    """Give the day (UTC) of a stamp (ns)."""
-    return _EPOCH + timedelta(days=stamp // DAY)

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from trawl_ros.bags.logs.clock import Clock
 from trawl_ros.bags.logs.layout import LogLayout
 from trawl_ros.core.errors import LogError
-from trawl_ros.core.quantity import Quantity, check_unit
+from trawl_ros.core.quantity import Quantity, check_unit, in_si
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.core.units import UNITS
@@ -57,12 +57,11 @@ class TopicMapping(Record):
 
     def stated(self, topic: str, water: WaterColumn | None) -> Stated:
         """Give noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
-        std = 0.0 if self.std is None else self.std.si()
+        std = in_si(self.std)
         in_metres = self.std is not None and UNITS[self.std.unit].quantity == 'length'
         if water and in_metres and STD_QUANTITIES.get(topic) == 'pressure':
             std = water.depth_to_difference(std)
-        limits = [limit.si() for limit in (self.min_range, self.max_range) if limit]
-        return Stated(std, *limits)
+        return Stated(std, in_si(self.min_range), in_si(self.max_range))
 
 
 class LogMapping(Record):

@@ -25,10 +25,11 @@ def _sentences(diagnosis: Diagnosis) -> list[str]:
     ]
     if diagnosis.verdict == 'NAMED':
         first = 'Look first at what is named.' if looked_at else ''
-        last = (
-            'If it is found and mended, tow the same states again beside the same baseline; else '
+        mended = 'If it is found and mended, tow the same states again beside the same baseline; '
+        go_on = (
             'go on with the repaired gear file, with which the same bags should show nothing more.'
         )
+        last = f'{mended}else {go_on}' if looked_at else go_on.capitalize()
     elif diagnosis.verdict == 'AMBIGUOUS':
         first = 'Look at these, the likeliest first.' if looked_at else ''
         last = (

@@ -12,8 +12,8 @@ from trawl_ros.solver.motion.course import InputPoint
 
 
 @dataclass(frozen=True)
-class InputError:
-    """Error of an input that stays through the tow: what the instrument reads too much, as a part
+class ChannelError:
+    """Error of a channel that stays through the tow: what its instrument reads too much, as a part
     of the value where ``relative``, and its std.
     """
 
@@ -27,12 +27,17 @@ class InputError:
         return f'{self.channel} {"scale" if self.relative else "offset"}'
 
 
-INPUT_ERRORS = tuple(
-    InputError(name, std, relative)
-    for name in INPUTS
-    for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
-    if std > 0.0
-)
+def channel_errors(channels: Sequence[str]) -> tuple[ChannelError, ...]:
+    """Errors of channels, by the channel table."""
+    return tuple(
+        ChannelError(name, std, relative)
+        for name in channels
+        for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
+        if std > 0.0
+    )
+
+
+INPUT_ERRORS = channel_errors(INPUTS)
 """Errors of counters and log through a tow, by the channel table."""
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, channel_errors
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedPoint
 from trawl_ros.records.channels import CHANNELS
@@ -23,27 +23,6 @@ MOTION_STD_M = 3.0
 ADDED_MASS_STD = 0.5
 """Prior std of the boards' added mass, as a part of the cylinder of water around them: that of
 the effect of the catalogue."""
-
-
-@dataclass(frozen=True)
-class CalibrationError:
-    """Calibration error of a sensor through a tow: its channel, its std, and if it is a part of
-    the value.
-    """
-
-    channel: str
-    std: float
-    relative: bool
-
-
-def calibration_errors(channels: tuple[str, ...]) -> tuple[CalibrationError, ...]:
-    """Calibration errors of channels, by the channel table."""
-    return tuple(
-        CalibrationError(name, std, relative)
-        for name in channels
-        for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
-        if std > 0.0
-    )
 
 
 @dataclass(frozen=True)
@@ -96,7 +75,7 @@ class TowLayout:
         return slice(self.of_log.stop, len(self))
 
     def __len__(self) -> int:
-        return self.of_log.stop + len(calibration_errors(self.channels))
+        return self.of_log.stop + len(channel_errors(self.channels))
 
 
 def layout_of(tow: MovingTow, motions: int, model: float) -> TowLayout:
@@ -124,7 +103,7 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
     knots = linear.tow.inputs.knots
     if knots is not None:
         total[..., layout.of_log] = linear.by_log @ knots.root
-    for number, error in enumerate(calibration_errors(layout.channels)):
+    for number, error in enumerate(channel_errors(layout.channels)):
         row = layout.channels.index(error.channel)
         values = np.nan_to_num(linear.values[:, row]) if error.relative else np.ones(n)
         total[:, row, layout.of_calibration.start + number] = error.std * values

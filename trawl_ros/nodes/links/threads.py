@@ -1,6 +1,7 @@
 """Threads beside a node that keep links open: lines in, sentences out, in bounded memory."""
 
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from threading import Event, Lock, Thread
 
@@ -15,7 +16,7 @@ POLL_S = 0.1
 RETRY_S = 1.0
 
 
-class LinkThread:
+class LinkThread(ABC):
     """Thread that opens a link, and again whenever it is lost.
 
     Attributes
@@ -67,8 +68,9 @@ class LinkThread:
                 channel.close()
             self._stop.wait(0.0 if self._stop.is_set() else RETRY_S)
 
+    @abstractmethod
     def _work(self, channel: Channel) -> None:
-        raise NotImplementedError
+        """Use an open link until it is lost or the thread is to end."""
 
     def _put(self, line: bytes) -> None:
         with self._lock:

@@ -183,7 +183,7 @@ def deck_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]
                 [verdict_word(t) == 'NAMED' and not right(t, names_of(t), classes) for t in own],
             ),
         ]
-    return rows  # fmt: skip
+    return rows
 
 
 def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
