@@ -22,6 +22,7 @@ NODES = (
     'bag_player',
     'nmea_in',
     'nmea_out',
+    'foxglove_node',
 )
 
 # ROS 2 itself, for machines that do not have it. It is an extra because a machine with a full
@@ -66,6 +67,7 @@ TEST = [
     'setuptools>=64,<80',
     'types-PyYAML>=6,<7',
     'uv>=0.5,<1',
+    'websockets>=13,<18',
 ]
 
 # The site of `make docs`; tests build it, since a warning fails it.
@@ -81,6 +83,9 @@ PEERS = [
     'MoorPy>=1.3,<1.4',
     'trawlkit>=1.1,<1.2; python_version >= "3.11"',
 ]
+
+# For people who look on. Its wheel has 19 MB, and aboard nobody needs it.
+VIEW = ['foxglove-sdk>=0.30.3,<0.31']
 
 
 def tree(folder: str) -> list[tuple[str, list[str]]]:
@@ -130,7 +135,13 @@ setup(
         'scipy>=1.11,<2',
         'zstandard>=0.22,<1',
     ],
-    extras_require={'ros': ROS, 'test': [*TEST, *DOCS, *PEERS], 'docs': DOCS, 'peers': PEERS},
+    extras_require={
+        'ros': ROS,
+        'view': VIEW,
+        'test': [*TEST, *DOCS, *PEERS, *VIEW],
+        'docs': DOCS,
+        'peers': PEERS,
+    },
     entry_points={
         'console_scripts': [
             *(f'{node} = {PACKAGE}.nodes.{node}:main' for node in NODES),

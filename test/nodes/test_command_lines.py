@@ -21,6 +21,7 @@ NODES = (
     'bag_player',
     'nmea_in',
     'nmea_out',
+    'foxglove_node',
 )
 
 FILES = {

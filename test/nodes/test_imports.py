@@ -35,6 +35,7 @@ OTHERS = [
     ('autotrawl_node', 'AutotrawlNode'),
     ('nmea_in', 'NmeaIn'),
     ('nmea_out', 'NmeaOut'),
+    ('foxglove_node', 'FoxgloveNode'),
 ]
 ESTIMATORS = [
     ('identification_node', 'IdentificationNode'),
@@ -92,8 +93,8 @@ def test_an_instrument_loads_neither_the_model_nor_its_compiler(module, kind, ge
 
 @pytest.mark.parametrize(('module', 'kind'), OTHERS)
 def test_recorder_and_controllers_load_no_numerics(module, kind, tmp_path):
-    output = {'output': str(tmp_path / 'bag')} if module == 'bag_recorder' else {}
-    loaded, memory_mb = started(module, kind, tmp_path, **output)
+    needed = {'bag_recorder': {'output': tmp_path / 'bag'}, 'foxglove_node': {'port': 20235}}
+    loaded, memory_mb = started(module, kind, tmp_path, **needed.get(module, {}))
     assert not loaded
     assert memory_mb < LIMIT_MB
 

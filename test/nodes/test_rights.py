@@ -1,6 +1,9 @@
 """Every node uses what its rights allow, and no more."""
 
+import json
+
 import pytest
+from websockets.sync.client import connect
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
@@ -10,6 +13,7 @@ from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
 from trawl_ros.nodes.discrepancy_node import DiscrepancyNode  # noqa: E402
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402
+from trawl_ros.nodes.foxglove_node import FoxgloveNode  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.nodes.nmea_in import NmeaIn  # noqa: E402
 from trawl_ros.nodes.nmea_out import NmeaOut  # noqa: E402
@@ -19,7 +23,7 @@ from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 from trawl_ros.records.rights import EVERY_NODE, OPERATOR, SET_POINTS, enclaves  # noqa: E402
-from trawl_ros.records.topics import CLOCK, TRANSFORMS, absolute  # noqa: E402
+from trawl_ros.records.topics import CLOCK, STATIC_TRANSFORMS, TRANSFORMS, absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -31,6 +35,7 @@ NODES = (
     BagRecorder,
     DiscrepancyNode,
     DoorSensorNode,
+    FoxgloveNode,
     IdentificationNode,
     NmeaIn,
     NmeaOut,
@@ -40,9 +45,16 @@ NODES = (
     VesselNode,
     WinchNode,
 )
+VIEWED = 20234
 SPOKEN = ['marport', 'scantrol', 'ship']
 NODE_RIGHTS = {name: own for name, own in enclaves().items() if name != OPERATOR}
-AT_TIMES = {'/parameter_events', '/rosout', CLOCK.name, TRANSFORMS.name}
+AT_TIMES = {
+    '/parameter_events',
+    '/rosout',
+    CLOCK.name,
+    TRANSFORMS.name,
+    STATIC_TRANSFORMS.name,
+}
 """Topics of ROS itself, and those that depend on parameters or on what is installed."""
 
 
@@ -57,6 +69,7 @@ def used(open_graph, gear_path, tmp_path_factory):
             'DiscrepancyNode': gear,
             'TrialNode': gear,
             'BagRecorder': {'output': str(tmp_path_factory.mktemp('rights') / 'bag')},
+            'FoxgloveNode': {'port': VIEWED},
             'NmeaIn': {'links': ['udp://:20232'], 'systems': SPOKEN},
             'BagPlayer': {'bag': 'bags/sea_trial', 'start_paused': True},
         }
@@ -67,9 +80,23 @@ def used(open_graph, gear_path, tmp_path_factory):
             links=['udp://:20233'], systems=[*SPOKEN, 'set_points'], commands=True,
         )  # fmt: skip
         recorder = nodes[NODES.index(BagRecorder)]
-        graph.until(lambda: '/trawl/truth/winch' in recorder.traffic.counts('received'))
-        graph.rest(1.0)
-        return {node.get_name(): names_of(node) for node in (*nodes, commanding)}
+        shown = nodes[NODES.index(FoxgloveNode)]
+        with connect(f'ws://127.0.0.1:{VIEWED}', subprotocols=['foxglove.sdk.v1']) as viewer:
+            want_everything(viewer, len(shown._topics))
+            graph.until(lambda: len(shown._profiles) == len(shown._topics))
+            graph.until(lambda: '/trawl/truth/winch' in recorder.traffic.counts('received'))
+            graph.rest(1.0)
+            return {node.get_name(): names_of(node) for node in (*nodes, commanding)}
+
+
+def want_everything(viewer, topics):
+    """Subscribe to all that is offered, for a topic is listened to only while it is wanted."""
+    offered = []
+    while len(offered) < topics:
+        said = json.loads(viewer.recv(timeout=20.0))
+        offered += [channel['id'] for channel in said.get('channels', ())]
+    wishes = [{'id': number, 'channelId': channel} for number, channel in enumerate(offered)]
+    viewer.send(json.dumps({'op': 'subscribe', 'subscriptions': wishes}))
 
 
 def names_of(node):

@@ -25,6 +25,7 @@ EXECUTABLES = {
     'bag_player',
     'nmea_in',
     'nmea_out',
+    'foxglove_node',
     'trawl',
 }
 

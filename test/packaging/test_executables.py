@@ -38,8 +38,9 @@ NODES = (
     'discrepancy_node',
     'nmea_in',
     'nmea_out',
+    'foxglove_node',
 )
-DOMAINS = (*range(70, 80), 81, 223, 224, 225)
+DOMAINS = (*range(70, 80), 81, 223, 224, 225, 226)
 # What is installed elsewhere is compiled anew there, which takes sim_node a quarter of a minute.
 QUICK = ('vessel_node', 'winch_node')
 START_S = 60.0  # the bound for a machine busy with other tests; one to three seconds are usual

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from trawl_ros.bags.storage.mcap_output import COMPRESSIONS
@@ -14,7 +14,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.nodes.playback.recorded_qos import matching, profiles_of
+from trawl_ros.nodes.playback.recorded_qos import asks_too_much, matching, profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
@@ -216,11 +216,7 @@ class BagRecorder(TrawlNode):
         """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
         asked = self._profiles[topic]
         heard = matching(publishers, recorder_profile(self._types[topic]))
-        reliable = asked.reliability == ReliabilityPolicy.RELIABLE
-        latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        if (reliable and heard.reliability != asked.reliability) or (
-            latched and heard.durability != asked.durability
-        ):
+        if asks_too_much(asked, heard):
             self.get_logger().info(
                 f'{topic}: records what its publishers offer, which is {heard.reliability.name} '
                 f'and {heard.durability.name}'.lower()

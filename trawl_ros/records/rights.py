@@ -11,6 +11,7 @@ from trawl_ros.records.topics import (
     COMMANDS,
     ESTIMATES,
     INSTRUMENTS,
+    STATIC_TRANSFORMS,
     SYNC,
     TRANSFORMS,
     TRUTH,
@@ -145,6 +146,14 @@ RIGHTS = {
     ),
     'nmea_in': Rights(_SPOKEN, ()),
     'nmea_out': _consumer((), _SPOKEN),
+    'foxglove_node': Rights(
+        (),
+        (
+            *_names((*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)),
+            TRANSFORMS.name,
+            STATIC_TRANSFORMS.name,
+        ),
+    ),
     'identification_node': _consumer(
         _names(ESTIMATES, 'identification/'), _READINGS, ('identification/finish',)
     ),

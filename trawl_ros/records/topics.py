@@ -395,6 +395,15 @@ TRANSFORMS = Topic(
 SYNC = 'sync/progress'
 """Topic on which consumers tell how far they have come; sources wait for the slowest."""
 
+STATIC_TRANSFORMS = Topic(
+    '/tf_static',
+    TRANSFORMS.type,
+    '',
+    None,
+    'Frames of others that stay, for viewers.',
+    latched=True,
+)
+
 TOPICS = {
     topic.name: topic for topic in (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS, CLOCK, TRANSFORMS)
 }

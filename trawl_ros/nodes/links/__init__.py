@@ -1,1 +1,1 @@
-"""Links for sentences: serial ports, pseudo-terminals, UDP and TCP, kept by threads."""
+"""Links: serial ports, pseudo-terminals, UDP and TCP for sentences, a WebSocket for viewers."""

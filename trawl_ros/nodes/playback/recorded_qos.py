@@ -67,6 +67,15 @@ def matching(publishers: Sequence[TopicEndpointInfo], profile: QoSProfile) -> Qo
     return asked
 
 
+def asks_too_much(asked: QoSProfile, heard: QoSProfile) -> bool:
+    """True if a subscriber asks for more than ``heard``, which all publishers offer."""
+    reliable = asked.reliability == ReliabilityPolicy.RELIABLE
+    latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    return bool(reliable and heard.reliability != asked.reliability) or bool(
+        latched and heard.durability != asked.durability
+    )
+
+
 def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | None:
     """Return the profile of a player in place of the recorded publishers.
 

@@ -127,9 +127,14 @@ class Leaps:
         return messages, false
 
 
+def size_limit(type_name: str) -> Limit:
+    """Return the largest size of a message of a type, in bytes."""
+    return _LARGE.get(type_name, MESSAGE_BYTES)
+
+
 def decoding(topic: str, type_name: str, use: Callable[[Any], None]) -> Callable[[bytes], None]:
     """Make the decoder of messages of a bounded size; no error of ``use`` ends the node."""
-    limit = _LARGE.get(type_name, MESSAGE_BYTES)
+    limit = size_limit(type_name)
 
     def take(data: bytes) -> None:
         if len(data) > limit.value:
