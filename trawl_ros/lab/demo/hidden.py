@@ -1,6 +1,6 @@
 """Last act of the demo: tows in a current that the model lacks, diagnosed, named, and repaired.
 
-All of it goes through the commands that a user has, each a process of its own.
+All of it goes through the commands and nodes that a user has, each a process of its own.
 """
 
 import subprocess
@@ -16,12 +16,14 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import made_folder
 from trawl_ros.core.parallel import cores
 from trawl_ros.diagnosis.report.writing import MODEL
+from trawl_ros.lab.demo.repaired import tow_repaired
 
 BASELINE = 'baseline'
 TOWS = ('tow_1', 'tow_2', 'tow_3')
 """Bags, each of the scenario of its name with ``hidden_`` before it."""
 
 FOUND = 'diagnosis'
+REPAIRED = 'repaired'
 AGAIN = 'diagnosis_of_repaired'
 
 NO_DISCREPANCY, DISCREPANCY = 0, 10
@@ -78,7 +80,8 @@ class Commands:
 def hidden_effect(folder: Path, console: Console) -> None:
     """Tow in water that the model does not know, diagnose the bags, and again with the repair.
 
-    Writes bags and reports into ``folder``, and prints the commands and what they find.
+    Writes bags and reports into ``folder``, one of the repaired gear towed by `sim_node` among
+    them, and prints the commands and what they find.
 
     Raises
     ------
@@ -99,6 +102,8 @@ def hidden_effect(folder: Path, console: Console) -> None:
         with console.status('diagnosing'):
             found = commands.run(*_shown(*diagnose, FOUND), expected=DISCREPANCY)
         click.echo(found)
+        model = folder / FOUND / MODEL
+        tow_repaired(f'hidden_{TOWS[0]}', model, folder / TOWS[0], folder / REPAIRED, console)
         repaired = ('--gear', f'{FOUND}/{MODEL}')
         with console.status('diagnosing with the repaired gear'):
             again = commands.run(*_shown(*diagnose, AGAIN, *repaired), expected=NO_DISCREPANCY)
