@@ -126,7 +126,9 @@ def readings(second):
 
 def test_what_instruments_say_comes_back_by_udp_and_a_pseudo_terminal(graph, ship, port, tmp_path):
     links = [f'udp://:{port}', f'pty:{tmp_path / "tty"}']
-    graph.add(NmeaOut, links=links, systems=['marport', 'scantrol'], tag_blocks=True)
+    graph.add(
+        NmeaOut, links=links, systems=['marport', 'scantrol'], tag_blocks=True, every_reading=True
+    )
     links[1] = f'serial:{tmp_path / "tty"}'
     heard(graph, links=links, systems=['marport', 'scantrol', 'ship'], time='sentences')
     graph.until(lambda: all(ship.count_subscribers(ship.full_name(topic)) for topic in TOPICS))
@@ -184,6 +186,25 @@ def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, p
     assert ship.report(f'link udp://:{port}').values['lines too long'] == '1'
     (sample,) = ship.samples.values()
     assert sample.distance == pytest.approx(84.5)
+
+
+def test_each_link_goes_by_its_own_clock(graph, ship, port):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind((LOCAL, 0))
+        other = probe.getsockname()[1]
+    links = [f'udp://:{port}', f'udp://:{other}']
+    heard(graph, links=links, systems=['marport', 'scantrol', 'ship'], time='sentences')
+    opened(graph, ship, *links)
+    say(port, 'GPZDA,120000.00,01,08,2026,00,00')
+    say(other, 'GPZDA,130000.00,01,08,2026,00,00', 'SCWTP,17.18,T')
+    # The parts of a sample that another follows are given without the rest.
+    for spread in (84.5, 84.6):
+        say(port, f'MPMSD,T,PD,23,XST,m,{spread}')
+        say(other, 'SCWTP,17.20,T')
+    graph.until(lambda: len(ship.samples) == 4)
+    noon = 1_785_585_600 * SECOND
+    hours = {topic: (stamp - noon) // SECOND for topic, stamp in ship.samples}
+    assert hours == {'door/spread': 0, 'winch/joint_states': 3600}
 
 
 def test_set_points_drive_the_winches_within_limits_and_hold_when_they_cease(graph, ship, port):

@@ -39,15 +39,16 @@ def sign(field: SentenceField) -> str:
 def rows() -> list[str]:
     """Lines of the table, one per reading."""
     lines = [
-        '| system | sentence | reading | unit, step | source | assumed |',
-        '|---|---|---|---|---|---|',
+        '| system | sentence | reading | unit, step | at most every | source | assumed |',
+        '|---|---|---|---|---|---|---|',
     ]
     for system in packaged_systems():
         table = load_table(system)
         for row in table.sentences.values():
             form = f' (read only: {row.form})' if row.form else ''
             front = f'| `{system}` | `{picture(row)}`{form}'
-            back = f'{row.source} | {row.assumed}'
+            rate = f'{row.least_interval_s:g} s ({row.rate_source})' if row.rate_source else ''
+            back = f'{rate} | {row.source} | {row.assumed}'
             if not row.topics:
                 said = 'passed over' if row.passed_over else 'date and time'
                 lines.append(f'{front} | {said} | | {back} |')
@@ -55,7 +56,7 @@ def rows() -> list[str]:
                 step = f'{UNITS[field.unit].name}, {10.0**-field.decimals:g}'
                 flipped = ', other sign' if field.scale < 0 else ''
                 lines.append(f'{front} | `{field.reading}` | {step}{flipped} | {back} |')
-                front, back = '| |', '|'
+                front, back = '| |', '| |'
     return lines
 
 

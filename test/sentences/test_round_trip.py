@@ -39,7 +39,7 @@ def samples():
 
 def spoken(table, samples):
     """All sentences of samples with the stamps of these, in their order."""
-    writer = SentenceWriter([table], WATER)
+    writer = SentenceWriter([table], WATER, every_reading=True)
     instants = itertools.groupby(samples, lambda sample: sample.stamp)
     return [(text, stamp) for stamp, together in instants for text in writer.write(*together)]
 

@@ -10,7 +10,13 @@ from pynmeagps.nmeahelpers import calc_checksum
 from trawl_ros.core.errors import SentenceError
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.fields import WaterColumn
-from trawl_ros.records.samples import FixSample, HeadingSample, WinchSample
+from trawl_ros.records.samples import (
+    AttitudeSample,
+    FixSample,
+    HeadingSample,
+    RangeSample,
+    WinchSample,
+)
 from trawl_ros.sentences.assembly import SampleAssembly, samples_of
 from trawl_ros.sentences.codec import SentenceReader
 from trawl_ros.sentences.framing import (
@@ -210,6 +216,40 @@ def test_the_ship_is_understood_by_pynmeagps(year):
     (zda,) = writer.write_clock(stamp)
     clock = NMEAReader.parse(zda.encode())
     assert (clock.day, clock.month, clock.year, str(clock.time)) == (1, 1, year, '01:01:01.250000')
+
+
+def test_a_system_sends_no_more_often_than_its_manual_says():
+    def sent(**given):
+        writer = SentenceWriter([load_table('marport')], WATER, **given)
+        # No echo makes no sentence, and the next reading need not wait for it.
+        distances = [math.inf, *(80.0 + second for second in range(1, 20))]
+        return [
+            (second, text)
+            for second, distance in enumerate(distances)
+            for text in writer.write(
+                RangeSample(second * SECOND, 'spread', distance, 0.1, 1.0, 400.0)
+            )
+        ]
+
+    assert [second for second, _ in sent()] == [1, 7, 13, 19]
+    assert [second for second, _ in sent(every_reading=True)] == list(range(1, 20))
+    assert dict(sent()).items() <= dict(sent(every_reading=True)).items()
+
+
+def test_pitch_and_roll_that_are_sent_are_of_one_instant():
+    writer = SentenceWriter([load_table('marport')], WATER)
+    sent = [
+        len(writer.write(AttitudeSample(second * SECOND, 'port', 0.1, 0.2, 0.01)))
+        for second in range(13)
+    ]
+    assert sent == [2, *[0] * 5, 2, *[0] * 5, 2]
+
+
+def test_a_rate_says_who_says_so(tmp_path):
+    path = tmp_path / 'own.yaml'
+    path.write_text(TABLE.replace('    source:', '    least_interval_s: 2\n    source:'))
+    with pytest.raises(SentenceError, match='rate_source: expected with least_interval_s'):
+        load_table(path)
 
 
 TABLE = """

@@ -41,6 +41,7 @@ def write_sentence_log(
     *,
     water: WaterColumn,
     namespace: str = NAMESPACE,
+    every_reading: bool = False,
 ) -> SentenceLog:
     """Write a bag's readings as sentences, in the order of their stamps.
 
@@ -59,6 +60,8 @@ def write_sentence_log(
         By which pressures become depths.
     namespace
         Of the project's topics in this bag.
+    every_reading
+        True if each reading is written, also where a system sends them more seldom.
 
     Raises
     ------
@@ -67,7 +70,7 @@ def write_sentence_log(
         written.
     """
     file = new_folder(Path(out), BagError)
-    writer = SentenceWriter(tables, water)
+    writer = SentenceWriter(tables, water, every_reading=every_reading)
     clock = SentenceWriter([load_table(CLOCK)], water)
     stream = SampleStream([Path(path)], namespace, topics=writer.topics)
     ordered = [sample for _, sample in islice(stream, LOG_READINGS.value + 1)]

@@ -8,7 +8,7 @@ from trawl_ros.bags.check import GROUPS, check_bag
 from trawl_ros.bags.export import ARRAY_LIMIT, DICTIONARY, export_bag
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import SUFFIX, repair_bag
-from trawl_ros.bags.sentence_log import write_sentence_log
+from trawl_ros.bags.sentence_log import SentenceLog, write_sentence_log
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
 from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
@@ -116,6 +116,11 @@ def check(
     show_default=True,
     help='Density (kg/m3) by which pressures become the depths of sentences.',
 )
+@click.option(
+    '--every-reading',
+    is_flag=True,
+    help='Write each reading as a sentence, also where the system sends them more seldom.',
+)
 @NAMESPACE_OPTION
 def export(
     bag: Path,
@@ -124,6 +129,7 @@ def export(
     array_limit: int,
     systems: tuple[str, ...],
     water_density: float,
+    every_reading: bool,
     namespace: str,
 ) -> None:
     """Write a bag as CSV, one file per topic, or as a log of sentences.
@@ -135,7 +141,16 @@ def export(
     if systems:
         if topics:
             raise click.UsageError('--topic and --as: the systems say which topics are wanted')
-        _export_sentences(bag, out, systems, WaterColumn(density_kg_m3=water_density), namespace)
+        _tell_sentences(
+            write_sentence_log(
+                bag,
+                load_tables(systems),
+                out,
+                water=WaterColumn(density_kg_m3=water_density),
+                namespace=namespace,
+                every_reading=every_reading,
+            )
+        )
         return
     with ProgressDisplay(error_console()) as display:
         done = export_bag(
@@ -156,10 +171,7 @@ def export(
         click.echo(f'Damaged: {problem}', err=True)
 
 
-def _export_sentences(
-    bag: Path, out: Path, systems: tuple[str, ...], water: WaterColumn, namespace: str
-) -> None:
-    done = write_sentence_log(bag, load_tables(systems), out, water=water, namespace=namespace)
+def _tell_sentences(done: SentenceLog) -> None:
     for address, count in done.sentences.items():
         click.echo(f'{count:8d}  {address}')
     for topic in done.silent:

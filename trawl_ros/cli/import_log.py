@@ -17,7 +17,7 @@ from trawl_ros.core.resources import packaged
     '--mapping',
     required=True,
     type=click.Path(path_type=Path),
-    help='YAML file that says what is what, or a name: door_test_haul_log, nmea.',
+    help='YAML file that says what is what, or a name: door_test_haul_log, nmea, tv80.',
 )
 @click.option('--out', required=True, type=BAG, help='Folder of the bag; must not exist yet.')
 @click.option(

@@ -29,6 +29,7 @@ from trawl_ros.records.samples import Sample, WinchSample
 from trawl_ros.sentences.assembly import SampleAssembly
 from trawl_ros.sentences.codec import SentenceReader, Spoken
 from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, parse_line
+from trawl_ros.sentences.link_clock import LinkClock
 from trawl_ros.sentences.table import COMMANDS, load_tables
 from trawl_ros.sentences.tally import Tally
 from trawl_ros.sentences.tellers import Tellers
@@ -60,7 +61,7 @@ class NmeaIn(TrawlNode):
         Names('systems', 'Who is understood: systems of config/sentences/, or YAML files like '
               'them.', SYSTEMS),
         Text('time', ARRIVAL, 'Stamps of readings: arrival takes the time of arrival; sentences '
-             'takes tag blocks, or the time said last by a sentence with date and time.',
+             'takes tag blocks, or the clock of the link, by its sentences with date and time.',
              choices=(ARRIVAL, SENTENCES)),
         Number('water_density_kg_m3', 1025.0, 'kg/m3', 900.1, 1099.9, 'By which depths become '
                'pressures.'),
@@ -97,7 +98,7 @@ class NmeaIn(TrawlNode):
             )
         )
         self._held = 0
-        self._ship_time: int | None = None
+        self._clocks: dict[str, LinkClock] = {}
         topics = {topic for row in self._reader.rows.values() for topic in row.topics}
         for topic in sorted(topics & FIELDS.keys()):
             self.advertise(topic)
@@ -180,7 +181,10 @@ class NmeaIn(TrawlNode):
         row = self._reader.rows[spoken.system, spoken.name]
         if row.is_clock:
             if spoken.time is not None and (said := spoken.time.stamp(None)) is not None:
-                self._ship_time = said
+                # The newest stands last, for links that have no clock of their own.
+                clock = self._clocks.pop(link, None) or LinkClock()
+                clock.hear(said, time.monotonic_ns())
+                self._clocks[link] = clock
             self._tally.understood += 1
             return
         if not row.topics:
@@ -191,17 +195,18 @@ class NmeaIn(TrawlNode):
         if any(topic in COMMANDS for topic in row.topics):
             self._command(spoken)
         else:
-            stamp = self._stamp(frame, spoken)
+            stamp = self._stamp(frame, spoken, link)
             self._publish(self._assembly.take(spoken, stamp, link))
         self._tally.understood += 1
 
-    def _stamp(self, frame: Frame, spoken: Spoken) -> int:
+    def _stamp(self, frame: Frame, spoken: Spoken, link: str) -> int:
         if self.parameters['time'] == ARRIVAL:
             return self.now()
         if frame.tag_time is not None:
             return frame.tag_time
-        if self._ship_time is not None:
-            return self._ship_time
+        clock = self._clocks.get(link) or next(reversed(self._clocks.values()), None)
+        if clock and (stamp := clock.stamp(time.monotonic_ns())) is not None:
+            return stamp
         own = spoken.time.stamp(None) if spoken.time else None
         if own is None:
             raise Unreadable('a reading before the first time with a date')

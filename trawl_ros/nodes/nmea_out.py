@@ -34,6 +34,8 @@ class NmeaOut(TrawlNode):
               ('marport', 'scantrol', 'ship')),
         Number('clock_interval_s', 1.0, 's', 0.0, 60.0, 'Data time between two sentences with date '
                'and time; 0 sends one in front of each instant.'),
+        Flag('every_reading', False, 'Send each reading, also where the system sends them more '
+             'seldom.'),
         Flag('tag_blocks', False, 'Put the time in front of each sentence, as a tag block of NMEA '
              '0183 version 4.'),
         Flag('iec_61162_450', False, 'Put UdPbC in front of each datagram, as IEC 61162-450 has '
@@ -46,7 +48,8 @@ class NmeaOut(TrawlNode):
         super().__init__('nmea_out', **kwargs)
         water = WaterColumn(density_kg_m3=self.parameters['water_density_kg_m3'])
         tables = load_tables(self.parameters['systems'])
-        self._writer = SentenceWriter(tables, water)
+        every_reading = self.parameters['every_reading']
+        self._writer = SentenceWriter(tables, water, every_reading=every_reading)
         self._ship_clock = SentenceWriter([load_table(CLOCK)], water)
         self._next_clock: int | None = None
         self._interval = round(self.parameters['clock_interval_s'] * SECOND)

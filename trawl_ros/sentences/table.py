@@ -146,8 +146,9 @@ class SentenceRow(Record):
     passed_over
         True for a sentence without a reading for the project, such as a temperature: it is
         known, and no fault.
-    least_interval_s
-        Least time between two of these sentences; readings between are not sent.
+    least_interval_s, rate_source
+        Least time between two of these sentences, for readings between are not sent; and the
+        manual that says so.
     source, assumed
         Manual or code that says this; and what none of them says.
     """
@@ -163,6 +164,7 @@ class SentenceRow(Record):
     more: bool = False
     passed_over: bool = False
     least_interval_s: Annotated[float, Field(ge=0.0, le=3600.0)] = 0.0
+    rate_source: str = ''
     source: Annotated[str, Field(min_length=3)]
     assumed: str = ''
 
@@ -183,6 +185,8 @@ class SentenceRow(Record):
         targets = [field.target for field in self.fields if field.reading]
         if len(set(targets)) < len(targets):
             raise ValueError('fields: a reading twice, expected each once')
+        if bool(self.rate_source) != (self.least_interval_s > 0.0):
+            raise ValueError('rate_source: expected with least_interval_s, and only with it')
         if self.passed_over and targets:
             raise ValueError('passed_over: true, expected no reading')
         if self.is_clock:

@@ -19,10 +19,19 @@ class SentenceWriter:
         The systems.
     water
         By which pressures become depths.
+    every_reading
+        True if each reading is written, also where the system sends them more seldom.
     """
 
-    def __init__(self, tables: Sequence[SentenceTable], water: WaterColumn) -> None:
+    def __init__(
+        self,
+        tables: Sequence[SentenceTable],
+        water: WaterColumn,
+        *,
+        every_reading: bool = False,
+    ) -> None:
         self._water = water
+        self._every_reading = every_reading
         self._rows: dict[str, list[tuple[str, SentenceRow]]] = defaultdict(list)
         self._clocks: list[tuple[str, SentenceRow]] = []
         self._due: dict[str, int] = {}
@@ -56,12 +65,14 @@ class SentenceWriter:
             readings |= {(topic, name): value for name, value in fields.items()}
             rows |= dict(self._rows.get(topic, ()))
         stamp = samples[0].stamp
-        return [
-            text
-            for key, row in rows.items()
-            if self._is_due(key, row, stamp)
-            and (text := write_sentence(row, readings, stamp)) is not None
-        ]
+        texts = []
+        for key, row in rows.items():
+            if not self._is_due(key, row, stamp):
+                continue
+            if (text := write_sentence(row, readings, stamp)) is not None:
+                self._due[key] = stamp + round(row.least_interval_s * SECOND)
+                texts.append(text)
+        return texts
 
     def write_clock(self, stamp: int) -> list[str]:
         """Write the sentences that say date and time and nothing else."""
@@ -69,12 +80,9 @@ class SentenceWriter:
         return [text for text in texts if text is not None]
 
     def _is_due(self, key: str, row: SentenceRow, stamp: int) -> bool:
-        if row.least_interval_s == 0.0:
+        if row.least_interval_s == 0.0 or self._every_reading:
             return True
         due = self._due.get(key)
         # A stamp far back is that of a tow that has begun anew.
         interval = round(row.least_interval_s * SECOND)
-        if due is not None and due - 2 * interval < stamp < due:
-            return False
-        self._due[key] = stamp + interval
-        return True
+        return due is None or not due - 2 * interval < stamp < due

@@ -7,6 +7,7 @@ half a bag.
 import math
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -73,7 +74,8 @@ def import_log(
     """
     path = Path(csv_path)
     reading = _Reading(path, load_mapping(mapping_path), leave_out)
-    return write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
+    done = write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
+    return replace(done, notes=tuple(reading.notes))
 
 
 class _Reading:
@@ -82,6 +84,7 @@ class _Reading:
     def __init__(self, path: Path, mapping: LogMapping, leave_out: bool) -> None:
         self.rows = 0
         self.left: Counter[str] = Counter()
+        self.notes: list[str] = []
         self._path = path
         self._mapping = mapping
         self._leave_out = leave_out
@@ -92,6 +95,7 @@ class _Reading:
         }
         self._clocks = [(clock, ClockReader(clock, self._decimal)) for clock in mapping.clocks()]
         self._last: dict[str, dict[str, float]] = {}
+        self._absent: set[str] | None = None
 
     def samples(self) -> Iterable[Sample]:
         keys = [column for clock in self._mapping.clocks() for column in clock.columns]
@@ -107,16 +111,32 @@ class _Reading:
                     raise
                 self.left[bad.reason] += 1
 
+    def _look_for_absent(self, row: LogRow) -> set[str]:
+        """Find the optional topics that the log has not all columns of."""
+        found = set()
+        # The rows of a long table differ in what they have.
+        topics = self._mapping.topics if self._mapping.layout.long is None else {}
+        for topic, entry in topics.items():
+            absent = [column for column in entry.columns if column not in row.cells]
+            if entry.optional and absent:
+                self.notes.append(f'{topic} is left out: no column {" or ".join(absent)}')
+                found.add(topic)
+        return found
+
     def _row(self, row: LogRow) -> list[Sample]:
         for column, texts in self._mapping.only.items():
             if row.text(column) not in texts:
                 self.left[f'column {column!r} is not {" or ".join(texts)}'] += 1
                 return []
+        if self._absent is None:
+            self._absent = self._look_for_absent(row)
         stamps = [self._stamp(row, number) for number in range(len(self._clocks))]
         samples = []
         own = 0
         for topic, entry in self._mapping.topics.items():
             own += entry.clock is not None
+            if topic in self._absent:
+                continue
             stamp = stamps[own] if entry.clock else stamps[0]
             readings = self._readings(row, entry)
             if entry.changes_only and readings == self._last.get(topic):

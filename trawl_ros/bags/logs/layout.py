@@ -37,8 +37,8 @@ class LogLayout(Record):
 
     ``separator`` is one character, ``tab``, or ``blanks`` for any number of them. ``skip_lines``
     are above the line of column names, ``skip_after_names`` (such as a line of units) below it.
-    ``names`` are the columns' where the file has no such line. Lines that begin with ``comment``
-    count for nothing.
+    ``names`` are the columns' where the file has no such line. Of several columns of one name the
+    log is refused, or the ``first`` is used. Lines that begin with ``comment`` count for nothing.
     """
 
     encoding: str = 'utf-8'
@@ -48,6 +48,7 @@ class LogLayout(Record):
     skip_lines: Annotated[int, Field(ge=0)] = 0
     skip_after_names: Annotated[int, Field(ge=0)] = 0
     names: tuple[str, ...] | None = None
+    repeated: Literal['refused', 'first'] = 'refused'
     comment: Annotated[str, Field(min_length=1)] | None = None
     long: Long | None = None
 
@@ -121,7 +122,8 @@ def read_rows(
     Raises
     ------
     LogError
-        If there is no file, it is not such a table, or a column is not there exactly once.
+        If there is no file, it is not such a table, or a column is not there exactly once as the
+        layout wants it.
     """
     # A mark at the beginning, as Windows programs put there, is no part of the first name.
     encoding = 'utf-8-sig' if layout.encoding.lower() in ('utf-8', 'utf8') else layout.encoding
@@ -183,7 +185,7 @@ def _wide(
         wanted = {column: where for column, where in needed.items() if where in OF_THE_ROW}
         wanted |= dict.fromkeys((layout.long.name, layout.long.value), 'layout.long')
     for column, where in wanted.items():
-        if names.count(column) != 1:
+        if names.count(column) != 1 and not (column in names and layout.repeated == 'first'):
             found = 'more than one' if column in names else 'no'
             raise LogError(
                 f'{path}: {found} column {column!r} (wanted by {where}); '
@@ -201,8 +203,10 @@ def _wide(
                 'another number of cells than columns',
             )
             continue
-        texts = (cell.strip() for cell in cells)
-        yield LogRow(path, lines.number, dict(zip(names, texts, strict=True)))
+        texts = [cell.strip() for cell in cells]
+        # The first of one name comes last, and stays.
+        named = dict(zip(reversed(names), reversed(texts), strict=True))
+        yield LogRow(path, lines.number, named)
 
 
 def _cells(lines: _Lines, layout: LogLayout) -> Iterator[list[str]]:

@@ -43,17 +43,25 @@ class ColumnMapping(Record):
 class TopicMapping(Record):
     """Mapping of one topic: its readings by field, and the errors its messages state.
 
-    ``clock`` is the topic's own where its times stand in columns of their own. With
-    ``changes_only`` a reading that is the same as in the row before gives no message: many
-    loggers repeat the last one until the next comes.
+    An ``optional`` topic is left out where the log has not all of its columns. ``clock`` is the
+    topic's own where its times stand in columns of their own. With ``changes_only`` a reading that
+    is the same as in the row before gives no message: many loggers repeat the last one until the
+    next comes.
     """
 
     fields: Annotated[dict[str, ColumnMapping], Field(min_length=1)]
     clock: Clock | None = None
+    optional: bool = False
     changes_only: bool = False
     std: Quantity | None = None
     min_range: Quantity | None = None
     max_range: Quantity | None = None
+
+    @property
+    def columns(self) -> list[str]:
+        """Columns of its readings, and those of hemispheres."""
+        fields = self.fields.values()
+        return [field.column for field in fields] + [f.hemisphere for f in fields if f.hemisphere]
 
     def stated(self, topic: str, water: WaterColumn | None) -> Stated:
         """Give noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
@@ -86,10 +94,8 @@ class LogMapping(Record):
         """Name the columns that must be there, each with the key that needs it."""
         wanted: dict[str, str] = {}
         for topic, entry in self.topics.items():
-            for field in entry.fields.values():
-                wanted[field.column] = f'topics.{topic}'
-                if field.hemisphere:
-                    wanted[field.hemisphere] = f'topics.{topic}'
+            if not entry.optional:
+                wanted |= dict.fromkeys(entry.columns, f'topics.{topic}')
         wanted |= dict.fromkeys(self.only, 'only')
         return wanted | {column: 'clock' for clock in self.clocks() for column in clock.columns}
 

@@ -21,7 +21,7 @@ class Imported:
     """Result of an import.
 
     ``rows`` were read, ``counts`` are messages by full topic name, ``left_out`` says how many
-    rows gave none, by reason. ``notes`` are sentences on what the log shows of its clocks.
+    rows gave none, by reason. ``notes`` are sentences on its clocks, and on what it lacks.
     """
 
     rows: int
