@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from trawl_ros.diagnosis.rules import Grounds, judge
+from trawl_ros.diagnosis.rules import Grounds, judge, judge_beside
 
 SOUND = Grounds(
     delta_bic=40.0,
@@ -49,3 +49,10 @@ def test_each_ground_is_needed(change, verdict, why):
     found, reason = judge(replace(SOUND, **change))
     assert found == verdict
     assert re.search(why, reason)
+
+
+def test_a_change_of_the_gear_file_that_explains_as_much_makes_a_name_doubtful():
+    verdict, reason = judge_beside(['larger boards, by about 11 %', 'thicker warps, by about 25 %'])
+    assert verdict == 'AMBIGUOUS'
+    assert 'larger boards, by about 11 %; or thicker warps' in reason
+    assert judge_beside([]) == judge(SOUND)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from trawl_ros.diagnosis.empirical import Empirical
 from trawl_ros.diagnosis.holdout import HoldoutComparison, Split
 from trawl_ros.diagnosis.locating import Where
+from trawl_ros.diagnosis.mimicry import Mimic
 from trawl_ros.diagnosis.naming import Named
 from trawl_ros.diagnosis.next_tow import Proposal
 from trawl_ros.diagnosis.refit import Refit
@@ -41,6 +42,9 @@ class Diagnosis:
         tows.
     empirical
         The term that explains what no effect does, where there is one.
+    mimics
+        Changes of the gear file that explain as much as the best effect, or where nothing is named
+        more; the likeliest first.
 
     Examples
     --------
@@ -65,6 +69,7 @@ class Diagnosis:
     checks: tuple[str, ...] = ()
     proposals: tuple[Proposal, ...] = ()
     empirical: Empirical | None = None
+    mimics: tuple[Mimic, ...] = ()
 
     @property
     def best(self) -> Weighed | None:

@@ -13,10 +13,11 @@ from trawl_ros.diagnosis.fit_beside import fit_beside
 from trawl_ros.diagnosis.holdout import holdout_comparison, split
 from trawl_ros.diagnosis.instruments import frozen, over_ground, wrong_unit
 from trawl_ros.diagnosis.locating import telling
+from trawl_ros.diagnosis.mimicry import Mimic, mimics_of
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
-from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR
+from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, judge_beside
 from trawl_ros.diagnosis.score_test import ScoreTest, score_test
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
@@ -102,6 +103,7 @@ def diagnose_windows(
             base, test = again, score_test(predictor, again.fit, catalogue())
             known = replace(known, base=base, score_test=test)
             named = name(predictor, base, test, kept_back, on_progress)
+    named, mimics = _beside_mimics(predictor, base, test, named, on_progress)
     best = named.weighed[0].refit if named.weighed else None
     placebo, term = None, None
     if named.verdict == 'UNKNOWN':
@@ -133,7 +135,25 @@ def diagnose_windows(
         checks=checks,
         proposals=proposals,
         empirical=term,
+        mimics=mimics,
     )
+
+
+def _beside_mimics(
+    predictor: Predictor, base: Refit, test: ScoreTest, named: Named, on_progress: OnProgress
+) -> tuple[Named, tuple[Mimic, ...]]:
+    """Hold a name against the library of mimics; without a name, look for what explains more."""
+    if named.verdict not in ('NAMED', 'UNKNOWN') or not named.weighed:
+        return named, ()
+    on_progress(_step('holding it against changes of the gear file'))
+    unknown = named.verdict == 'UNKNOWN'
+    mimics = mimics_of(
+        predictor, base, test, named.weighed[0], better=unknown, on_progress=on_progress
+    )
+    if unknown:
+        return named, mimics
+    verdict, reason = judge_beside([str(mimic) for mimic in mimics])
+    return replace(named, verdict=verdict, reason=reason), mimics
 
 
 def _step(detail: str) -> WorkProgress:

@@ -5,6 +5,7 @@ it, if it predicts tows it was not fitted to, if no other effect does nearly as 
 then left over looks like errors.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -77,6 +78,21 @@ SCREENED = 4
 SCREEN, SCREEN_SHARE = 16.0, 0.5
 """To first order an effect may be worse by so much χ², or explain only this part of what the first
 does, and still be the best in a refit."""
+
+MIMICS_SOLVED, MIMIC_SCREEN_SHARE = 10, 0.95
+"""So many changes of the gear file are solved in full, the likeliest to first order of those that
+explain at least this part of what the effect does, or less by `SCREEN`."""
+
+MIMICS_TRIED = 2
+"""And so many in any case of those that explain `SCREEN_SHARE`: a slack rope is far from first
+order."""
+
+MIMICS_NAMED = 3
+"""So many of them are named; then no more are looked for."""
+
+
+ALONE = 'it alone explains what was seen, and predicts what was left out'
+"""Reason of a name."""
 
 
 @dataclass(frozen=True)
@@ -156,4 +172,18 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
         return 'AMBIGUOUS', (
             f'in {1.0 - grounds.share:.0%} of the resampled trials another effect is the best'
         )
-    return 'NAMED', 'it alone explains what was seen, and predicts what was left out'
+    return 'NAMED', ALONE
+
+
+def judge_beside(mimics: Sequence[str]) -> tuple[Verdict, str]:
+    """Judge an effect that all other rules let be named beside what may be taken for it.
+
+    Parameters
+    ----------
+    mimics
+        Changes of the gear file that explain as much and are another thing, in words.
+    """
+    if mimics:
+        listed = '; or '.join(mimics)
+        return 'AMBIGUOUS', f'it may as well be another gear than the file has: {listed}'
+    return 'NAMED', ALONE

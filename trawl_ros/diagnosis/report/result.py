@@ -23,6 +23,7 @@ def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, obje
         'reason': diagnosis.reason,
         'effects': _effects(diagnosis) if sure else [],
         'ambiguous_with': list(dict.fromkeys(ambiguous)) if sure else [],
+        'mimics': _mimics(diagnosis),
         'empirical': _empirical(diagnosis),
         'where': [
             {
@@ -85,6 +86,28 @@ def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
         }
         for name, values in values_of(best.refit).items()
     ]
+
+
+def _mimics(diagnosis: Diagnosis) -> list[dict[str, object]]:
+    """Changes of the gear file that may be taken for what is named, or explain more."""
+    listed = []
+    for mimic in diagnosis.mimics:
+        value, low, high = mimic.interval
+        listed.append(
+            {
+                'name': mimic.change.name,
+                'keys': list(mimic.change.record.keys),
+                'words': str(mimic),
+                'relative': mimic.change.record.relative,
+                'value': value,
+                'low': low,
+                'high': high,
+                'unit': mimic.change.record.unit,
+                'delta_chi2': _number(mimic.delta_chi2),
+                'delta_bic': _number(mimic.delta_bic),
+            }
+        )
+    return listed
 
 
 def _empirical(diagnosis: Diagnosis) -> dict[str, object] | None:

@@ -55,6 +55,12 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             f'what was left out gains {best.gain[0]:.1f} of χ² ({best.gain[1]:.1f} to '
             f'{best.gain[2]:.1f}), and in {best.share:.0%} of resampled trials it is the best.'
         )
+    if diagnosis.mimics and diagnosis.verdict == 'UNKNOWN':
+        listed = '; or '.join(str(mimic) for mimic in diagnosis.mimics)
+        lines.append(
+            f'A gear file with {listed}, would explain more than any effect: it lowers χ² by '
+            f'{diagnosis.mimics[0].delta_chi2:.0f}.'
+        )
     if diagnosis.empirical is not None:
         term, weighed = diagnosis.empirical.term, diagnosis.empirical.weighed
         ((value, low, high, unit),) = values_of(weighed.refit)[term.name].values()

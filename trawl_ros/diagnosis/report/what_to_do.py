@@ -23,6 +23,10 @@ def _sentences(diagnosis: Diagnosis) -> list[str]:
     looked_at = [
         f'{number}. {_card(effect)}' for number, effect in enumerate(_likely(diagnosis), 1)
     ]
+    looked_at += [
+        f'{number}. {str(mimic).capitalize()}: {mimic.change.direct}'
+        for number, mimic in enumerate(diagnosis.mimics, len(looked_at) + 1)
+    ]
     if diagnosis.verdict == 'NAMED':
         first = 'Look first at what is named.' if looked_at else ''
         mended = 'If it is found and mended, tow the same states again beside the same baseline; '

@@ -13,6 +13,8 @@ a pitch further, so the net is its own mirror image and has a node at the headro
 The codend is one line: its meshes are too small for rows, and their drag is put on its nodes.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from trawl_ros.core.errors import GearError
@@ -24,7 +26,11 @@ from trawl_ros.model.net.planned_mouth import Place, PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile, rows_of
 from trawl_ros.model.net.weave import NetMesh, add_codend, weave
 
+NETS = 4
+"""So many nets are kept: gears that differ in their rigging alone have the same one."""
 
+
+@lru_cache(NETS)
 def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
     """Group the netting of a gear into nodes and bars.
 

@@ -9,9 +9,15 @@ from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.diagnosis.mimics.table import mimic_table
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
 from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import ON_DECK, RIGHT
+from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import (
+    CAUSES,
+    RIGHT_CHANGES,
+    RIGHT_NAMES,
+)
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.studies.discrepancy.scoring.costs import cost_rows, keep_cost
 from trawl_ros.lab.studies.discrepancy.scoring.figure import kind_of
@@ -25,6 +31,8 @@ from trawl_ros.lab.studies.discrepancy.scoring.rows import (
     poor_rows,
     shuffled_rows,
 )
+from trawl_ros.lab.studies.discrepancy.scoring.rules_hash import rules_hash
+from trawl_ros.lab.studies.discrepancy.scoring.verdicts import reported, right
 from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.stages import run_blind
 from trawl_ros.lab.studies.discrepancy.trials.making import make
@@ -93,7 +101,28 @@ def test_everything_of_the_catalogue_that_shows_in_steady_tows_is_hidden():
     }  # fmt: skip
     assert set(INSIDE) | right | mirrored == shows
     assert len(OUTSIDE) >= 10
-    assert not (set(OUTSIDE) | set(ON_DECK)) & set(catalogue())
+    assert not (set(OUTSIDE) | set(CAUSES)) & set(catalogue())
+
+
+def test_every_cause_on_deck_has_names_or_changes_that_count_as_right():
+    assert set(RIGHT_NAMES) == set(CAUSES)
+    assert set(RIGHT_CHANGES) <= set(CAUSES)
+    assert {name for names in RIGHT_NAMES.values() for name in names} <= set(catalogue())
+    known = {change.name for change in mimic_table()}
+    assert {name for names in RIGHT_CHANGES.values() for name in names} <= known
+    assert all(RIGHT_NAMES[name] or RIGHT_CHANGES[name] for name in CAUSES)
+
+
+def test_a_set_that_holds_the_changed_key_is_right():
+    beside = scored('AMBIGUOUS', ['board_rigging'], ['other_boards'], 'deck')
+    assert reported(beside) == {'board_rigging'}
+    assert not right(beside, reported(beside), ALONE)
+    listed = beside.diagnosis | {'mimics': [{'name': 'board_area'}]}
+    held = replace(beside, diagnosis=listed)
+    assert reported(held) == {'board_rigging', 'board_area'}
+    assert right(held, reported(held), ALONE)
+    unknown = replace(beside, diagnosis=listed | {'verdict': 'UNKNOWN'})
+    assert 'board_area' not in reported(unknown)
 
 
 @pytest.mark.parametrize(
@@ -257,6 +286,15 @@ def test_another_plan_in_the_same_folder_is_refused(tmp_path):
     (tmp_path / 'plan.json').write_text(json.dumps(asdict(BlindStudyPlan(seed=1))))
     with pytest.raises(TrawlError, match=r'another seed.*--force'):
         run_blind(BlindStudyPlan(seed=2), tmp_path, pytest.fail)
+
+
+def test_other_rules_than_those_of_the_first_trials_are_refused(tmp_path):
+    plan = BlindStudyPlan(seed=1)
+    (tmp_path / 'plan.json').write_text(json.dumps(asdict(plan)))
+    (tmp_path / 'rules.json').write_text(json.dumps({'diagnosis_sha256': 'others'}))
+    with pytest.raises(TrawlError, match=r'rules\.json: the rules .* have changed .*--force'):
+        run_blind(plan, tmp_path, pytest.fail)
+    assert len(rules_hash()) == 64
 
 
 def test_trials_per_hour_count_all_stages_of_a_trial(tmp_path):

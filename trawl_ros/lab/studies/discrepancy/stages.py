@@ -15,6 +15,7 @@ from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.lab.studies.discrepancy.diagnosing import DiagnosisTask, diagnose_case
 from trawl_ros.lab.studies.discrepancy.scoring.costs import COSTS, MAKING, Timed, keep_cost
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
+from trawl_ros.lab.studies.discrepancy.scoring.rules_hash import rules_hash
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes, classes, named_right
 from trawl_ros.lab.studies.discrepancy.trials.following import proposed, tow_on
 from trawl_ros.lab.studies.discrepancy.trials.in_bags import make_bags
@@ -28,6 +29,9 @@ Task = TypeVar('Task')
 
 FOLDERS = ('trials', 'keys', 'quiet', 'diagnoses', 'fits')
 CLASSES = 'classes.json'
+RULES = 'rules.json'
+"""Hash of what decides on a verdict, of when the folder was begun."""
+
 ON = '_on'
 """Ends the names of trials that were towed on."""
 
@@ -240,12 +244,24 @@ def _prepare(plan: BlindStudyPlan, folder: Path, *, force: bool) -> None:
                 f'{about}: has trials with another {different}, expected the same, another '
                 'folder, or --force'
             )
+        _same_rules(folder)
         return
     empty_folder(folder, force=force)
-    for name in (CLASSES, COSTS):
+    for name in (CLASSES, COSTS, RULES):
         (folder / name).unlink(missing_ok=True)
     for part in FOLDERS:
         if about.is_file():
             rmtree(folder / part, ignore_errors=True)
         made_folder(folder / part)
+    write_json(folder / RULES, {'diagnosis_sha256': rules_hash()})
     write_json(about, asked)
+
+
+def _same_rules(folder: Path) -> None:
+    """Refuse to go on by other rules than those by which the first trials were diagnosed."""
+    known = _json(folder / RULES)
+    if known is not None and known['diagnosis_sha256'] != rules_hash():
+        raise TrawlError(
+            f'{folder / RULES}: the rules of the diagnosis have changed since these trials were '
+            'begun, expected the same, another folder, or --force'
+        )

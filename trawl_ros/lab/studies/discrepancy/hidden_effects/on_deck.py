@@ -75,7 +75,7 @@ class DeckCause:
         return Hidden(self.name, self.unit, self.probe, self.most, gear=gear)
 
 
-def _added(*path: str, factor: bool = False) -> Change:
+def added(*path: str, factor: bool = False) -> Change:
     """Change of a number: a size added to it, or as a part of it."""
 
     def change(gear: GearRecord, size: float) -> GearRecord:
@@ -93,8 +93,8 @@ def _added(*path: str, factor: bool = False) -> Change:
 
 
 def _lost_floats(gear: GearRecord, size: float) -> GearRecord:
-    less = _added('floats', 'buoyancy_n', factor=True)(gear, -size)
-    return _added('floats', 'drag_area_m2', factor=True)(less, -size)
+    less = added('floats', 'buoyancy_n', factor=True)(gear, -size)
+    return added('floats', 'drag_area_m2', factor=True)(less, -size)
 
 
 def _longer(end: str) -> Change:
@@ -132,24 +132,24 @@ def _forward(gear: GearRecord, size: float) -> GearRecord:
 _ANGLES = ('board', 'installation')
 BY_KEY = (
     DeckCause('rigging_epsilon', 'board.installation.epsilon_deg',
-              _added(*_ANGLES, 'epsilon_deg'), 'deg', 1.0, (8.0, 8.0)),
+              added(*_ANGLES, 'epsilon_deg'), 'deg', 1.0, (8.0, 8.0)),
     DeckCause('rigging_zeta', 'board.installation.zeta_deg',
-              _added(*_ANGLES, 'zeta_deg'), 'deg', 1.0, (8.0, 8.0)),
+              added(*_ANGLES, 'zeta_deg'), 'deg', 1.0, (8.0, 8.0)),
     DeckCause('rigging_eta', 'board.installation.eta_deg',
-              _added(*_ANGLES, 'eta_deg'), 'deg', 1.0, (8.0, 8.0)),
+              added(*_ANGLES, 'eta_deg'), 'deg', 1.0, (8.0, 8.0)),
     DeckCause('warp_hole', 'board.fastening.warp_m[0]', _forward, 'm', 0.03, (0.2, 0.2)),
     DeckCause('board_mass', 'board.mass_kg',
-              _added('board', 'mass_kg', factor=True), '', 0.05, (0.3, 0.3)),
+              added('board', 'mass_kg', factor=True), '', 0.05, (0.3, 0.3)),
     DeckCause('upper_bridles', 'bridles.upper.length_m', _longer('upper'), 'm', 2.0, (12.0, 12.0)),
     DeckCause('lower_bridles', 'bridles.lower.length_m', _longer('lower'), 'm', 2.0, (12.0, 12.0)),
     DeckCause('floats_gone', 'floats.buoyancy_n, floats.drag_area_m2',
               _lost_floats, '', 0.1, (0.5, 0.9)),
     DeckCause('clumps', 'clump.weight_in_water_n',
-              _added('clump', 'weight_in_water_n', factor=True), '', 0.1, (0.6, 0.4)),
+              added('clump', 'weight_in_water_n', factor=True), '', 0.1, (0.6, 0.4)),
     DeckCause('kite_gone', 'kite.area_m2',
-              _added('kite', 'area_m2', factor=True), '', 0.3, (0.95, 2.0)),
+              added('kite', 'area_m2', factor=True), '', 0.3, (0.95, 2.0)),
     DeckCause('thicker_warps', 'warp.diameter_m',
-              _added('warp', 'diameter_m', factor=True), '', 0.1, (0.2, 0.4)),
+              added('warp', 'diameter_m', factor=True), '', 0.1, (0.2, 0.4)),
     DeckCause('thicker_twine', 'netting.body[].twine_diameter_m', _twine, '', 0.1, (0.3, 0.6)),
 )  # fmt: skip
 """Causes that change a key of the gear file."""

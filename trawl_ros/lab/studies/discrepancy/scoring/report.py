@@ -20,6 +20,7 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import FRICTION, N
 from trawl_ros.lab.studies.discrepancy.scoring.costs import cost_rows
 from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.scoring.rows import all_sections
+from trawl_ros.lab.studies.discrepancy.scoring.rules_hash import rules_hash
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes
 from trawl_ros.lab.studies.discrepancy.trials.making import DROPOUTS, WRONG_BY
 from trawl_ros.lab.studies.discrepancy.trials.plan import (
@@ -125,6 +126,7 @@ def log_scoring(
         'time': datetime.now(timezone.utc).isoformat(timespec='seconds'),
         'version': __version__,
         'rules_sha256': sha256(source).hexdigest(),
+        'diagnosis_sha256': rules_hash(),
         'plan': asdict(plan),
         'trials': trials,
         'asked': len(asked),

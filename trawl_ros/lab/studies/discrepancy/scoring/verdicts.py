@@ -10,7 +10,7 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import values_vector
 from trawl_ros.diagnosis.rules import ALIKE
-from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import RIGHT
+from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import RIGHT_CHANGES, RIGHT_NAMES
 from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
@@ -24,9 +24,16 @@ def names_of(trial: Scored) -> set[str]:
 
 
 def reported(trial: Scored) -> set[str]:
-    """All effects that are not excluded."""
+    """All effects, and changes of the gear file, that are not excluded."""
     alike = {name for effect in said_of(trial)['effects'] for name in effect['class']}
-    return names_of(trial) | alike | set(said_of(trial)['ambiguous_with'])
+    return names_of(trial) | alike | set(said_of(trial)['ambiguous_with']) | _changes(trial)
+
+
+def _changes(trial: Scored) -> set[str]:
+    """Changes of the gear file that are not excluded beside an effect."""
+    found = said_of(trial)
+    listed = found.get('mimics', ()) if found['verdict'] == 'AMBIGUOUS' else ()
+    return {change['name'] for change in listed}
 
 
 def hidden_names(trial: Scored) -> tuple[str, ...]:
@@ -57,9 +64,12 @@ def right(trial: Scored, names: set[str], classes: Classes) -> bool:
 
 
 def right_names(hidden: str, classes: Classes) -> set[str]:
-    """Names that count as right for what is hidden: its own, or that of its cause; and classes."""
-    own = RIGHT.get(hidden, (hidden,))
-    return {*own, *(other for name in own for other in classes.get(name, ()))}
+    """Names that count as right for what is hidden: its own, or that of its cause; with classes,
+    and changes of the gear file that are the cause.
+    """
+    own = RIGHT_NAMES.get(hidden, (hidden,))
+    alike = (other for name in own for other in classes.get(name, ()))
+    return {*own, *alike, *RIGHT_CHANGES.get(hidden, ())}
 
 
 def named_right(trial: Scored, classes: Classes) -> bool:

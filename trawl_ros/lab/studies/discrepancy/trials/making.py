@@ -14,7 +14,7 @@ from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
-from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import ON_DECK
+from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant, draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood, likelihood
@@ -70,7 +70,7 @@ def hide(spec: Spec, gear: str, cut: Cut, seed: int) -> Hiding:
     shape = chance_of(spec, seed)
     plant = _plant(gear, cut, seed, spec.plant)
     likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
-    drawn = tuple({**INSIDE, **OUTSIDE, **ON_DECK}[name](shape) for name in spec.effects)
+    drawn = tuple({**INSIDE, **OUTSIDE, **CAUSES}[name](shape) for name in spec.effects)
     # Two at once are each as strong as if it were alone.
     outside = spec.series == 'outside'
     detectable = tuple(

@@ -7,7 +7,7 @@ from itertools import count, product
 import numpy as np
 
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
-from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import ON_DECK
+from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.studies.discrepancy.trials.trial import Form, Spec
 from trawl_ros.lab.studies.identification.plant import Cut
@@ -142,8 +142,8 @@ class BlindStudyPlan:
                 )
                 yield spec('pair', names, PAIR_STRENGTH, sides)
         # Last, so that the draws of all others stay what they were.
-        for name, strength in product(ON_DECK, DECK_STRENGTHS):
-            signs = ON_DECK[name](np.random.default_rng(0)).signs
+        for name, strength in product(CAUSES, DECK_STRENGTHS):
+            signs = CAUSES[name](np.random.default_rng(0)).signs
             first = int(chance.integers(len(signs)))
             for turn in range(self.deck):
                 side = signs[(first + turn) % len(signs)]

@@ -1,0 +1,144 @@
+"""Changes of a gear file: their keys, their sizes, and what they do to first order."""
+
+import re
+
+import numpy as np
+import pytest
+from pydantic import BaseModel
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.diagnosis.mimics.gear_file_change import changed, changes_of
+from trawl_ros.diagnosis.mimics.table import MimicRecord, mimic_table
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.gear.rigging import SweepRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.predict import Predictor
+
+GEARS = ('kaifuha', 'four_seam', 'pair_368')
+
+
+def record(name):
+    (found,) = [own for own in mimic_table() if own.name == name]
+    return found
+
+
+def has_key(model, key):
+    """True if gear files may have a key."""
+    own = model
+    for name in re.sub(r'\[\d*\]', '', key).split('.'):
+        fields = [kind.model_fields for kind in kinds(own) if name in kind.model_fields]
+        if not fields:
+            return False
+        own = fields[0][name].annotation
+    return True
+
+
+def kinds(annotation):
+    """Records that an annotation allows."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [kind for part in getattr(annotation, '__args__', ()) for kind in kinds(part)]
+
+
+def test_every_key_is_one_of_a_gear_file():
+    unknown = [key for own in mimic_table() for key in own.keys if not has_key(GearRecord, key)]
+    assert not unknown
+    assert not has_key(GearRecord, 'warp.colour')
+
+
+def test_the_same_things_are_in_the_catalogue_under_other_names():
+    names = {own.name for own in mimic_table()}
+    assert {name for own in mimic_table() for name in own.same_as} <= set(catalogue())
+    assert not names & set(catalogue())
+
+
+def test_what_a_gear_does_not_have_is_passed_over():
+    by_gear = {name: {own.name for own in changes_of(load_gear(name))} for name in GEARS}
+    assert {'board_area', 'twine', 'kite_setting', 'block_spacing'} <= by_gear['kaifuha']
+    assert not by_gear['kaifuha'] & {'hung_weights', 'pair_distance', 'sweep_length', 'catch'}
+    assert {'hung_weights', 'hung_floats', 'twine_number'} <= by_gear['four_seam']
+    assert not by_gear['four_seam'] & {'kite_setting', 'clump_drag'}
+    assert 'pair_distance' in by_gear['pair_368']
+    swept = load_gear('kaifuha').model_copy(
+        update={'sweep': SweepRecord(length_m=50.0, upper_backstrop_m=5.0, lower_backstrop_m=5.0)}
+    )
+    assert 'upper_backstrop' in {own.name for own in changes_of(swept)}
+
+
+def test_only_the_numbers_at_the_keys_change():
+    gear = load_gear('kaifuha')
+    thicker = changed(gear, record('front_twine'), 0.5)
+    before, after = (
+        [section.twine_diameter_m for section in own.netting.body] for own in (gear, thicker)
+    )
+    assert after == pytest.approx([1.5 * before[0], 1.5 * before[1], *before[2:]])
+    body = gear.netting.body
+    netting = thicker.netting.model_copy(update={'body': body})
+    assert thicker.model_copy(update={'netting': netting}) == gear
+    ahead = changed(gear, record('warp_hole_ahead'), 0.1).board.fastening.warp_m
+    assert ahead == pytest.approx(np.add(gear.board.fastening.warp_m, (0.1, 0.0, 0.0)))
+
+
+def test_a_change_is_told_in_words_with_its_size():
+    assert record('warp_diameter').words(0.247) == 'thicker warps, by about 25 %'
+    assert record('block_spacing').words(-1.5) == 'towing blocks closer together, by about 1.5 m'
+
+
+@pytest.mark.parametrize(
+    ('change', 'found'),
+    [
+        ({'low': 0.0, 'high': 0.0}, 'found 0, expected more than low'),
+        ({'low': -1.5}, 'found -1.5, expected a part of -1 or more'),
+        ({'unit': 'm'}, 'without a unit'),
+    ],
+)
+def test_a_size_that_cannot_be_is_refused(change, found):
+    with pytest.raises(ValueError, match=found):
+        MimicRecord.model_validate(record('warp_diameter').model_dump() | change)
+
+
+def test_a_table_with_a_wrong_key_is_refused(tmp_path):
+    path = tmp_path / 'own.yaml'
+    path.write_text('changes:\n  - {name: one, keys: [warp.diameter_m], low: -1.0, heigh: 1.0}\n')
+    with pytest.raises(TrawlError, match=r'own\.yaml: .*heigh'):
+        mimic_table(str(path))
+
+
+def test_it_is_carried_through_the_solver_to_first_order(coarse):
+    (change,) = [own for own in changes_of(coarse) if own.name == 'board_area']
+    model = build_model(coarse)
+    point, inputs = OperatingPoint(500.0, 500.0, 2.1), np.array([500.0, 500.0, 2.1])
+    here = find_equilibrium(model, point)
+    predictor = Predictor(
+        model, EffectSet((ActiveEffect(change, change.neutral),)), at=Situation((0.0, 0.0, 0.0))
+    )
+    active = [ActiveEffect(change, change.neutral)]
+    (slopes,) = predictor.signatures(model.coefficients, inputs, here, active).T
+    size = 1e-3
+    there = [
+        find_equilibrium(
+            build_model(changed(coarse, change.record, sign * size)), point, here
+        ).observables.array()
+        for sign in (1.0, -1.0)
+    ]
+    differences = (there[0] - there[1]) / (2.0 * size)
+    for name in ('door_spread', 'net_depth', 'port_tension'):
+        place = OBSERVABLES.index(name)
+        assert slopes[place] == pytest.approx(differences[place], rel=1e-3), name
+
+
+def test_it_acts_ahead_of_the_effects_of_the_gear_file(coarse):
+    (change,) = [own for own in changes_of(coarse) if own.name == 'clump_drag']
+    model = build_model(coarse)
+    floats = catalogue()['floats']
+    acting = EffectSet((ActiveEffect(change, np.array([1.0])), ActiveEffect(floats, np.ones(1))))
+    both = acting.gear(model, Situation((0.0, 0.0, 0.0)))
+    alone = build_model(changed(coarse, change.record, 1.0))
+    assert np.allclose(both.lump_drag_area, alone.lump_drag_area - alone.floats[2])

@@ -1,0 +1,86 @@
+"""A name is held against changes of the gear file: other boards are not taken for other rigging."""
+
+from dataclasses import replace
+
+import pytest
+
+from trawl_ros.diagnosis import procedure
+from trawl_ros.diagnosis.mimicry import mimics_of
+from trawl_ros.diagnosis.mimics.gear_file_change import changed
+from trawl_ros.diagnosis.mimics.table import mimic_table
+from trawl_ros.diagnosis.procedure import diagnose_windows
+from trawl_ros.diagnosis.report.result import result
+from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.what_to_do import what_to_do
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.predict import Predictor
+
+LARGER = 0.11
+"""Part by which the boards are larger than the gear file says."""
+
+RIVALS = ('board_rigging', 'net_drag')
+"""Effects that are looked for."""
+
+KNOWN = {own.name: own for own in mimic_table()}
+AREA = KNOWN['board_area'].model_copy(update={'usual': 0.1})
+"""Boards as of a ship that has two pairs of them."""
+
+TABLE = (AREA, KNOWN['warp_weight'], KNOWN['twine'])
+"""Changes that are looked for."""
+
+LIBRARY = 'trawl_ros.diagnosis.mimics.gear_file_change.mimic_table'
+
+
+def larger(model, hours):
+    return build_model(changed(model.gear, AREA, LARGER))
+
+
+@pytest.fixture(scope='module')
+def exchanged(coarse, hide):
+    """Three tows with larger boards beside a baseline of one, each of three states."""
+    before = hide.trial(coarse, hide.nothing, 3, tows=1)
+    after = hide.trial(coarse, hide.Hidden(gear=larger), 4, tows=3, first=1)
+    apart = [
+        replace(window, index=len(before) + window.index, state=len(before) + window.state)
+        for window in after
+    ]
+    windows = [window for window in (*before, *apart) if window.index % 5 < 3]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(procedure, 'catalogue', lambda: {name: catalogue()[name] for name in RIVALS})
+        patch.setattr(LIBRARY, lambda: TABLE)
+        return diagnose_windows(coarse, windows, hide.names[:4], frozenset({0}))
+
+
+def test_larger_boards_make_a_name_doubtful_and_are_told_with_their_size(exchanged):
+    assert exchanged.verdict == 'AMBIGUOUS', exchanged.reason
+    found = {mimic.change.name: mimic for mimic in exchanged.mimics}
+    value, low, high = found['board_area'].interval
+    assert low < LARGER < high
+    assert low < value < high
+    assert f'larger boards, by about {100.0 * value:.2g} %' in headline(exchanged)
+    assert 'Hold board.area_m2 of the gear file' in what_to_do(exchanged)
+    listed = result(exchanged, ())['mimics']
+    assert [own['name'] for own in listed] == [own.change.name for own in exchanged.mimics]
+    assert exchanged.repair is None
+
+
+def test_without_a_name_it_is_told_as_what_would_explain_more(exchanged):
+    unknown = replace(exchanged, verdict='UNKNOWN')
+    (told,) = [line for line in sentences(unknown) if 'would explain more' in line]
+    assert 'larger boards' in told
+
+
+def test_a_change_that_is_the_same_thing_is_no_mimic(coarse, exchanged, monkeypatch):
+    predictor = Predictor(build_model(coarse), without=exchanged.baseline)
+    names = exchanged.best.refit.names
+    same = tuple(own.model_copy(update={'same_as': names}) for own in TABLE)
+    monkeypatch.setattr(LIBRARY, lambda: same)
+    assert mimics_of(predictor, exchanged.base, exchanged.score_test, exchanged.best) == ()
+
+
+def test_an_uncommon_size_makes_no_name_doubtful(coarse, exchanged, monkeypatch):
+    seldom = tuple(own.model_copy(update={'usual': 0.02}) for own in TABLE)
+    monkeypatch.setattr(LIBRARY, lambda: seldom)
+    predictor = Predictor(build_model(coarse), without=exchanged.baseline)
+    assert mimics_of(predictor, exchanged.base, exchanged.score_test, exchanged.best) == ()

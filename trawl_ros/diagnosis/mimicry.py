@@ -1,0 +1,196 @@
+"""Evidence held against the library of mimics: to first order, and the likeliest in full."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures
+from trawl_ros.diagnosis.evidence import evidence
+from trawl_ros.diagnosis.mimics.gear_file_change import GearFileChange, changes_of
+from trawl_ros.diagnosis.naming import REFITTING, refitted
+from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.rules import (
+    LEAST_BIC,
+    MIMIC_SCREEN_SHARE,
+    MIMICS_NAMED,
+    MIMICS_SOLVED,
+    MIMICS_TRIED,
+    RIVAL,
+    SCREEN,
+    SCREEN_SHARE,
+)
+from trawl_ros.diagnosis.score_test import ScoreTest
+from trawl_ros.diagnosis.weighing import Weighed, left_over
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
+from trawl_ros.solver.predict import Predictor
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """Mimic: a change of the gear file that explains what was seen as well as an effect does.
+
+    Attributes
+    ----------
+    change
+        Of the gear file.
+    refit
+        Of boards and change together, all windows solved anew.
+    delta_chi2, delta_bic
+        By how much it lowers both against the boards alone, with the noise beside the effect.
+    """
+
+    change: GearFileChange
+    refit: Refit
+    delta_chi2: float
+    delta_bic: float
+
+    @property
+    def interval(self) -> tuple[float, float, float]:
+        """Size, and both ends of its interval."""
+        estimate = self.refit.estimate
+        place = self.refit.fit.prior.slice_of('effect').start
+        value, low, high = (own[place] for own in (estimate.values, estimate.low, estimate.high))
+        return float(value), float(low), float(high)
+
+    def __str__(self) -> str:
+        return self.change.record.words(self.interval[0])
+
+
+def mimics_of(
+    predictor: Predictor,
+    base: Refit,
+    test: ScoreTest,
+    best: Weighed,
+    *,
+    better: bool = False,
+    on_progress: OnProgress = ignore,
+) -> tuple[Mimic, ...]:
+    """Changes of the gear file that explain as much as the best effect, the likeliest first.
+
+    Changes that are the same thing as the effect are none. Uncommon sizes count against either, as
+    the squares of their standard deviations.
+
+    Parameters
+    ----------
+    predictor
+        The gear as it is believed.
+    base
+        Boards alone.
+    test
+        Result of the score test.
+    best
+        The effect, or two.
+    better
+        True for changes that explain by `LEAST_BIC` more than the effect.
+    on_progress
+        Called before each refit.
+    """
+    changes = [
+        change
+        for change in changes_of(predictor.model.gear)
+        if not set(best.refit.names) & set(change.record.same_as)
+    ]
+    if not changes:
+        return ()
+    # A change builds the whole gear, on which all effects of the gear file act.
+    neutral = tuple(ActiveEffect(change, change.neutral) for change in changes)
+    fixed = EffectSet((*neutral, *predictor.fixed.effects))
+    predictor = replace(predictor, fixed=fixed)
+    terms = _screened(predictor, base, test, changes)
+    scales = best.refit.fit.scales
+    penalty = float(np.log(test.readings))
+    before = base.cost(scales)
+    explained = _sparing(test, best, 2.0 * (before - best.refit.cost(scales)))
+    explained -= _uncommon(best.refit)
+    least = explained + LEAST_BIC if better else explained - RIVAL
+    found: list[Mimic] = []
+    for candidate in _likeliest(test, terms, best, better=better):
+        on_progress(WorkProgress('diagnosing', detail=f'refitting with {candidate.name}'))
+        try:
+            fitted = refitted(predictor, base, terms, (candidate,), REFITTING)
+        except GearError:
+            # A net that cannot be cut so is not the one that was towed.
+            continue
+        if fitted is None or fitted.at_bound():
+            continue
+        delta = 2.0 * (before - fitted.cost(scales))
+        if (
+            delta - penalty - _uncommon(fitted) > least
+            and not left_over(base, test, fitted).too_much
+        ):
+            change = next(own for own in changes if own.name == candidate.name)
+            found.append(Mimic(change, fitted, delta, delta - penalty))
+        if len(found) == MIMICS_NAMED:
+            break
+    return tuple(sorted(found, key=lambda mimic: -mimic.delta_bic))
+
+
+def _screened(
+    predictor: Predictor, base: Refit, test: ScoreTest, changes: Sequence[GearFileChange]
+) -> ScoreTest:
+    """Score test with the changes in place of the catalogue."""
+    depths = np.array([linear.window.means['net_depth'] for linear in base.fit.windows])
+    wanted = candidates({change.name: change for change in changes}, predictor, depths)
+    columns = tuple(signatures(predictor, base.fit.windows, wanted))
+    units = np.concatenate([candidate.scale for candidate in wanted])
+    own = evidence(test.fit, columns, units, weights=test.weights)
+    return replace(test, wanted=wanted, columns=columns, evidence=own)
+
+
+def _likeliest(
+    test: ScoreTest, terms: ScoreTest, best: Weighed, *, better: bool
+) -> tuple[Candidate, ...]:
+    """Changes to be solved in full: nearly as likely to first order, of sizes near what happens."""
+    block = _block(test, best)
+    first = _sparing(test, best, test.evidence.chi2(block))
+    near = first if better else min(first - SCREEN, MIMIC_SCREEN_SHARE * first)
+    far = first if better else SCREEN_SHARE * first
+    chosen = []
+    for candidate in terms.wanted:
+        (parameter,) = candidate.effect.parameters
+        size = float(candidate.scale[0] * terms.evidence.values(terms.block(candidate))[0])
+        # First order may be wrong by half.
+        if 1.5 * parameter.low <= size <= 1.5 * parameter.high:
+            chosen.append((terms.penalised(candidate), candidate))
+    ranked = sorted(chosen, key=lambda own: own[0], reverse=True)
+    return tuple(
+        candidate
+        for place, (likely, candidate) in enumerate(ranked[:MIMICS_SOLVED])
+        if likely > (far if place < MIMICS_TRIED else near)
+    )
+
+
+def _uncommon(refit: Refit) -> float:
+    """Squares of the sizes of effects, in standard deviations of what is common."""
+    start, scale = (
+        np.concatenate([getattr(candidate, name) for candidate in refit.wanted])
+        for name in ('start', 'scale')
+    )
+    return float(np.sum(((refit.values - start) / scale) ** 2))
+
+
+def _block(test: ScoreTest, best: Weighed) -> list[int]:
+    """Places of the values of an effect, or two."""
+    return [place for candidate in best.refit.wanted for place in test.block(candidate)]
+
+
+def _sparing(test: ScoreTest, best: Weighed, explained: float) -> float:
+    """Decrease of BIC by the values of an effect that earn their place.
+
+    Boards that are turned about one axis are named with all three angles; a change of the gear
+    file, which has one size, would stand ahead of them for that alone. What each choice of the
+    values lacks of the χ² that all of them explain is found to first order.
+    """
+    block = _block(test, best)
+    whole, penalty = test.evidence.chi2(block), float(np.log(test.readings))
+    return max(
+        explained
+        - (whole - test.evidence.chi2(some))
+        - test.evidence.degrees_of_freedom(some) * penalty
+        for number in range(1, len(block) + 1)
+        for some in combinations(block, number)
+    )

@@ -1,0 +1,114 @@
+"""Effect that changes numbers at keys of a gear file and builds the gear anew."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from pydantic import BaseModel
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.diagnosis.mimics.table import MimicRecord, mimic_table
+from trawl_ros.effects.base.effect import Effect, Parameter, Situation
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
+
+KEPT = 4
+"""So many sizes are kept built: a derivative takes two, at all windows."""
+
+Path = Sequence[str | int | None]
+"""Names of keys and places in lists, None for all of a list."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearFileChange(Effect):
+    """Change of a gear file by one size, 0 where nothing is changed.
+
+    It builds the whole gear, so that it must be the first effect of those that act.
+
+    Attributes
+    ----------
+    record
+        The change.
+    believed
+        Gear file that is changed.
+    """
+
+    record: MimicRecord
+    believed: GearRecord
+    _built: dict[float, GearModel] = field(default_factory=dict, repr=False, compare=False)
+
+    def gear(self, values: FloatArray, model: GearModel, at: Situation) -> GearModel:
+        """Gear model of the changed file, with the coefficients of this one."""
+        size = float(values[0])
+        if size == 0.0:
+            return model
+        if size not in self._built:
+            while len(self._built) >= KEPT:
+                self._built.pop(next(iter(self._built)))
+            self._built[size] = build_model(changed(self.believed, self.record, size))
+        return self._built[size].with_coefficients(model.coefficients)
+
+
+def changes_of(gear: GearRecord) -> tuple[GearFileChange, ...]:
+    """All changes of the table that change anything in this gear file."""
+    return tuple(
+        GearFileChange(
+            name=record.name,
+            sentence=f'{record.larger.capitalize()} than the gear file has.',
+            parameters=(
+                Parameter(
+                    'change',
+                    record.unit,
+                    0.0,
+                    record.low,
+                    record.high,
+                    record.usual,
+                ),
+            ),
+            excited_by='any tow, beside a baseline',
+            direct=f'Hold {", ".join(record.keys)} of the gear file against what is on deck.',
+            record=record,
+            believed=gear,
+        )
+        for record in mimic_table()
+        if changed(gear, record, 0.5 * (record.high or record.low)) != gear
+    )
+
+
+def changed(gear: GearRecord, record: MimicRecord, size: float) -> GearRecord:
+    """Gear file with a change of a size; itself where it has none of the keys."""
+
+    def change(value: float) -> float:
+        return value * (1.0 + size) if record.relative else value + size
+
+    for key in record.keys:
+        new = _changed(gear, _path(key), change)
+        assert isinstance(new, GearRecord)
+        gear = new
+    return gear
+
+
+def _path(key: str) -> Path:
+    path: list[str | int | None] = []
+    for name, _, place in re.findall(r'([a-z0-9_]+)(\[(\d*)\])?', key):
+        path.append(name)
+        if f'{name}[' in key:
+            path.append(int(place) if place else None)
+    return path
+
+
+def _changed(value: object, path: Path, change: Callable[[float], float]) -> object:
+    """Value with the numbers at a path changed; what is missing stays so."""
+    if not path:
+        return change(value) if isinstance(value, float) else value
+    first, rest = path[0], path[1:]
+    if isinstance(value, BaseModel) and isinstance(first, str):
+        own = getattr(value, first)
+        new = _changed(own, rest, change)
+        return value if new is own else value.model_copy(update={first: new})
+    if isinstance(value, tuple) and not isinstance(first, str):
+        return tuple(
+            _changed(own, rest, change) if first in (None, place) else own
+            for place, own in enumerate(value)
+        )
+    return value
