@@ -71,8 +71,8 @@ def mimics_of(
 ) -> tuple[Mimic, ...]:
     """Changes of the gear file that explain as much as the best effect, the likeliest first.
 
-    Changes that are the same thing as the effect are none. Uncommon sizes count against either, as
-    the squares of their standard deviations.
+    Changes that are the same thing as the effect are none, unless `better` ones are looked for.
+    Uncommon sizes count against either, as the squares of their standard deviations.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def mimics_of(
     changes = [
         change
         for change in changes_of(predictor.model.gear)
-        if not set(best.refit.names) & set(change.record.same_as)
+        if better or not set(best.refit.names) & set(change.record.same_as)
     ]
     if not changes:
         return ()

@@ -143,7 +143,7 @@ def _beside_mimics(
     predictor: Predictor, base: Refit, test: ScoreTest, named: Named, on_progress: OnProgress
 ) -> tuple[Named, tuple[Mimic, ...]]:
     """Hold a name against the library of mimics; without a name, look for what explains more."""
-    if named.verdict not in ('NAMED', 'UNKNOWN') or not named.weighed:
+    if not named.weighed:
         return named, ()
     on_progress(_step('holding it against changes of the gear file'))
     unknown = named.verdict == 'UNKNOWN'
@@ -152,7 +152,7 @@ def _beside_mimics(
     )
     if unknown:
         return named, mimics
-    verdict, reason = judge_beside([str(mimic) for mimic in mimics])
+    verdict, reason = judge_beside(named.verdict, named.reason, [str(mimic) for mimic in mimics])
     return replace(named, verdict=verdict, reason=reason), mimics
 
 

@@ -91,10 +91,6 @@ MIMICS_NAMED = 3
 """So many of them are named; then no more are looked for."""
 
 
-ALONE = 'it alone explains what was seen, and predicts what was left out'
-"""Reason of a name."""
-
-
 @dataclass(frozen=True)
 class Grounds:
     """Grounds of a verdict on the best effect, or two effects, with the rivals not excluded.
@@ -172,18 +168,20 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
         return 'AMBIGUOUS', (
             f'in {1.0 - grounds.share:.0%} of the resampled trials another effect is the best'
         )
-    return 'NAMED', ALONE
+    return 'NAMED', 'it alone explains what was seen, and predicts what was left out'
 
 
-def judge_beside(mimics: Sequence[str]) -> tuple[Verdict, str]:
-    """Judge an effect that all other rules let be named beside what may be taken for it.
+def judge_beside(verdict: Verdict, reason: str, mimics: Sequence[str]) -> tuple[Verdict, str]:
+    """Judge an effect that the other rules let be named, or not excluded, beside its mimics.
 
     Parameters
     ----------
+    verdict, reason
+        By the other rules.
     mimics
         Changes of the gear file that explain as much and are another thing, in words.
     """
-    if mimics:
-        listed = '; or '.join(mimics)
-        return 'AMBIGUOUS', f'it may as well be another gear than the file has: {listed}'
-    return 'NAMED', ALONE
+    if not mimics:
+        return verdict, reason
+    beside = f'it may as well be another gear than the file has: {"; or ".join(mimics)}'
+    return 'AMBIGUOUS', beside if verdict == 'NAMED' else f'{reason}; and {beside}'
