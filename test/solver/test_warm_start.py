@@ -66,6 +66,23 @@ def test_another_board_is_reached_along_the_tangent(model: GearModel, known: Equ
     assert apart(along, cold) < SAME
 
 
+@pytest.mark.parametrize('longer', [0.75, -0.75])
+def test_another_bridle_is_reached_although_it_would_be_slack_or_torn_at_once(
+    model: GearModel, known: Equilibrium, longer: float
+) -> None:
+    sensitivities(model, known)
+    (bars,) = [own for name, _, own in model.layout.lines if name == 'port_upper_bridle']
+    rest = model.rest.copy()
+    rest[bars] *= 1.0 + longer / rest[bars].sum()
+    other = replace(model, rest=rest)
+    found = warm_start(other, known.state, known.tow, known.tow, known.tangent)
+    assert found is not None
+    assert found[2] <= TOLERANCE
+    # What did not pass the lengths on gave up at once, and then took ninety iterations and more.
+    assert found[1] < 15
+    assert apart(find_equilibrium(other, AT, known, cold=False), find_equilibrium(other, AT)) < SAME
+
+
 def test_the_tangent_is_that_of_states_found_anew(model: GearModel, known: Equilibrium) -> None:
     sensitivities(model, known)
     tangent = known.tangent

@@ -72,7 +72,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
         else:
             pushes[:, index] = forces(changed, state, tow).imag / STEP
     shifts = solve_refined(rest_linearisation(model, found.state, found.tow).factor, pushes)
-    found.remember(Tangent(model.coefficients, shifts))
+    found.remember(Tangent(model.coefficients, model.rest, shifts))
     along = shifts, *_changed_motion(model, found)
     return observed_slopes(model, found.state, found.tow, *along)[1]
 

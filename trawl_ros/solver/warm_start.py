@@ -39,6 +39,9 @@ KEEP_RATE, KEEP_SIZE = 0.2, 0.02
 """A factorised matrix serves again after a step of at most this share of those limits, while it
 brings the force down to this share at least."""
 
+LEFT_BY_OTHERS = 1.0
+"""Force (N) left at a known steady state from which more than the coefficients has changed."""
+
 SLACK = -1.001 * SLACK_WIDTH
 """Strain of a bar that is taken for slack."""
 
@@ -46,11 +49,17 @@ SLACK = -1.001 * SLACK_WIDTH
 @dataclass(frozen=True)
 class Tangent:
     """Tangent of a steady state: displacements (dof, 15) per unit of the twelve coefficients, m of
-    either warp and m/s of speed, at these coefficients (12,).
+    either warp and m/s of speed, at these coefficients (12,) and lengths of bars (m,) at rest.
     """
 
     coefficients: FloatArray
+    rest: FloatArray
     columns: FloatArray
+
+    def serves(self, model: GearModel, state: State, tow: Tow) -> bool:
+        """True if no other property of the gear has changed since, of which it knows nothing."""
+        same = model.with_coefficients(self.coefficients)
+        return bool(np.abs(forces(same, state, tow)).max() <= LEFT_BY_OTHERS)
 
 
 @dataclass(frozen=True)
@@ -70,7 +79,7 @@ def warm_start(
     """Find the steady state at ``new`` from one that is known at ``old``.
 
     The known one may be that of a gear with other properties, as long as its bars are the same.
-    ``tangent`` is its own, where that is known.
+    ``tangent`` is its own, where that is known; it serves where no other property has changed.
 
     Returns
     -------
@@ -84,7 +93,7 @@ def warm_start(
     turns = first[3 * model.nodes :].reshape(2, 6)[:, 3:]
     if not np.abs(turns).max() <= TURN:
         return None
-    before = _spans(model, state, old) / rest_lengths(model, old)[0] - 1.0
+    before = _spans(model, state, old) / rest_lengths(_as_known(model, tangent), old)[0] - 1.0
     moved = at_velocity(state.moved(first), new.block_velocities.mean(0))
     return _newton(model, moved, new, before)
 
@@ -98,7 +107,7 @@ def _displacement(
     ahead = np.array(along) / np.linalg.norm(along)
     faster = ahead @ change
     straight = np.allclose(change, faster * ahead) and np.array_equal(old.blocks, new.blocks)
-    if tangent is not None and straight:
+    if tangent is not None and straight and tangent.serves(model, state, old):
         coefficients = model.coefficients - tangent.coefficients
         parameters = np.array([*coefficients, *(new.lengths - old.lengths), faster])
         return np.asarray(tangent.columns @ parameters)
@@ -113,9 +122,16 @@ def _displacement(
         lengths=stepped(old.lengths, new.lengths - old.lengths),
         length_rates=old.length_rates,
     )
-    push = forces(model, towed, changing)
-    known = nearly_linearised(model, state, old)
+    # A taut wire that were longer at once would be slack, and pull less by no more than it did.
+    cut = _as_known(model, tangent)
+    push = forces(replace(cut, rest=stepped(cut.rest, model.rest - cut.rest)), towed, changing)
+    known = nearly_linearised(cut, state, old)
     return known.factor.solve(push.real + push.imag / STEP)
+
+
+def _as_known(model: GearModel, tangent: Tangent | None) -> GearModel:
+    """Gear with its bars as long as they were in the known state."""
+    return model if tangent is None else replace(model, rest=tangent.rest)
 
 
 def _newton(
