@@ -60,6 +60,7 @@ def test_a_folder_of_somebody_else_is_refused_before_anything_starts(run, tmp_pa
     assert [path.name for path in tmp_path.iterdir()] == ['mine']
 
 
+@pytest.mark.slow
 def test_a_tow_that_cannot_start_ends_the_demo_with_the_node_s_words(run, trial, tmp_path):
     trial.write_text(SHORT.replace('warp_length_m: 200.0', 'warp_length_m: 10.0'))
     done = run('demo', '--scenario', trial, '--out', tmp_path / 'demo')

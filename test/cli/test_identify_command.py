@@ -85,6 +85,7 @@ def test_of_several_bags_each_is_left_out_and_what_is_readable_of_a_damaged_one_
     assert done.stdout.startswith('Tows left out of the fit')
 
 
+@pytest.mark.slow
 def test_bags_read_at_once_and_in_turn_hold_the_same(steady_tow, bag, coarse_gear, tmp_path):
     gear = load_gear(coarse_gear)
     bags = [bag, steady_tow.bag(tmp_path / 'other', seed=1), bag]

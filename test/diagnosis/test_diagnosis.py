@@ -183,6 +183,7 @@ def test_recordings_without_a_window_tell_nothing(coarse, tmp_path):
     assert not (tmp_path / 'model.yaml').exists()
 
 
+@pytest.mark.slow
 def test_another_gear_is_not_diagnosed(coarse, hide):
     def other(values):
         return {name: value * (1.6 if 'depth' in name else 0.5) for name, value in values.items()}

@@ -87,6 +87,7 @@ def plain(model, coarse):
     return start, Predictor(model).predict(start, *INPUTS)
 
 
+@pytest.mark.slow
 def test_terms_do_nothing_at_nought_and_have_the_derivatives_they_claim(model, plain):
     start, clean = plain
     terms = [dictionary()[name] for name in NAMES]

@@ -137,6 +137,7 @@ def test_a_node_that_is_killed_comes_back_to_work_and_stops_nobody(tow, node):
     assert not errors
 
 
+@pytest.mark.slow
 def test_a_simulation_that_is_killed_begins_anew_and_its_listeners_with_it(tow):
     tow.processes.kill('sim_node')
     tow.graph.settle()

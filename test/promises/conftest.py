@@ -7,7 +7,7 @@ import pytest
 from promised.documents import ROOT, TABLE, Document, Promise, read_document
 from promised.story import NOT_RUN, Story
 
-SLOW_S = 6.0
+SLOW_S = 4.0
 UNKNOWN_S = 600.0
 DOCUMENTS = [
     read_document(path)

@@ -19,7 +19,10 @@ def run(*arguments):
     return CliRunner().invoke(trawl, ['benchmark', *map(str, arguments)])
 
 
-@pytest.mark.parametrize('name', NAMES)
+@pytest.mark.parametrize(
+    'name',
+    [pytest.param(name, marks=pytest.mark.slow if name == 'commands' else ()) for name in NAMES],
+)
 def test_every_module_runs_in_its_small_version(name, tmp_path):
     result = run('--small', '--out', tmp_path, name)
     assert result.exit_code == 0, result.output

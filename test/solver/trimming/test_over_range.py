@@ -63,6 +63,7 @@ def test_moment_and_stiffness_of_a_held_board_are_those_of_the_gear(krill: GearM
     assert board.balance(arms)[0] == pytest.approx(left, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_inclination_changes_by_a_third_of_what_it_did(
     krill: GearModel, trimmed: RangeTrim
 ) -> None:
@@ -72,6 +73,7 @@ def test_inclination_changes_by_a_third_of_what_it_did(
     assert trimmed.slowest < 0.0
 
 
+@pytest.mark.slow
 def test_angles_are_near_those_wanted(trimmed: RangeTrim) -> None:
     for point in trimmed.found:
         assert point.steady is not None
@@ -80,11 +82,25 @@ def test_angles_are_near_those_wanted(trimmed: RangeTrim) -> None:
         assert np.degrees(seen.port_inclination) == pytest.approx(8.0, abs=6.0)
 
 
+@pytest.mark.slow
 def test_states_between_are_usable_when_found_from_nothing(trimmed: RangeTrim) -> None:
     seen = steady_state(trimmed.model, 500.0, 1.4).observables
     assert np.degrees(seen.port_attack) == pytest.approx(16.0, abs=4.0)
 
 
+def test_each_point_of_a_range_is_usable_and_the_attitude_changes_little(model: GearModel) -> None:
+    found = trim_over_range(
+        model,
+        attack=np.radians(20.0),
+        inclination=np.radians(12.0),
+        warp_lengths=(400.0,),
+        speeds=(2.2, 2.6),
+    )
+    assert found.usable == 2
+    assert np.degrees(found.by_speed).max() < 3.0
+
+
+@pytest.mark.slow
 def test_boards_that_lean_inward_dig_in(model: GearModel) -> None:
     depths = []
     for lean in (-6.0, 12.0):

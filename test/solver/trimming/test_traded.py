@@ -18,6 +18,7 @@ from trawl_ros.solver.trimming.traded import trade_for_place, trade_for_range
 PLACE = {'warp_length': 400.0, 'speed': 2.1}
 
 
+@pytest.mark.slow
 def test_a_spread_that_boards_alone_do_not_reach_is_met_with_other_bridles(
     model: GearModel,
 ) -> None:
@@ -32,6 +33,7 @@ def test_a_spread_that_boards_alone_do_not_reach_is_met_with_other_bridles(
     assert again.met
 
 
+@pytest.mark.slow
 def test_what_no_change_reaches_is_told_with_the_nearest(model: GearModel) -> None:
     near = angles_from(model, spread=250.0, depth=80.0, **PLACE)
     found, _ = trade_for_place(model, changes_of(model.gear, ('bridles', 'clump')), near, **PLACE)

@@ -52,6 +52,7 @@ def test_states_follow_each_other_and_are_held_until_they_are_steady(plant):
             np.testing.assert_allclose(values[0], look.values)
 
 
+@pytest.mark.slow
 def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
     looks = plant.towed((), FULL)[:2]
     courses = [quasi_steady(tow, own) for tow, own in zip(FULL.tows, looks, strict=False)]
@@ -76,6 +77,7 @@ def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
     assert len(found) >= 7
 
 
+@pytest.mark.slow
 def test_channels_that_need_not_be_there_fall_silent(plant, tmp_path):
     courses = [quasi_steady(FULL.tows[0], plant.towed((), FULL)[0])]
     chance = np.random.default_rng(2)

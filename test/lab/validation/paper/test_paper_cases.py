@@ -17,6 +17,10 @@ FIGURES = {
 }
 
 
+LONG = ('degrees_of_freedom', 'moment_signs')
+"""Cases that take more than ten seconds even in small."""
+
+
 @cache
 def small(name: str) -> Findings:
     """The small version of a case, run once."""
@@ -24,7 +28,13 @@ def small(name: str) -> Findings:
 
 
 @pytest.mark.timeout(120)
-@pytest.mark.parametrize('name', SECTIONS['paper'])
+@pytest.mark.parametrize(
+    'name',
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in LONG else ())
+        for name in SECTIONS['paper']
+    ],
+)
 def test_a_small_case_is_whole(name: str) -> None:
     found = small(name)
     assert tuple(drawing.name for drawing in found.drawings) == FIGURES[name]
