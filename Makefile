@@ -5,7 +5,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help demo check quick test tests test-slow coverage docs promises fuzz lint lock clean
+.PHONY: help demo check quick test tests test-slow test-view coverage docs promises fuzz lint lock clean
 
 # Any of these may be given on the command line: make PYTHON=python3.12 test
 PYTHON ?=
@@ -44,6 +44,7 @@ help:
 	@echo 'make check      style, types, imports and the quick tests'
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
+	@echo 'make test-view  the tests of the viewer, which is installed before (170 MB)'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
 	@echo 'make lint       style, types and layers only'
 	@echo 'make coverage   the tests of make test, and how much of the package they run'
@@ -67,6 +68,11 @@ tests: $(VENV)/ready
 
 test-slow: $(VENV)/ready
 	@$(PYTEST) -m slow
+
+test-view: $(VENV)/ready
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
+	    --constraint requirements.lock --no-build-isolation --editable '.[view]'
+	@$(PYTEST) test/view test/promises -k 'view and not my_trial'
 
 promises: $(VENV)/ready
 	@$(BIN)/python -m pytest test/promises --write-promises

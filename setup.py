@@ -84,8 +84,10 @@ PEERS = [
     'trawlkit>=1.1,<1.2; python_version >= "3.11"',
 ]
 
-# For people who look on. Its wheel has 19 MB, and aboard nobody needs it.
-VIEW = ['foxglove-sdk>=0.30.3,<0.31']
+# For people who look on, of whom aboard there are none: wheels of 19 and of 170 MB. Tests that need
+# the larger one are skipped without it.
+FOXGLOVE = ['foxglove-sdk>=0.30.3,<0.31']
+VIEW = [*FOXGLOVE, 'rerun-sdk>=0.39,<0.42']
 
 
 def tree(folder: str) -> list[tuple[str, list[str]]]:
@@ -138,7 +140,7 @@ setup(
     extras_require={
         'ros': ROS,
         'view': VIEW,
-        'test': [*TEST, *DOCS, *PEERS, *VIEW],
+        'test': [*TEST, *DOCS, *PEERS, *FOXGLOVE],
         'docs': DOCS,
         'peers': PEERS,
     },

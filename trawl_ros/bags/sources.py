@@ -122,7 +122,9 @@ class BagSource:
         for file in self.files:
             for topic, definition in file.definitions.items():
                 by_topic.setdefault(topic, definition)
-        stated = self._metadata.offered() if self._metadata else {}
+        silent = any(not definition.qos for definition in by_topic.values())
+        # As text in text, it takes a second to read.
+        stated = self._metadata.offered() if self._metadata and silent else {}
         for topic, definition in by_topic.items():
             if not definition.qos and topic in stated:
                 by_topic[topic] = replace(definition, qos=stated[topic])

@@ -38,6 +38,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'import-log': ('cli.import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
         'bag': ('cli.bag', 'Look into bags, check, repair and export them.'),
         'policy': ('cli.policy', 'Write the rights of all nodes, for a graph with SROS 2.'),
+        'view': ('cli.view', 'Show the tow in bags in Rerun: in space and over time.'),
         'plot': ('cli.plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
     }
 )

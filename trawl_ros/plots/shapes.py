@@ -44,7 +44,7 @@ def gear_shape(moment: Moment, tow: TowHistory, gear: GearRecord) -> GearShape |
 
 
 def _from_markers(moment: Moment, tow: TowHistory) -> GearShape | None:
-    strands = [strand for marker in moment.messages[GEAR].markers for strand in _strands_of(marker)]
+    strands = [strand for marker in moment.messages[GEAR].markers for strand in strands_of(marker)]
     blocks = [strand.pieces[0, 0] for strand in strands if strand.name in WINCH_NAMES]
     if not blocks:
         return None
@@ -63,7 +63,7 @@ def _from_markers(moment: Moment, tow: TowHistory) -> GearShape | None:
     )
 
 
-def _strands_of(marker: Any) -> list[Strand]:
+def strands_of(marker: Any) -> list[Strand]:
     """Strands of a marker: lines as they are, plates and ellipsoids as outlines."""
     points = np.array([[p.x, p.y, p.z] for p in marker.points]).reshape(-1, 3)
     if marker.type == marker.LINE_STRIP:

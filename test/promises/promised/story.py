@@ -33,11 +33,15 @@ NOT_RUN = {
     ),
     'ros2 security create_keystore keystore': 'needs a full ROS 2',
     'ros2 security generate_artifacts -k keystore -p policy.xml': 'needs a full ROS 2',
+    "pip install 'trawl_ros[view]'": 'it would change the environment of the test',
     'make check': 'it is a part of what runs all these',
     'make test': 'it is what runs all these',
     'make test-slow': 'it is what runs all these',
 }
 """Commands that cannot be run by a test, and why."""
+
+NEEDS = {'trawl view': ('rerun', 'make test-view')}
+"""Modules without which commands are not run, and what installs them, by the beginning."""
 
 ENDS = {
     'trawl bag check sea_trial --require': 3,
@@ -96,6 +100,8 @@ class Story:
 
     def run(self, promise: Promise) -> None:
         """Run a command, if it was not yet, after those whose files it needs."""
+        module, by = by_beginning(NEEDS, promise.text, ('pytest', ''))
+        pytest.importorskip(module, reason=f'needs {module}, which {by} installs')
         for step in (*self.document.before(promise), promise):
             if step not in self.seconds:
                 self.seconds[step] = self._run(step)

@@ -1,0 +1,91 @@
+"""The viewer, by its state and by its picture, where software or hardware can draw."""
+
+import os
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+pytest.importorskip('rerun', reason='needs the extra `view`: make test-view installs it')
+
+from rerun.experimental import ViewerClient
+
+from trawl_ros.core.progress import ignore
+from trawl_ros.view.bags import TowBags
+from trawl_ros.view.recording import to_viewer
+from trawl_ros.view.rerun_log import RerunLog
+from trawl_ros.view.viewer import Viewer, ViewerFailed
+
+PATIENCE_S = 60.0
+AT_S = 95.0
+
+NO_GRAPHICS = 'no graphics for the viewer: apt-get install mesa-vulkan-drivers draws in software'
+
+
+@pytest.fixture(scope='module')
+def client(tow, estimates, gear):
+    """The tow in a viewer without a window."""
+    try:
+        with Viewer('headless', environment=os.environ) as viewer:
+            bags = TowBags([tow, estimates])
+            with to_viewer(viewer.url) as recording:
+                assert bags.show(RerunLog(recording, bags.topics), gear, on_progress=ignore)
+            client = ViewerClient(viewer.url)
+            until(viewer, lambda: has_arrived(client))
+            client.set_time('time', duration=AT_S, play_state='paused')
+            yield client
+    except ViewerFailed as reason:
+        pytest.skip(f'{NO_GRAPHICS} ({reason})')
+
+
+def until(viewer, condition):
+    end = time.monotonic() + PATIENCE_S
+    while not condition():
+        viewer.check()
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def has_arrived(client):
+    recordings = client.get_state().recordings
+    ends = [line.end for entry in recordings for line in entry.timelines if line.name == 'time']
+    return any(end is not None and end >= 125_000_000_000 for end in ends)
+
+
+def test_every_view_is_laid_out_and_draws_without_complaint(client):
+    state = client.get_state()
+    names = {view.name for view in state.views}
+    assert {
+        'Gear, coloured by tension',
+        'From above, north up',
+        'Trawl sonar, looking ahead',
+        'Findings and notes',
+        'warp tension / kN',
+        'b3',
+    } <= names
+    assert [(view.name, view.reports) for view in state.views if view.reports] == []
+    (recording,) = (entry for entry in state.recordings if entry.timelines)
+    assert recording.current_timeline == 'time'
+
+
+def test_the_picture_shows_gear_sea_sonar_and_readings(client, tmp_path):
+    path = tmp_path / 'view.png'
+    client.save_screenshot(str(path))
+    picture = np.asarray(Image.open(path).convert('RGB')).astype(int)
+    assert picture.shape == (1080, 1920, 3)
+    top, left = slice(50, 510), slice(0, 880)
+    sonar, histories = (slice(545, 890), slice(450, 880)), (slice(60, 1040), slice(890, 1920))
+    # Warps at 150 and 140 kN, and the sea behind them.
+    assert near(picture[top, left], (220, 160, 36), 40) > 100
+    assert near(picture[top, left], (14, 24, 38), 3) > 50_000
+    # Height and width as read off, over the echoes.
+    assert near(picture[sonar], (77, 210, 255), 12) > 50
+    # Port and starboard readings.
+    assert near(picture[histories], (214, 39, 40), 20) > 300
+    assert near(picture[histories], (44, 160, 44), 20) > 300
+
+
+def near(pixels, colour, away):
+    """Number of pixels whose colour is no further away than that, in each channel."""
+    return int((np.abs(pixels - colour).max(axis=2) <= away).sum())

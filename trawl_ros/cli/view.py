@@ -1,0 +1,109 @@
+"""``trawl view``."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.options import BAG, FILE, NAMESPACE_OPTION
+from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.core.progress import OnProgress
+
+if TYPE_CHECKING:
+    from trawl_ros.view.bags import TowBags
+    from trawl_ros.view.viewer import Kind, Viewer
+
+LOOK_S = 0.2
+"""Ctrl-C is looked for this often."""
+
+
+@click.command('view')
+@click.argument('bags', metavar='BAG...', nargs=-1, required=True, type=BAG)
+@click.option('--out', type=FILE, help='Write a recording (.rrd) for Rerun, and open no viewer.')
+@click.option('--web', is_flag=True, help='Show it on a web page of this machine.')
+@click.option(
+    '--bind', default='127.0.0.1', show_default=True, metavar='ADDRESS',
+    help='Address on which the viewer listens. Whoever reaches another one than that of this '
+    'machine sees the tow and can add to it.',
+)  # fmt: skip
+@click.option(
+    '--port', type=click.IntRange(1024, 65534), help='Of the web page, whose data are at the next '
+    'one; by default free ones.',
+)  # fmt: skip
+@click.option(
+    '--memory', type=click.IntRange(100, 1_000_000), default=2000, show_default=True, metavar='MB',
+    help='Of the viewer; beyond it the oldest data are given up.',
+)  # fmt: skip
+@click.option(
+    '--gear', default='kaifuha', show_default=True, help='The gear: a file or the name of one that '
+    'comes with the package. Its water turns pressure into depth, and its sizes draw the gear '
+    'where the bag does not.',
+)  # fmt: skip
+@NAMESPACE_OPTION
+@click.option('--force', is_flag=True, help='Replace the file of --out.')
+def command(
+    bags: tuple[Path, ...],
+    out: Path | None,
+    web: bool,
+    bind: str,
+    port: int | None,
+    memory: int,
+    gear: str,
+    namespace: str,
+    force: bool,
+) -> None:
+    """Show the tow in BAG... in Rerun: gear, sonar, track, histories, estimates and findings.
+
+    Several bags are parts of one tow, or a tow and what was estimated from it; their stamps put
+    them on one time line. Opens the viewer's window, which ends with the command, and the command
+    with it.
+    """
+    if out is not None and web:
+        raise click.UsageError('--out and --web: a recording is written, or shown')
+    from trawl_ros.view.bags import TowBags
+    from trawl_ros.view.recording import to_file, to_viewer
+    from trawl_ros.view.viewer import Viewer
+
+    tow = TowBags(bags, namespace)
+    with ExitStack() as stack, Interruption() as interruption:
+        viewer: Viewer | None = None
+        if out is not None:
+            recording = stack.enter_context(to_file(out, force=force))
+        else:
+            kind: Kind = 'web' if web else 'window'
+            viewer = stack.enter_context(Viewer(kind, bind=bind, port=port, memory_mb=memory))
+            if web:
+                click.echo(viewer.page)
+            recording = stack.enter_context(to_viewer(viewer.url))
+        with ProgressDisplay(error_console()) as display:
+            complete = _show(tow, recording, gear, display, interruption, viewer)
+        for problem in tow.problems:
+            click.echo(problem, err=True)
+        while viewer is not None and viewer.running and not interruption.requested:
+            viewer.wait(LOOK_S)
+        if viewer is not None:
+            viewer.check()
+    if out is not None:
+        click.echo(f'{out}: {", ".join(map(str, bags))}, for Rerun')
+        if not complete:
+            raise SystemExit(INTERRUPTED)
+
+
+def _show(
+    tow: 'TowBags',
+    recording: object,
+    gear: str,
+    on_progress: OnProgress,
+    interruption: Interruption,
+    viewer: 'Viewer | None',
+) -> bool:
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.view.rerun_log import RerunLog
+
+    def stopped() -> bool:
+        return interruption.requested or (viewer is not None and not viewer.running)
+
+    log = RerunLog(recording, tow.topics)
+    return tow.show(log, load_gear(gear), on_progress=on_progress, stopped=stopped)

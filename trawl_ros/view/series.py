@@ -1,0 +1,131 @@
+"""Series over time: which quantity is drawn in which panel, in which unit, colour and place."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.plots.histories import PANELS, Curve, Panel
+from trawl_ros.records.truth import SIDES
+from trawl_ros.report import style
+from trawl_ros.view.records import Kind
+
+ROOT = '/histories'
+
+HEADING = 'heading'
+
+_DEPTHS = ('port_door_depth', 'starboard_door_depth', 'net_depth')
+
+
+def _panels() -> tuple[Panel, ...]:
+    """Panels of the histories in pictures; depths share one, with the seabed in it."""
+    panels = []
+    for panel in PANELS:
+        names = [curve.name for curve in panel.curves]
+        if names == ['net_depth']:
+            continue
+        if 'port_door_depth' in names:
+            curves = (
+                *(replace(curve, label=f'{curve.label} door') for curve in panel.curves),
+                Curve('net_depth', 'headrope', style.MEASURED, style.MEASURED_TRUTH),
+                Curve('seabed', 'seabed', style.FAINT, style.FAINT),
+            )
+            # An axis cannot point down, so depths are heights that are negative.
+            panel = Panel('height over the surface / m', curves, panel.least, scale=-1.0)
+        panels.append(panel)
+    bottom = Curve('bottom', 'headrope', style.MEASURED, style.MEASURED_TRUTH)
+    keel = Curve('depth', 'keel', style.SECOND, style.SECOND_TRUTH)
+    return (*panels, Panel('height over the seabed / m', (bottom, keel), 2.0))
+
+
+VIEW_PANELS = _panels()
+
+COLOUR_NAMES = {
+    style.PORT: 'red',
+    style.STARBOARD: 'green',
+    style.MEASURED: 'blue',
+    style.SECOND: 'orange',
+    style.FAINT: 'grey',
+}
+
+LEGEND = 'dots are measured, lines are true or wanted; port is red, starboard green'
+
+RGB = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Line:
+    """Line or dots of a quantity: entity, name in the legend, colour, and whether it is dots."""
+
+    path: str
+    name: str
+    colour: RGB
+    dots: bool
+
+
+@dataclass(frozen=True)
+class PlacedCurve:
+    """Curve in its panel."""
+
+    panel: Panel
+    curve: Curve
+
+    def line(self, kind: Kind) -> Line:
+        """Return the line of one kind."""
+        words = [self.curve.label, kind] if self.curve.label else [kind]
+        return Line(
+            f'{path_of(self.panel)}/{self.curve.name}/{kind}',
+            ' '.join(words),
+            rgb_of(self.curve.colour, 0.0 if kind == 'measured' else 0.65),
+            dots=kind == 'measured',
+        )
+
+    def shown(self, value: float) -> float:
+        """Convert a value (SI) into the panel's unit."""
+        if self.curve.name == HEADING:
+            return 90.0 - float(np.degrees(value))
+        return self.panel.scale * value
+
+
+def title_of(panel: Panel) -> str:
+    """Title of a panel: quantity, unit, and the colours of its curves but those of the sides."""
+    names = [
+        f'{curve.label} {COLOUR_NAMES[curve.colour]}'
+        for curve in panel.curves
+        if curve.label not in ('', *SIDES)
+    ]
+    return f'{panel.label}: {", ".join(names)}' if names else panel.label
+
+
+def path_of(panel: Panel) -> str:
+    """Entity of a panel."""
+    what = panel.label.partition(' /')[0].partition(',')[0]
+    return f'{ROOT}/{what.replace(" ", "_")}'
+
+
+def rgb_of(web: str, whiter: float = 0.0) -> RGB:
+    """Colour of the pictures, made so much whiter: a viewer's background is dark."""
+    red, green, blue = (
+        round((1.0 - whiter) * int(web[k : k + 2], 16) + 255 * whiter) for k in (1, 3, 5)
+    )
+    return red, green, blue
+
+
+CURVES = {curve.name: PlacedCurve(panel, curve) for panel in VIEW_PANELS for curve in panel.curves}
+"""Curves by the name of their quantity."""
+
+
+class Unwrapped:
+    """Angles without jumps of a whole turn, from one value to the next."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, float] = {}
+
+    def take(self, name: str, angle: float) -> float:
+        """Return an angle (rad) within half a turn of the last of that name."""
+        if not np.isfinite(angle):
+            return angle
+        # Of compass degrees the first is from 0 to 360.
+        last = self._last.get(name, -0.5 * np.pi)
+        turned = last + float(np.remainder(angle - last + np.pi, 2.0 * np.pi) - np.pi)
+        self._last[name] = turned
+        return turned
