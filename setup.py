@@ -23,6 +23,7 @@ NODES = (
     'nmea_in',
     'nmea_out',
     'foxglove_node',
+    'view_node',
 )
 
 # ROS 2 itself, for machines that do not have it. It is an extra because a machine with a full

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -116,6 +117,23 @@ def graph_in(domain: int) -> Iterator[Graph]:
         yield graph
     finally:
         graph.close()
+
+
+@pytest.fixture(scope='session', autouse=True)
+def no_viewer() -> Iterator[None]:
+    """Leave `view_node` without a viewer, which needs an extra and a display."""
+    try:
+        from trawl_ros.nodes import view_node
+    except ImportError:  # without ROS 2
+        yield
+        return
+    nothing = SimpleNamespace(
+        page='', shown=0, lost=0, waiting=0, trouble='', closed=False,
+        put=lambda record: None, close=lambda: None,
+    )  # fmt: skip
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(view_node, 'open_view', lambda parameters: nothing)
+        yield
 
 
 @pytest.fixture(scope='session')

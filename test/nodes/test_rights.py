@@ -21,6 +21,7 @@ from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
+from trawl_ros.nodes.view_node import ViewNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 from trawl_ros.records.rights import EVERY_NODE, OPERATOR, SET_POINTS, enclaves  # noqa: E402
 from trawl_ros.records.topics import CLOCK, STATIC_TRANSFORMS, TRANSFORMS, absolute  # noqa: E402
@@ -43,6 +44,7 @@ NODES = (
     TrawlSonarNode,
     TrialNode,
     VesselNode,
+    ViewNode,
     WinchNode,
 )
 VIEWED = 20234

@@ -26,6 +26,7 @@ EXECUTABLES = {
     'nmea_in',
     'nmea_out',
     'foxglove_node',
+    'view_node',
     'trawl',
 }
 

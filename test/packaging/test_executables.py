@@ -39,8 +39,9 @@ NODES = (
     'nmea_in',
     'nmea_out',
     'foxglove_node',
+    'view_node',
 )
-DOMAINS = (*range(70, 80), 81, 223, 224, 225, 226)
+DOMAINS = (*range(70, 80), 81, 223, 224, 225, 226, 227)
 # What is installed elsewhere is compiled anew there, which takes sim_node a quarter of a minute.
 QUICK = ('vessel_node', 'winch_node')
 START_S = 60.0  # the bound for a machine busy with other tests; one to three seconds are usual
@@ -63,6 +64,9 @@ def parameters(node: str, scratch: Path) -> list[str]:
     needed: dict[str, str] = {}
     if node == 'bag_player':
         needed['bag'] = str(small_bag(scratch / 'played'))
+    if node == 'view_node':
+        pytest.importorskip('rerun', reason='needs the extra `view`: make test-view installs it')
+        needed['output'] = str(scratch / 'live.rrd')
     if node == 'bag_recorder':
         needed['output'] = str(scratch / 'recorded')
     options = [option for key, value in needed.items() for option in ('-p', f'{key}:={value}')]

@@ -1,14 +1,19 @@
 """``trawl view``."""
 
+import json
+import os
+import sys
 from contextlib import ExitStack
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.options import BAG, FILE, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.progress import OnProgress
 
 if TYPE_CHECKING:
@@ -20,7 +25,8 @@ LOOK_S = 0.2
 
 
 @click.command('view')
-@click.argument('bags', metavar='BAG...', nargs=-1, required=True, type=BAG)
+@click.argument('bags', metavar='BAG...', nargs=-1, type=BAG)
+@click.option('--live', is_flag=True, help='Show the running graph in place of bags.')
 @click.option('--out', type=FILE, help='Write a recording (.rrd) for Rerun, and open no viewer.')
 @click.option('--web', is_flag=True, help='Show it on a web page of this machine.')
 @click.option(
@@ -45,6 +51,7 @@ LOOK_S = 0.2
 @click.option('--force', is_flag=True, help='Replace the file of --out.')
 def command(
     bags: tuple[Path, ...],
+    live: bool,
     out: Path | None,
     web: bool,
     bind: str,
@@ -54,14 +61,19 @@ def command(
     namespace: str,
     force: bool,
 ) -> None:
-    """Show the tow in BAG... in Rerun: gear, sonar, track, histories, estimates and findings.
+    """Show the tow in BAG..., or of the running graph, in Rerun.
 
-    Several bags are parts of one tow, or a tow and what was estimated from it; their stamps put
-    them on one time line. Opens the viewer's window, which ends with the command, and the command
-    with it.
+    Shown are gear, sonar, track, histories, estimates and findings. Several bags are parts of one
+    tow, or a tow and what was estimated from it; their stamps put them on one time line. Opens the
+    viewer's window, which ends with the command, and the command with it. With --live, `view_node`
+    listens to the graph until Ctrl-C.
     """
     if out is not None and web:
         raise click.UsageError('--out and --web: a recording is written, or shown')
+    if live == bool(bags):
+        raise click.UsageError('BAG... or --live: expected one of them')
+    if live:
+        _run_node(out, web, bind, port, memory, gear, namespace)
     from trawl_ros.view.bags import TowBags
     from trawl_ros.view.recording import to_file, to_viewer
     from trawl_ros.view.viewer import Viewer
@@ -107,3 +119,35 @@ def _show(
 
     log = RerunLog(recording, tow.topics)
     return tow.show(log, load_gear(gear), on_progress=on_progress, stopped=stopped)
+
+
+def _run_node(
+    out: Path | None,
+    web: bool,
+    bind: str,
+    port: int | None,
+    memory: int,
+    gear: str,
+    namespace: str,
+) -> NoReturn:
+    """Become `view_node`, which knows ROS as commands do not; Ctrl-C then is for the node."""
+    if find_spec('rclpy') is None:
+        raise RosMissing('trawl view --live', ModuleNotFoundError(name='rclpy'))
+    parameters = {
+        'viewer': 'web' if web else 'window',
+        'output': '' if out is None else str(out),
+        'host': bind,
+        'port': port or 0,
+        'memory_mb': memory,
+        'gear': gear,
+    }
+    # JSON is YAML, so strings stay strings whatever is in them.
+    options = [
+        word for key, value in parameters.items() for word in ('-p', f'{key}:={json.dumps(value)}')
+    ]
+    code = (
+        "import sys; sys.argv[0] = 'view_node'; "
+        'from trawl_ros.nodes.view_node import main; sys.exit(main())'
+    )
+    remapped = ['--ros-args', '-r', f'__ns:=/{namespace.strip("/")}', *options]
+    os.execv(sys.executable, [sys.executable, '-c', code, *remapped])

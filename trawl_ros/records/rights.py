@@ -81,6 +81,22 @@ _SPOKEN = (
 """Readings that ships' instruments send as sentences."""
 
 
+_SHOWN = (
+    *(
+        name
+        for name in _names(TRUTH)
+        if not name.endswith(('/angles', '/wrench')) and name != 'truth/sonar/pose'
+    ),
+    *_names(INSTRUMENTS),
+    'identification/status',
+    'identification/innovation',
+    *_names(ESTIMATES, 'discrepancy/', 'trial/'),
+    'command/winch',
+    'command/vessel',
+)
+"""Topics that are shown in space and over time."""
+
+
 def _consumer(
     publishes: tuple[str, ...], hears: tuple[str, ...], answers: tuple[str, ...] = ()
 ) -> Rights:
@@ -146,6 +162,7 @@ RIGHTS = {
     ),
     'nmea_in': Rights(_SPOKEN, ()),
     'nmea_out': _consumer((), _SPOKEN),
+    'view_node': Rights((), _SHOWN),
     'foxglove_node': Rights(
         (),
         (

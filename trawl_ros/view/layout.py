@@ -15,6 +15,10 @@ GRID_M = 50.0
 
 Limits = tuple[float, float]
 
+LATEST = rr.TimeRange(
+    rr.TimeRangeBoundary.cursor_relative(seconds=-600.0),
+    rr.TimeRangeBoundary.cursor_relative(seconds=0.0),
+)
 WHOLE = rr.TimeRange(rr.TimeRangeBoundary.infinite(), rr.TimeRangeBoundary.infinite())
 
 
@@ -35,6 +39,8 @@ def layout(
     camera: Camera | None,
     panels: Collection[str] | None,
     limits: Mapping[str, Limits],
+    *,
+    live: bool,
 ) -> rrb.Blueprint:
     """Lay the views out of which there can be something.
 
@@ -48,20 +54,25 @@ def layout(
         Entities of the histories that there are; None for all that there may be.
     limits
         Of the vertical axis by the entity of a panel; that of others holds all values.
+    live
+        True to follow what comes, with the last minutes in the histories.
     """
+    span = LATEST if live else WHOLE
     below = [_top(), *([_sonar()] if 'sonar/image' in topics else [])]
     left = [_space(camera or NEUTRAL), rrb.Horizontal(*below)]
     left.append(rrb.Tabs(*_notes(topics)))
-    tabs = [rrb.Grid(*_histories(panels, limits), grid_columns=2, name='Histories')]
+    tabs = [rrb.Grid(*_histories(panels, limits, span), grid_columns=2, name='Histories')]
     if 'identification/status' in topics:
-        tabs.append(rrb.Grid(*_estimates(), grid_columns=3, name='Estimates'))
+        tabs.append(rrb.Grid(*_estimates(WHOLE), grid_columns=3, name='Estimates'))
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Vertical(*left, row_shares=[5.0, 4.0, 1.6]),
             tabs[0] if len(tabs) == 1 else rrb.Tabs(*tabs, active_tab=0),
             column_shares=[1.0, 1.15],
         ),
-        rrb.TimePanel(state='collapsed', timeline=TIMELINE),
+        rrb.TimePanel(
+            state='collapsed', timeline=TIMELINE, play_state='following' if live else 'paused'
+        ),
         rrb.BlueprintPanel(state='collapsed'),
         rrb.SelectionPanel(state='collapsed'),
     )
@@ -102,26 +113,28 @@ def _notes(topics: Collection[str]) -> Iterator[rrb.View]:
         yield rrb.TextDocumentView(name='Estimate', origin='/estimates')
 
 
-def _plot(name: str, origin: str, limits: Limits | None, *, legend: bool) -> rrb.TimeSeriesView:
+def _plot(
+    name: str, origin: str, limits: Limits | None, span: rr.TimeRange, *, legend: bool
+) -> rrb.TimeSeriesView:
     return rrb.TimeSeriesView(
         name=name,
         origin=origin,
-        axis_x=rrb.TimeAxis(view_range=WHOLE),
+        axis_x=rrb.TimeAxis(view_range=span),
         axis_y=None if limits is None else rrb.ScalarAxis(range=limits),
         plot_legend=rrb.PlotLegend(visible=legend),
     )
 
 
 def _histories(
-    panels: Collection[str] | None, limits: Mapping[str, Limits]
+    panels: Collection[str] | None, limits: Mapping[str, Limits], span: rr.TimeRange
 ) -> Iterator[rrb.TimeSeriesView]:
     for panel in VIEW_PANELS:
         path = path_of(panel)
         if panels is None or path in panels:
-            yield _plot(title_of(panel), path, limits.get(path), legend=False)
+            yield _plot(title_of(panel), path, limits.get(path), span, legend=False)
 
 
-def _estimates() -> Iterator[rrb.TimeSeriesView]:
+def _estimates(span: rr.TimeRange) -> Iterator[rrb.TimeSeriesView]:
     for name in COEFFICIENTS:
-        yield _plot(name, f'/estimate/{name}', None, legend=False)
-    yield _plot('innovations over their deviations', '/innovations', None, legend=True)
+        yield _plot(name, f'/estimate/{name}', None, span, legend=False)
+    yield _plot('innovations over their deviations', '/innovations', None, span, legend=True)

@@ -61,6 +61,8 @@ class RerunLog:
         The recording, connected to a file or a viewer.
     topics
         Relative names of the topics that there may be: views of others are left out.
+    live
+        True to follow what comes, with the last minutes in the histories.
 
     Attributes
     ----------
@@ -68,8 +70,11 @@ class RerunLog:
         Records that were shown.
     """
 
-    def __init__(self, recording: rr.RecordingStream, topics: Collection[str]) -> None:
+    def __init__(
+        self, recording: rr.RecordingStream, topics: Collection[str], *, live: bool = False
+    ) -> None:
         self.count = 0
+        self._live = live
         self._recording = recording
         self._topics = topics
         self._waiting: dict[str, _Waiting] = {}
@@ -150,7 +155,8 @@ class RerunLog:
         self._recording.log(path, shown)
 
     def _lay_out(self, panels: Collection[str] | None = None) -> None:
-        blueprint = layout(self._topics, self._camera, panels, self._ranges.limits())
+        limits = self._ranges.limits()
+        blueprint = layout(self._topics, self._camera, panels, limits, live=self._live)
         self._recording.send_blueprint(blueprint)
 
     def _value(self, line: Line, stamp: int, value: float) -> None:

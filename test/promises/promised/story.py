@@ -40,7 +40,10 @@ NOT_RUN = {
 }
 """Commands that cannot be run by a test, and why."""
 
-NEEDS = {'trawl view': ('rerun', 'make test-view')}
+NEEDS = {
+    'trawl view': ('rerun', 'make test-view'),
+    'ros2 run trawl_ros view_node': ('rerun', 'make test-view'),
+}
 """Modules without which commands are not run, and what installs them, by the beginning."""
 
 ENDS = {
