@@ -131,11 +131,11 @@ def test_a_set_that_holds_the_changed_key_is_right():
         *INSIDE,
         *OUTSIDE,
         *list(ON_DECK)[:3],
-        *(pytest.param(name, marks=pytest.mark.slow) for name in list(ON_DECK)[3:]),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in list(CAUSES)[3:]),
     ],
 )
 def test_what_is_hidden_shows_in_examined_tows_alone(plant, name):
-    hidden = {**INSIDE, **OUTSIDE, **ON_DECK}[name](np.random.default_rng(3))
+    hidden = {**INSIDE, **OUTSIDE, **CAUSES}[name](np.random.default_rng(3))
     clean = np.array([[look.values for look in tow] for tow in plant.towed(())])
     there = np.array(
         [[look.values for look in tow] for tow in plant.towed([(hidden, 1.0 * hidden.probe)])]
