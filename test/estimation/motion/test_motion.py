@@ -10,11 +10,12 @@ from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, on_grid
-from trawl_ros.estimation.motion.knots import hats, knots_of_log
+from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.towing import TowedGear, TowedPoint, linearise_tow
-from trawl_ros.lab.benchmark.motion import BAND, course_tow, run_motion_trial
+from trawl_ros.lab.benchmark.motion import BAND, course_tow, narrowed, run_motion_trial
+from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial
 from trawl_ros.model.gear_model import build_model
 
 SHORT_S = 120.0
@@ -31,17 +32,19 @@ def coarse(gear):
 
 @pytest.fixture(scope='module')
 def short_tow():
-    """Two minutes of hauling, whose log's knots outnumber the columns that they share."""
+    """Two minutes of hauling, whose knots outnumber the columns that they share."""
     tow = course_tow(SHORT_S)
     knots = knots_of_log(np.arange(0.0, SHORT_S), 0.03, SHORT_S, tow.stretch_s, 60.0)
     assert knots.columns < knots.number
-    return replace(tow, inputs=replace(tow.inputs, knots=knots))
+    counter = knots_of_counter('port_length', 0.5, 600.0, SHORT_S, 40.0, 40.0)
+    assert counter.columns < counter.number
+    return replace(tow, inputs=replace(tow.inputs, knots=(knots, counter)))
 
 
 @pytest.fixture(scope='module')
 def towed(coarse, short_tow):
-    knots = short_tow.inputs.knots
-    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(knots.number))
+    number = short_tow.inputs.number_of_knots
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(number))
     return linearise_tow(TowedGear(coarse), short_tow, point)
 
 
@@ -51,29 +54,32 @@ def changed(towed, model, **changes):
     again = linearise_tow(TowedGear(model), towed.tow, point)
     told = (
         towed.by_errors @ point.errors
-        + towed.by_log @ point.log
+        + towed.by_knots @ point.drifts
         + towed.by_added_mass[..., 0] * point.added_mass
         + towed.by_coefficients @ (point.coefficients - towed.point.coefficients)
     )
     return (again.values - towed.values) / towed.tow.noise, told / towed.tow.noise
 
 
-@pytest.mark.parametrize('knot', [2, 5])
-def test_an_error_of_the_log_at_a_knot_does_what_its_derivative_says(towed, coarse, knot):
-    log = np.zeros(towed.tow.inputs.knots.number)
-    log[knot] = 0.002
-    real, told = changed(towed, coarse, log=log)
+@pytest.mark.parametrize(('channel', 'knot', 'size'), [(0, 2, 0.002), (0, 5, 0.002), (1, 1, 0.02)])
+def test_an_error_of_an_input_at_a_knot_does_what_its_derivative_says(
+    towed, coarse, channel, knot, size
+):
+    drifts = np.zeros(towed.tow.inputs.number_of_knots)
+    _, own, _ = towed.tow.inputs.knot_places[channel]
+    drifts[own.start + knot] = size
+    real, told = changed(towed, coarse, drifts=drifts)
     assert np.abs(real).max() > 0.1
     np.testing.assert_allclose(told, real, atol=0.02 * np.abs(real).max())
 
 
 def test_an_error_of_the_log_is_forgotten_when_another_takes_its_column(towed):
-    knots = towed.tow.inputs.knots
+    knots, _ = towed.tow.inputs.knots
     # It began to act a spacing before its knot.
     last = knots.columns - 1
-    assert towed.by_log[last - 1, :, 0].any()
-    assert not towed.by_log[last:, :, 0].any()
-    assert towed.by_log[last, :, knots.columns].any()
+    assert towed.by_knots[last - 1, :, 0].any()
+    assert not towed.by_knots[last:, :, 0].any()
+    assert towed.by_knots[last, :, knots.columns].any()
 
 
 @pytest.mark.parametrize('error', range(len(INPUT_ERRORS)))
@@ -191,6 +197,18 @@ def test_errors_of_the_estimate_are_as_large_as_it_says(gear, errors):
     squares = [trial.squared_error for trial in trials]
     assert 6.4 < np.mean(squares) < 17.3
     assert np.mean([BAND[0] <= square <= BAND[1] for square in squares]) >= 0.75
+
+
+@pytest.mark.slow
+def test_errors_of_tows_read_by_instruments_are_as_large_as_the_estimate_says(gear):
+    """Counters and spread sensor are wrong by another amount after each command."""
+    netting = gear.netting.model_copy(update={'around': 24})
+    record = gear.model_copy(update={'netting': netting})
+    for seed in (202, 203):
+        truth, fit = run_instrument_trial(record, narrowed(board_prior(gear)), seed)
+        assert fit.converged
+        away = fit.values - truth
+        assert away @ np.linalg.solve(fit.covariance, away) < BAND[1]
 
 
 def test_the_fit_of_a_short_tow_is_calibrated(coarse, gear):

@@ -13,6 +13,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.nuisances import (
+    ADDED_MASS_STD,
     TowLayout,
     columns,
     layout_of,
@@ -75,8 +76,8 @@ class MotionFit:
         Posterior covariance of the coefficients.
     parameters : tuple of (p,) arrays
         Of each tow, in units of their prior std.
-    linear
-        Tows as they were linearised last.
+    linear, data
+        Tows as they were linearised last, and their rows.
     sizes
         Sizes of the errors.
     readings
@@ -96,6 +97,7 @@ class MotionFit:
     covariance: FloatArray
     parameters: tuple[FloatArray, ...]
     linear: tuple[LinearisedTow, ...]
+    data: LinearData
     layouts: tuple[TowLayout, ...]
     sizes: ErrorSizes
     readings: int
@@ -111,6 +113,9 @@ NEAR = 0.1
 
 COOLER = 0.4
 """Factor from step to step on the errors of the data while these are taken for too large."""
+
+MOST_ADDED_MASS = 2.0
+"""Bound on the boards' added mass, as a part of the cylinder of water around them."""
 
 OnTow = Callable[[int, int, int], None]
 
@@ -157,6 +162,7 @@ def fit_motion(
 
     found_sizes, linear = options.sizes, linearise(here, 0)
     needed[:] = [tow.towed for tow in linear]
+    place = here
     reason = f'still moving after {options.iterations} iterations'
     converged, iteration = False, 0
     temper = np.inf
@@ -196,9 +202,10 @@ def fit_motion(
             reason = f'no step lowers the cost, {size:.2g} std from rest'
             break
         here, linear = moved
+        place = here
         needed[:] = [tow.towed for tow in linear]
     sizes = found_sizes
-    data = linear_data(linear, layouts, here, prior, options)
+    data = linear_data(linear, layouts, place, prior, options)
     found = joined(data.information(sizes), data.precisions(sizes.log), shared)
     covariance = np.linalg.inv(found.matrix + np.eye(shared))[:12, :12]
     return MotionFit(
@@ -207,6 +214,7 @@ def fit_motion(
         covariance=covariance * np.outer(prior.std, prior.std),
         parameters=tuple(here),
         linear=linear,
+        data=data,
         layouts=layouts,
         sizes=sizes,
         readings=sum(len(group.residual) for groups in data.tows for group in groups),
@@ -261,6 +269,8 @@ def _step(
     low, high = np.full(shared, -np.inf), np.full(shared, np.inf)
     box = prior.box(prior.start + prior.std * here[0][:12], largest)
     low[:12], high[:12] = (prior.departure(edge) for edge in box)
+    # Water that goes with a board has no negative mass.
+    low[12], high[12] = 0.0, MOST_ADDED_MASS / ADDED_MASS_STD
     common = lsq_linear(triangle, right, (low, high), 'bvls', max_iter=300).x
     target = [
         np.concatenate((common, own_values(tow, precision, common)))

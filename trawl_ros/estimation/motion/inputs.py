@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.motion.knots import Knots
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.solver.motion.course import InputPoint
@@ -54,7 +54,7 @@ class TowInputs:
     headings, yaw_rates : (t,) arrays
         ENU yaw (rad) without leaps, and rate of turn (rad/s).
     knots
-        Of the log's error; None where the log is taken to have none but those of `INPUT_ERRORS`.
+        Of errors along the way, input by input; those without have none but `INPUT_ERRORS`.
     """
 
     grid_s: float
@@ -62,7 +62,21 @@ class TowInputs:
     rates: FloatArray
     headings: FloatArray
     yaw_rates: FloatArray
-    knots: Knots | None = None
+    knots: tuple[Knots, ...] = ()
+
+    @property
+    def number_of_knots(self) -> int:
+        """Number of all knots."""
+        return sum(knots.number for knots in self.knots)
+
+    @property
+    def knot_places(self) -> tuple[tuple[Knots, Slice, int], ...]:
+        """Knots, their slice among all knots, and the first of their columns."""
+        places, number, column = [], 0, len(INPUT_ERRORS)
+        for knots in self.knots:
+            places.append((knots, slice(number, number + knots.number), column))
+            number, column = number + knots.number, column + knots.columns
+        return tuple(places)
 
     @property
     def duration_s(self) -> float:
@@ -93,25 +107,27 @@ class CorrectedInputs:
         As the instruments show them.
     errors : (e,) array
         Errors of `INPUT_ERRORS`, in std.
-    log : (knots,) array
-        Error of the log at its knots, m/s.
+    drifts : (knots,) array
+        Errors at all knots, SI.
     begin
         Time (s) of the tow at which the motion is begun.
     """
 
     inputs: TowInputs
     errors: FloatArray
-    log: FloatArray
+    drifts: FloatArray
     begin: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the additions to the inputs by which a motion is differentiated."""
-        knots = self.inputs.knots
-        columns = 0 if knots is None else knots.columns
         return (
             *(error.name for error in INPUT_ERRORS),
-            *(f'log {number + 1}' for number in range(columns)),
+            *(
+                f'{knots.channel} {number + 1}'
+                for knots in self.inputs.knots
+                for number in range(knots.columns)
+            ),
         )
 
     def __call__(self, time: float) -> InputPoint:
@@ -123,9 +139,10 @@ class CorrectedInputs:
         stays = len(INPUT_ERRORS)
         value += self.errors @ additions[:stays]
         rate += self.errors @ paces[:stays]
-        knots = self.inputs.knots
-        if knots is not None:
-            value[2] -= knots.hats(time) @ self.log
+        for knots, own, _ in self.inputs.knot_places:
+            column = INPUTS.index(knots.channel)
+            value[column] -= knots.hats(time) @ self.drifts[own]
+            rate[column] -= knots.hat_rates(time) @ self.drifts[own]
         return InputPoint(value, rate, heading, yaw_rate, time / 3600.0, additions, paces)
 
     def _additions(
@@ -139,20 +156,19 @@ class CorrectedInputs:
             column = INPUTS.index(error.channel)
             additions[row, column] = -error.std * (shown[column] if error.relative else 1.0)
             paces[row, column] = -error.std * (rates[column] if error.relative else 0.0)
-        knots = self.inputs.knots
-        if knots is not None:
-            values = knots.hats(time)
+        for knots, _, first in self.inputs.knot_places:
+            column = INPUTS.index(knots.channel)
+            values, slopes = knots.hats(time), knots.hat_rates(time)
             for knot in knots.acting(time):
-                additions[len(INPUT_ERRORS) + knot % knots.columns, 2] = -values[knot]
+                row = first + knot % knots.columns
+                additions[row, column], paces[row, column] = -values[knot], -slopes[knot]
         return additions, paces
 
 
 def without_errors(inputs: TowInputs, begin: float = 0.0) -> CorrectedInputs:
     """Inputs taken as they are shown."""
-    knots = inputs.knots
-    return CorrectedInputs(
-        inputs, np.zeros(len(INPUT_ERRORS)), np.zeros(0 if knots is None else knots.number), begin
-    )
+    none = np.zeros(inputs.number_of_knots)
+    return CorrectedInputs(inputs, np.zeros(len(INPUT_ERRORS)), none, begin)
 
 
 def on_grid(

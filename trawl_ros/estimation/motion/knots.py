@@ -1,8 +1,9 @@
-"""Errors of the speed log along a tow: hat functions on equal knots, with their covariance.
+"""Errors of inputs along a tow: hat functions on equal knots, with their covariance.
 
 A log is wrong anew with each reading, and the gear feels its speed in all channels at once. So the
 course of that error is estimated along: its values at the knots are parameters, whose covariance
-before the fit is that of a least-squares fit of the knots to the log's readings.
+before the fit is that of a least-squares fit of the knots to the log's readings. A counter is wrong
+by another amount after each time that its winch has run: a first-order Gauss-Markov process.
 """
 
 from dataclasses import dataclass
@@ -15,10 +16,12 @@ from trawl_ros.core.arrays import FloatArray
 
 @dataclass(frozen=True)
 class Knots:
-    """Equal knots from the beginning of a tow on.
+    """Equal knots of one input's error, from the beginning of a tow on.
 
     Attributes
     ----------
+    channel
+        The input.
     number
         Of the knots.
     spacing_s
@@ -26,9 +29,10 @@ class Knots:
     columns
         Knots that act on the gear at one time: later ones have been forgotten by it.
     root : (number, number) array
-        Root S of the covariance S Sᵀ of the errors (m/s) at the knots.
+        Root S of the covariance S Sᵀ of the errors (SI) at the knots.
     """
 
+    channel: str
     number: int
     spacing_s: float
     columns: int
@@ -38,6 +42,13 @@ class Knots:
         """Values (number,) of the hat functions at a time, s since the tow began."""
         values: FloatArray = hats(np.array([time]), self.number, self.spacing_s)[0]
         return values
+
+    def hat_rates(self, time: float) -> FloatArray:
+        """Rates of change (number,) of the hat functions up to a time, 1/s."""
+        rates = np.zeros(self.number)
+        before = min(max(int(np.ceil(time / self.spacing_s - 1e-9)) - 1, 0), self.number - 2)
+        rates[before : before + 2] = -1.0 / self.spacing_s, 1.0 / self.spacing_s
+        return rates
 
     def acting(self, time: float) -> range:
         """Knots that act at a time: from a spacing before them to where they are forgotten."""
@@ -76,4 +87,18 @@ def knots_of_log(
     lower = cholesky_banded(banded, lower=True)
     factor = np.diag(lower[0]) + np.diag(lower[1, :-1], -1)
     root = solve_triangular(factor, np.eye(number), lower=True).T
-    return Knots(number, spacing_s, int(np.ceil(memory_s / spacing_s)) + 2, root)
+    return Knots('speed', number, spacing_s, _columns(spacing_s, memory_s), root)
+
+
+def knots_of_counter(
+    channel: str, std: float, time_s: float, duration_s: float, spacing_s: float, memory_s: float
+) -> Knots:
+    """Knots of a counter's error, a process of a std (m) and a correlation time; else as above."""
+    number = int(np.ceil(duration_s / spacing_s)) + 1
+    apart = spacing_s * np.abs(np.subtract.outer(np.arange(number), np.arange(number)))
+    root = std * np.linalg.cholesky(np.exp(-apart / time_s))
+    return Knots(channel, number, spacing_s, _columns(spacing_s, memory_s), root)
+
+
+def _columns(spacing_s: float, memory_s: float) -> int:
+    return int(np.ceil(memory_s / spacing_s)) + 2

@@ -1,8 +1,8 @@
 """Columns of a linearised tow by all its parameters, each in units of its prior std.
 
 Parameters that all tows share come first: coefficients, added mass and the constant part of the
-model's error. Those of one tow follow: slow motions at its beginning, errors of its inputs and of
-its log along the way, and calibration errors of its sensors.
+model's error. Those of one tow follow: slow motions at its beginning, errors of its inputs, those
+that stay and those at knots along the way, and calibration errors of its sensors.
 """
 
 from dataclasses import dataclass
@@ -31,8 +31,10 @@ class TowLayout:
 
     Attributes
     ----------
-    motions, knots
-        Number of slow motions, and of knots of the log's error.
+    motions
+        Number of slow motions.
+    knots
+        Channel and number of knots of each input's error along the way.
     channels
         Measured channels.
     model
@@ -40,7 +42,7 @@ class TowLayout:
     """
 
     motions: int
-    knots: int
+    knots: tuple[tuple[str, int], ...]
     channels: tuple[str, ...]
     model: float = 1.0
 
@@ -65,23 +67,33 @@ class TowLayout:
         return slice(self.of_motions.stop, self.of_motions.stop + len(INPUT_ERRORS))
 
     @property
+    def of_knots(self) -> Slice:
+        """Slice of the errors of inputs at all knots."""
+        return slice(self.of_errors.stop, self.of_errors.stop + sum(n for _, n in self.knots))
+
+    @property
     def of_log(self) -> Slice:
         """Slice of the log's errors at its knots."""
-        return slice(self.of_errors.stop, self.of_errors.stop + self.knots)
+        first = self.of_knots.start
+        for channel, number in self.knots:
+            if channel == 'speed':
+                return slice(first, first + number)
+            first += number
+        return slice(first, first)
 
     @property
     def of_calibration(self) -> Slice:
         """Slice of the calibration errors."""
-        return slice(self.of_log.stop, len(self))
+        return slice(self.of_knots.stop, len(self))
 
     def __len__(self) -> int:
-        return self.of_log.stop + len(channel_errors(self.channels))
+        return self.of_knots.stop + len(channel_errors(self.channels))
 
 
 def layout_of(tow: MovingTow, motions: int, model: float) -> TowLayout:
     """Layout of a tow."""
-    knots = tow.inputs.knots
-    return TowLayout(motions, 0 if knots is None else knots.number, tow.channels, model)
+    knots = tuple((knots.channel, knots.number) for knots in tow.inputs.knots)
+    return TowLayout(motions, knots, tow.channels, model)
 
 
 def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:
@@ -100,9 +112,8 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
                 )
     total[..., layout.of_motions] = linear.by_motions * MOTION_STD_M
     total[..., layout.of_errors] = linear.by_errors
-    knots = linear.tow.inputs.knots
-    if knots is not None:
-        total[..., layout.of_log] = linear.by_log @ knots.root
+    for knots, own, _ in linear.tow.inputs.knot_places:
+        total[..., layout.of_knots][..., own] = linear.by_knots[..., own] @ knots.root
     for number, error in enumerate(channel_errors(layout.channels)):
         row = layout.channels.index(error.channel)
         values = np.nan_to_num(linear.values[:, row]) if error.relative else np.ones(n)
@@ -114,12 +125,13 @@ def point_of(
     tow: MovingTow, layout: TowLayout, z: FloatArray, start: FloatArray, prior_std: FloatArray
 ) -> TowedPoint:
     """Point at which to tow, from parameters (p,) in units of their prior std."""
-    knots = tow.inputs.knots
+    scaled = z[layout.of_knots]
+    drifts = [knots.root @ scaled[own] for knots, own, _ in tow.inputs.knot_places]
     return TowedPoint(
         coefficients=start + prior_std * z[:12],
         added_mass=float(ADDED_MASS_STD * z[12]),
         errors=z[layout.of_errors],
-        log=np.zeros(0) if knots is None else knots.root @ z[layout.of_log],
+        drifts=np.concatenate((np.zeros(0), *drifts)),
     )
 
 

@@ -22,6 +22,9 @@ SPREAD = np.array([0.3, 1.0, 0.7])
 LOG_SPREAD = 0.3
 """Std of the logarithm of the size of the log's errors."""
 
+SIMPLEX = 0.5
+"""First steps of the search, in these std."""
+
 SWEEPS = 2
 
 
@@ -100,9 +103,10 @@ def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: 
         return found + 0.5 * float(logs @ logs)
 
     start = np.log(sizes.of_group(group)[free] / known[free]) / SPREAD[free]
-    best = minimize(
-        cost, start, method='Nelder-Mead', options={'xatol': 0.03, 'fatol': 0.01, 'maxfev': 80}
-    )
+    # Left to itself the simplex begins with steps of 0.00025 about 0, and ends there.
+    simplex = start + SIMPLEX * np.vstack((np.zeros(len(start)), np.eye(len(start))))
+    options = {'initial_simplex': simplex, 'xatol': 0.03, 'fatol': 0.01, 'maxfev': 80}
+    best = minimize(cost, start, method='Nelder-Mead', options=options)
     return sizes.having(group, *map(float, factors(best.x)))
 
 

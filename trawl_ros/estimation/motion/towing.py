@@ -56,13 +56,13 @@ class TowedPoint:
     """Point at which a tow is linearised.
 
     ``coefficients`` (12,), ``added_mass`` as a part of the cylinder of water around a board,
-    ``errors`` (e,) of the inputs in std, ``log`` (knots,) its error at the knots, m/s.
+    ``errors`` (e,) of the inputs in std, ``drifts`` (knots,) their errors at all knots, SI.
     """
 
     coefficients: FloatArray
     added_mass: float
     errors: FloatArray
-    log: FloatArray
+    drifts: FloatArray
 
 
 @dataclass(frozen=True)
@@ -79,8 +79,8 @@ class LinearisedTow:
     by_added_mass : (n, k, 1) array
     by_errors : (n, k, e) array
         By a std of each of `INPUT_ERRORS`.
-    by_log : (n, k, knots) array
-        By the log's error at each knot, per m/s.
+    by_knots : (n, k, knots) array
+        By an input's error at each knot, per SI unit.
     by_motions : (n, k, motions) array
         By a metre of each slow motion at the beginning.
     left_out
@@ -93,7 +93,7 @@ class LinearisedTow:
     by_coefficients: FloatArray
     by_added_mass: FloatArray
     by_errors: FloatArray
-    by_log: FloatArray
+    by_knots: FloatArray
     by_motions: FloatArray
     left_out: tuple[LeftOut, ...]
 
@@ -115,8 +115,12 @@ class _Motion:
     towed: DifferentiatedTow
     inputs: CorrectedInputs
     counts_from: float
-    _newest: int = field(default=0)
-    _newest_from: float = field(default=-np.inf)
+    _newest: dict[str, int] = field(default_factory=dict)
+    _newest_from: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for knots in self.inputs.inputs.knots:
+            self._newest[knots.channel] = knots.acting(self.time).stop - 1
 
     @property
     def time(self) -> float:
@@ -125,24 +129,26 @@ class _Motion:
 
     def advance(self, h: float) -> None:
         """Advance by a step; knots that begin to act take the columns of those forgotten."""
-        knots = self.inputs.inputs.knots
-        if knots is not None:
-            acting = knots.acting(self.time + 0.5 * h)
-            if acting.stop - 1 > self._newest:
-                self._newest, self._newest_from = acting.stop - 1, self.time
-                self.towed.forget(slice(self.newest_column, self.newest_column + 1))
+        for knots, _, first in self.inputs.inputs.knot_places:
+            newest = knots.acting(self.time + 0.5 * h).stop - 1
+            if newest > self._newest[knots.channel]:
+                self._newest[knots.channel] = newest
+                self._newest_from[knots.channel] = self.time
+                column = self._of_inputs + first + newest % knots.columns
+                self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
 
-    def begun_since(self, begin: float) -> bool:
-        """True if a knot has begun to act since a time (s)."""
-        return self._newest_from >= begin - 1e-6
+    def begun_since(self, begin: float) -> list[int]:
+        """Columns of the knots that have begun to act since a time (s)."""
+        return [
+            self._of_inputs + first + self._newest[knots.channel] % knots.columns
+            for knots, _, first in self.inputs.inputs.knot_places
+            if self._newest_from.get(knots.channel, -np.inf) >= begin - 1e-6
+        ]
 
     @property
-    def newest_column(self) -> int:
-        """Column of the knot that began to act last."""
-        knots = self.inputs.inputs.knots
-        first = self.towed.parameters.of_inputs.start + len(INPUT_ERRORS)
-        return first if knots is None else first + self._newest % knots.columns
+    def _of_inputs(self) -> int:
+        return self.towed.parameters.of_inputs.start
 
     @property
     def fallen(self) -> bool:
@@ -187,8 +193,7 @@ def linearise_tow(
         If a stretch that is required must be left out.
     """
     rows = [OBSERVABLES.index(name) for name in tow.channels]
-    n, k, knots = len(tow), len(tow.channels), tow.inputs.knots
-    number = 0 if knots is None else knots.number
+    n, k, number = len(tow), len(tow.channels), tow.inputs.number_of_knots
     result = LinearisedTow(
         tow, point,
         np.full((n, k), np.nan), np.zeros((n, k, 12)), np.zeros((n, k, 1)),
@@ -236,7 +241,7 @@ def linearise_tow(
 
 
 def _begin(gear: TowedGear, tow: MovingTow, point: TowedPoint, begin: float, anew: bool) -> _Motion:
-    inputs = CorrectedInputs(tow.inputs, point.errors, point.log, begin)
+    inputs = CorrectedInputs(tow.inputs, point.errors, point.drifts, begin)
     parameters = MotionParameters(
         coefficients=True,
         effects=(ADDED_MASS,),
@@ -245,10 +250,7 @@ def _begin(gear: TowedGear, tow: MovingTow, point: TowedPoint, begin: float, ane
     )
     model = gear.model.with_coefficients(point.coefficients)
     towed = DifferentiatedTow(model, parameters, inputs, gear.with_added_mass(point.added_mass))
-    motion = _Motion(towed, inputs, begin + SETTLING_S if anew else 0.0)
-    if tow.inputs.knots is not None:
-        motion._newest = tow.inputs.knots.acting(begin).stop - 1
-    return motion
+    return _Motion(towed, inputs, begin + SETTLING_S if anew else 0.0)
 
 
 def _towed_on(motion: _Motion, tow: MovingTow, rows: list[int]) -> Iterator[MotionPrediction]:
@@ -269,9 +271,9 @@ def _average(
     weights, towed = result.tow.weights[stretch], motion.towed
     values = np.array([instant.values for instant in instants])
     slopes = np.array([instant.slopes for instant in instants])
-    if motion.begun_since(stretch * result.tow.stretch_s):
+    for column in motion.begun_since(stretch * result.tow.stretch_s):
         # The column of the newest knot was another's until this stretch began.
-        slopes[0, :, motion.newest_column] = 0.0
+        slopes[0, :, column] = 0.0
     result.values[stretch] = np.einsum('ki,ik->k', weights, values)
     mean = np.einsum('ki,ikm->km', weights, slopes)
     parameters = towed.parameters
@@ -279,11 +281,9 @@ def _average(
     result.by_added_mass[stretch] = mean[:, parameters.of_effects]
     of_inputs = mean[:, parameters.of_inputs]
     result.by_errors[stretch] = of_inputs[:, : len(INPUT_ERRORS)]
-    knots = result.tow.inputs.knots
-    if knots is not None:
-        acting = knots.acting(motion.time - 1e-6)
-        for knot in acting:
-            column = len(INPUT_ERRORS) + knot % knots.columns
-            result.by_log[stretch][:, knot] = of_inputs[:, column]
+    for knots, own, first in result.tow.inputs.knot_places:
+        for knot in knots.acting(motion.time - 1e-6):
+            column = of_inputs[:, first + knot % knots.columns]
+            result.by_knots[stretch][:, own.start + knot] = column
     motions = mean[:, parameters.of_motions]
     result.by_motions[stretch][:, : motions.shape[1]] = motions

@@ -12,7 +12,7 @@ from trawl_ros.estimation.windows.watermark import NANO
 from trawl_ros.records.channels import Channel, Reading
 
 CAPACITY = 50_000
-"""Readings kept per channel at most, whatever the stamps say: a minute at more than 500 Hz."""
+"""Readings usually kept per channel at most: a minute at more than 500 Hz."""
 
 
 class ChannelBuffer:
@@ -26,6 +26,8 @@ class ChannelBuffer:
         Judge of the stamps.
     rejections
         Counts of refused readings by reason.
+    capacity
+        Readings that are kept.
 
     Attributes
     ----------
@@ -35,7 +37,14 @@ class ChannelBuffer:
         By how much (ns) a window's readings of this channel lie before the window.
     """
 
-    def __init__(self, channel: Channel, order: TimestampCheck, rejections: Rejections) -> None:
+    def __init__(
+        self,
+        channel: Channel,
+        order: TimestampCheck,
+        rejections: Rejections,
+        capacity: int = CAPACITY,
+    ) -> None:
+        self._capacity = capacity
         self.channel = channel
         self.order = order
         self.first: int | None = None
@@ -75,7 +84,7 @@ class ChannelBuffer:
             sentence = f'{self._where} reads {reading.value:g} {self.channel.unit}, {expected}'
             self._rejections.add('out of range', sentence)
             self._outside.append((reading.stamp, reading.value))
-            del self._outside[:-CAPACITY]
+            del self._outside[: -self._capacity]
             return False
         return True
 
@@ -93,8 +102,8 @@ class ChannelBuffer:
         stated = reading.std if math.isfinite(reading.std) and reading.std > 0.0 else 0.0
         self._stds.insert(place, stated or self.channel.noise)
         self.first = reading.stamp if self.first is None else min(self.first, reading.stamp)
-        if len(self._stamps) > CAPACITY:
-            self._drop_before(self._stamps[CAPACITY // 10])
+        if len(self._stamps) > self._capacity:
+            self._drop_before(self._stamps[self._capacity // 10])
         return True
 
     def window(self, start_ns: int, end_ns: int) -> tuple[StampArray, FloatArray, FloatArray]:
@@ -105,6 +114,14 @@ class ChannelBuffer:
             np.array(self._stamps[first:last], dtype=np.int64),
             np.array(self._values[first:last]),
             np.array(self._stds[first:last]),
+        )
+
+    def all_readings(self) -> tuple[StampArray, FloatArray, FloatArray]:
+        """Stamps (n,) in ns, values (n,) and stated std (n,) of all that are kept."""
+        return (
+            np.array(self._stamps, dtype=np.int64),
+            np.array(self._values),
+            np.array(self._stds),
         )
 
     def heard(self, end_ns: int) -> bool:

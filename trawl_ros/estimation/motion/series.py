@@ -1,0 +1,179 @@
+"""Series of one channel's readings through a tow: false echoes and outliers set aside, noise."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.windows.buffers import ChannelBuffer
+from trawl_ros.estimation.windows.records import Rejections, WindowOptions
+from trawl_ros.estimation.windows.statistics import MAD_TO_STD
+from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
+from trawl_ros.estimation.windows.watermark import Watermark
+from trawl_ros.records.channels import CHANNELS, INPUTS, Channel, readings
+from trawl_ros.records.samples import Sample, WinchSample
+
+WIDE, NARROW = 15, 7
+"""Readings about whose median false echoes, and outliers, are sought: the fewer, the less the
+start of a manoeuvre looks like one."""
+
+ECHO_LIMIT, LIMIT = 4.0, 6.0
+"""Robust std from the median at which a reading is an outlier: of acoustic distances, where false
+echoes are many, and of other quantities."""
+
+MOST_READINGS = 1_000_000
+"""Readings of a channel: a day of ten a second."""
+
+LEAST_PART = 0.2
+"""Part of the stated std of a reading that its noise is at least: a coarse display hides it."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """Series of a channel's readings.
+
+    Attributes
+    ----------
+    times, values : (n,) arrays
+        s since the tow began; SI.
+    noise
+        Standard deviation of a reading about its neighbours.
+    excluded
+        Number of outliers and false echoes, which are not among them.
+    """
+
+    times: FloatArray
+    values: FloatArray
+    noise: float = 0.0
+    excluded: int = 0
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+@dataclass(frozen=True)
+class TowReadings:
+    """Readings of a tow.
+
+    Attributes
+    ----------
+    start_ns
+        Stamp from which times count, the first at which all inputs have been read.
+    series
+        Series of each channel that has readings enough.
+    payout
+        Series of the pay-out speeds (m/s) of both winches.
+    """
+
+    start_ns: int
+    series: Mapping[str, Series]
+    payout: tuple[Series, Series]
+
+    @property
+    def duration_s(self) -> float:
+        """Time to which all inputs have been read, s."""
+        return min(float(self.series[name].times[-1]) for name in INPUTS)
+
+
+def series_of(channel: Channel, times: FloatArray, values: FloatArray, stated: float) -> Series:
+    """Set outliers aside, and find the noise of a reading from second differences.
+
+    Parameters
+    ----------
+    channel
+        Its row of the table.
+    times, values : (n,) arrays
+        Readings, s and SI, in the order of their times.
+    stated
+        Std of a reading as its sensor states it.
+    """
+    kept = np.ones(len(values), dtype=np.bool_)
+    limit = LIMIT
+    if np.isfinite(channel.leap):
+        kept &= np.abs(values - _median(values, WIDE)) <= channel.leap
+        limit = ECHO_LIMIT
+    kept[np.flatnonzero(kept)[~_inliers(values[kept], stated, limit)]] = False
+    excluded = int(np.count_nonzero(~kept))
+    times, values = times[kept], values[kept]
+    second = values[1:-1] - 0.5 * (values[:-2] + values[2:])
+    noise = float(np.sqrt(np.mean(second**2) / 1.5)) if len(second) else stated
+    return Series(times, values, max(noise, LEAST_PART * stated), excluded)
+
+
+def _median(values: FloatArray, size: int) -> FloatArray:
+    found: FloatArray = median_filter(values, size, mode='reflect')
+    return found
+
+
+def _inliers(values: FloatArray, stated: float, limit: float) -> BoolArray:
+    if not len(values):
+        return np.ones(0, dtype=np.bool_)
+    away = np.abs(values - _median(values, NARROW))
+    spread = max(MAD_TO_STD * float(np.median(away)), 0.5 * stated)
+    return np.asarray(away <= limit * spread, np.bool_)
+
+
+def tow_readings(
+    samples: Iterable[Sample], pressure_to_depth: Callable[[float], float], name: str
+) -> TowReadings:
+    """Read a tow.
+
+    Parameters
+    ----------
+    samples
+        Of all instruments.
+    pressure_to_depth
+        Depth (m) for an absolute pressure (Pa).
+    name
+        Of the tow, for errors.
+
+    Raises
+    ------
+    TrawlError
+        If counters, log or the winches' pay-out speeds are missing.
+    """
+    options, rejections, winch = WindowOptions(), Rejections(), Watermark()
+    buffers = {
+        name: ChannelBuffer(
+            channel,
+            TimestampCheck(channel, options, winch, rejections),
+            rejections,
+            MOST_READINGS,
+        )
+        for name, channel in CHANNELS.items()
+    }
+    payout: dict[int, tuple[float, float]] = {}
+    for sample in samples:
+        for reading in readings(sample, pressure_to_depth):
+            buffers[reading.channel].add(reading)
+        if isinstance(sample, WinchSample) and np.all(np.isfinite(sample.speeds)):
+            payout[sample.stamp] = sample.speeds
+    for buffer in buffers.values():
+        buffer.order.give_up()
+    known = {name: buffer.all_readings() for name, buffer in buffers.items()}
+    missing = [name for name in INPUTS if len(known[name][0]) < WIDE]
+    if missing:
+        topics = ', '.join(f'{name} ({CHANNELS[name].topic})' for name in missing)
+        raise TrawlError(
+            f'{name}: fewer than {WIDE} usable readings of {topics}, so the model cannot be towed '
+            'along'
+        )
+    if len(payout) < WIDE:
+        raise TrawlError(
+            f"{name}: {len(payout)} readings of the winches' pay-out speed on "
+            f'{CHANNELS[INPUTS[0]].topic}, expected at least {WIDE}: without it a counter that '
+            'leaps looks like a warp that moves'
+        )
+    start = max(int(known[name][0][0]) for name in INPUTS)
+    series = {
+        name: series_of(CHANNELS[name], (stamps - start) / SECOND, values, float(np.median(stds)))
+        for name, (stamps, values, stds) in known.items()
+        if len(stamps) >= WIDE
+    }
+    times = (np.array(sorted(payout), dtype=np.int64) - start) / SECOND
+    port, starboard = np.array([payout[stamp] for stamp in sorted(payout)]).T
+    return TowReadings(start, series, (Series(times, port), Series(times, starboard)))
