@@ -26,6 +26,8 @@ NO_GRAPHICS = 'no graphics for the viewer: apt-get install mesa-vulkan-drivers d
 @pytest.fixture(scope='module')
 def client(tow, estimates, gear):
     """The tow in a viewer without a window."""
+    if not hasattr(ViewerClient, 'get_state'):
+        pytest.skip('the client of this Rerun tells no state of the viewer; that of 0.41 does')
     try:
         with Viewer('headless', environment=os.environ) as viewer:
             bags = TowBags([tow, estimates])
@@ -70,12 +72,17 @@ def test_every_view_is_laid_out_and_draws_without_complaint(client):
 
 
 def test_the_picture_shows_gear_sea_sonar_and_readings(client, tmp_path):
-    path = tmp_path / 'view.png'
-    client.save_screenshot(str(path))
-    picture = np.asarray(Image.open(path).convert('RGB')).astype(int)
+    histories = slice(60, 1040), slice(890, 1920)
+    end = time.monotonic() + PATIENCE_S
+    while True:
+        client.save_screenshot(str(tmp_path / 'view.png'))
+        picture = np.asarray(Image.open(tmp_path / 'view.png').convert('RGB')).astype(int)
+        # Readings are passed on in batches, and come last.
+        if near(picture[histories], (214, 39, 40), 20) > 300 or time.monotonic() > end:
+            break
     assert picture.shape == (1080, 1920, 3)
     top, left = slice(50, 510), slice(0, 880)
-    sonar, histories = (slice(545, 890), slice(450, 880)), (slice(60, 1040), slice(890, 1920))
+    sonar = slice(545, 890), slice(450, 880)
     # Warps at 150 and 140 kN, and the sea behind them.
     assert near(picture[top, left], (220, 160, 36), 40) > 100
     assert near(picture[top, left], (14, 24, 38), 3) > 50_000

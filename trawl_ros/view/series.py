@@ -49,6 +49,9 @@ COLOUR_NAMES = {
 
 LEGEND = 'dots are measured, lines are true or wanted; port is red, starboard green'
 
+WHITER = 0.4
+"""Of lines over dots: seen on the dark background of a window and on the white one of a page."""
+
 RGB = tuple[int, int, int]
 
 
@@ -75,7 +78,7 @@ class PlacedCurve:
         return Line(
             f'{path_of(self.panel)}/{self.curve.name}/{kind}',
             ' '.join(words),
-            rgb_of(self.curve.colour, 0.0 if kind == 'measured' else 0.65),
+            rgb_of(self.curve.colour, 0.0 if kind == 'measured' else WHITER),
             dots=kind == 'measured',
         )
 
@@ -103,7 +106,7 @@ def path_of(panel: Panel) -> str:
 
 
 def rgb_of(web: str, whiter: float = 0.0) -> RGB:
-    """Colour of the pictures, made so much whiter: a viewer's background is dark."""
+    """Colour of the pictures, made so much whiter."""
     red, green, blue = (
         round((1.0 - whiter) * int(web[k : k + 2], 16) + 255 * whiter) for k in (1, 3, 5)
     )
