@@ -8,7 +8,8 @@ from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import ON_DECK, with_other_law
+from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import with_other_law
+from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
 from trawl_ros.lab.studies.discrepancy.trials.course import quasi_steady
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
 from trawl_ros.lab.studies.discrepancy.trials.recording import record_tows
@@ -29,6 +30,29 @@ PLAN = BlindTrialPlan(
 )
 """An hour and a half of a gear in order, and three such tows after something happened on deck."""
 
+HEAVIER = 3.0
+"""Part by which a kite is heavier than the gear file says."""
+
+
+def diagnosed(folder, cause, size):
+    """Diagnose bags of tows of which all but the first have a cause hidden in them.
+
+    Gives ``diagnosis.json``, what was printed, and the folder of the reports.
+    """
+    gear, chance = load_gear(GEAR), np.random.default_rng(SEED)
+    model = with_other_law(build_model(gear))
+    # Boards are those of the gear file, which are not those from which the fit starts.
+    plant = Plant(model, model.coefficients, {})
+    tows = plant.towed([(CAUSES[cause](chance), size)], PLAN)
+    courses = [quasi_steady(tow, looks) for tow, looks in zip(PLAN.tows, tows, strict=True)]
+    record_tows(folder / 'bags', courses, plant.model.water, AS_STATED, 0.0, chance)
+    baseline, *examined = map(str, sorted((folder / 'bags').iterdir()))
+    out = folder / 'out'
+    words = ['diagnose', *examined, '--baseline', baseline, '--gear', GEAR, '--out', str(out)]
+    done = CliRunner().invoke(trawl, words)
+    assert done.exit_code == 10, done.output
+    return json.loads((out / 'diagnosis.json').read_text()), done.output, out
+
 
 @pytest.mark.slow
 @pytest.mark.timeout(1500)
@@ -41,25 +65,27 @@ PLAN = BlindTrialPlan(
     ],
 )
 def test_what_went_wrong_on_deck_is_named(tmp_path, cause, size, name, parameter, value, told):
-    gear, chance = load_gear(GEAR), np.random.default_rng(SEED)
-    model = with_other_law(build_model(gear))
-    # Boards are those of the gear file, which are not those from which the fit starts.
-    plant = Plant(model, model.coefficients, {})
-    tows = plant.towed([(ON_DECK[cause](chance), size)], PLAN)
-    courses = [quasi_steady(tow, looks) for tow, looks in zip(PLAN.tows, tows, strict=True)]
-    record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 0.0, chance)
-    baseline, *examined = map(str, sorted((tmp_path / 'bags').iterdir()))
-    out = tmp_path / 'out'
-    words = ['diagnose', *examined, '--baseline', baseline, '--gear', GEAR, '--out', str(out)]
-    done = CliRunner().invoke(trawl, words)
-    assert done.exit_code == 10, done.output
-    found = json.loads((out / 'diagnosis.json').read_text())
-    assert found['verdict'] == 'NAMED', done.output
+    found, printed, out = diagnosed(tmp_path, cause, size)
+    assert found['verdict'] == 'NAMED', printed
     (effect,) = found['effects']
     assert effect['name'] == name
     interval = effect['parameters'][parameter]
     assert abs(interval['value'] - value) < 0.15 * value
     assert interval['low'] < interval['value'] < interval['high']
-    assert told in done.output
-    assert 'What to do now' in done.output
+    assert told in printed
+    assert 'What to do now' in printed
     assert name in (out / 'model.yaml').read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1500)
+def test_what_the_catalogue_lacks_is_told_beside_what_it_is_taken_for(tmp_path):
+    """By the effects alone a kite as heavy as four is a fault of the depth sensors."""
+    found, printed, out = diagnosed(tmp_path, 'heavy_kite', HEAVIER)
+    assert found['verdict'] == 'AMBIGUOUS', printed
+    assert [effect['name'] for effect in found['effects']] == ['depth_sensor']
+    told = {mimic['name']: mimic for mimic in found['mimics']}
+    assert told['kite_weight']['low'] < HEAVIER < told['kite_weight']['high']
+    assert 'a heavier kite, by about' in printed
+    assert 'Hold kite.mass_kg of the gear file' in printed
+    assert not (out / 'model.yaml').exists()

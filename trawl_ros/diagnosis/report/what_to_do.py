@@ -24,7 +24,7 @@ def _sentences(diagnosis: Diagnosis) -> list[str]:
         f'{number}. {_card(effect)}' for number, effect in enumerate(_likely(diagnosis), 1)
     ]
     looked_at += [
-        f'{number}. {str(mimic).capitalize()}: {mimic.change.direct}'
+        f'{number}. {str(mimic)[0].upper()}{str(mimic)[1:]}: {mimic.change.direct}'
         for number, mimic in enumerate(diagnosis.mimics, len(looked_at) + 1)
     ]
     if diagnosis.verdict == 'NAMED':
