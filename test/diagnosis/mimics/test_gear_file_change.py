@@ -88,6 +88,7 @@ def test_only_the_numbers_at_the_keys_change():
 
 def test_a_change_is_told_in_words_with_its_size():
     assert record('warp_diameter').words(0.247) == 'thicker warps, by about 25 %'
+    assert record('warp_diameter').words(3.07) == 'thicker warps, by about 310 %'
     assert record('block_spacing').words(-1.5) == 'towing blocks closer together, by about 1.5 m'
 
 

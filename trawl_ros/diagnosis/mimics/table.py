@@ -64,7 +64,9 @@ class MimicRecord(Record):
 
     def words(self, size: float) -> str:
         """The change of a size in words."""
-        told = f'{100.0 * abs(size):.2g} %' if self.relative else f'{abs(size):.2g} {self.unit}'
+        # Two digits, and no power of ten for what is more than the whole.
+        shown = float(f'{abs(size) * (100.0 if self.relative else 1.0):.2g}')
+        told = f'{shown:g} {"%" if self.relative else self.unit}'
         return f'{self.larger if size > 0.0 else self.smaller}, by about {told}'
 
 
