@@ -5,12 +5,14 @@ import time
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from PIL import Image
 
 pytest.importorskip('rerun', reason='needs the extra `view`: make test-view installs it')
 
 from rerun.experimental import ViewerClient
 
+from trawl_ros.cli.main import trawl
 from trawl_ros.core.progress import ignore
 from trawl_ros.view.bags import TowBags
 from trawl_ros.view.recording import to_viewer
@@ -91,6 +93,18 @@ def test_the_picture_shows_gear_sea_sonar_and_readings(client, tmp_path):
     # Port and starboard readings.
     assert near(picture[histories], (214, 39, 40), 20) > 300
     assert near(picture[histories], (44, 160, 44), 20) > 300
+
+
+def test_the_command_draws_a_picture(client, tow, tmp_path):
+    out = tmp_path / 'tow.png'
+    done = CliRunner().invoke(trawl, ['view', str(tow), '--out', str(out)])
+    assert done.exit_code == 0, done.output
+    assert f'{out}: {tow}, as Rerun shows it' in done.stdout
+    picture = np.asarray(Image.open(out).convert('RGB')).astype(int)
+    assert near(picture[50:510, :880], (14, 24, 38), 3) > 50_000
+    again = CliRunner().invoke(trawl, ['view', str(tow), '--out', str(out)])
+    assert again.exit_code == 1
+    assert 'exists already and is not written over' in again.output
 
 
 def near(pixels, colour, away):

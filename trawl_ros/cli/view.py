@@ -13,7 +13,7 @@ import click
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.options import BAG, FILE, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.core.errors import RosMissing
+from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.progress import OnProgress
 
 if TYPE_CHECKING:
@@ -27,7 +27,10 @@ LOOK_S = 0.2
 @click.command('view')
 @click.argument('bags', metavar='BAG...', nargs=-1, type=BAG)
 @click.option('--live', is_flag=True, help='Show the running graph in place of bags.')
-@click.option('--out', type=FILE, help='Write a recording (.rrd) for Rerun, and open no viewer.')
+@click.option(
+    '--out', type=FILE, help='Write a recording (.rrd) for Rerun, or a picture (.png) of what it '
+    'shows halfway, and open no viewer.',
+)  # fmt: skip
 @click.option('--web', is_flag=True, help='Show it on a web page of this machine.')
 @click.option(
     '--bind', default='127.0.0.1', show_default=True, metavar='ADDRESS',
@@ -72,6 +75,9 @@ def command(
         raise click.UsageError('--out and --web: a recording is written, or shown')
     if live == bool(bags):
         raise click.UsageError('BAG... or --live: expected one of them')
+    picture = out is not None and out.suffix == '.png'
+    if live and picture:
+        raise click.UsageError('--live: pictures are of bags; expected --out FILE.rrd')
     if live:
         _run_node(out, web, bind, port, memory, gear, namespace)
     from trawl_ros.view.bags import TowBags
@@ -79,6 +85,9 @@ def command(
     from trawl_ros.view.viewer import Viewer
 
     tow = TowBags(bags, namespace)
+    if out is not None and picture:
+        _draw(tow, out, gear, force)
+        return
     with ExitStack() as stack, Interruption() as interruption:
         viewer: Viewer | None = None
         if out is not None:
@@ -101,6 +110,20 @@ def command(
         click.echo(f'{out}: {", ".join(map(str, bags))}, for Rerun')
         if not complete:
             raise SystemExit(INTERRUPTED)
+
+
+def _draw(tow: 'TowBags', out: Path, gear: str, force: bool) -> None:
+    from trawl_ros.core.files import new_folder
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.view.picture import write_picture
+
+    if not force:
+        new_folder(out, TrawlError)
+    with ProgressDisplay(error_console()) as display:
+        write_picture(tow, load_gear(gear), out, on_progress=display)
+    for problem in tow.problems:
+        click.echo(problem, err=True)
+    click.echo(f'{out}: {", ".join(map(str, tow.paths))}, as Rerun shows it')
 
 
 def _show(

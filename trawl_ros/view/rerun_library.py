@@ -13,6 +13,7 @@ try:
     import rerun as rr
     import rerun.blueprint as rrb
     import rerun_cli
+    from rerun.experimental import ViewerClient
 except ModuleNotFoundError as reason:
     raise ViewerAbsent(
         f'the view of a tow needs Rerun, and there is no {reason.name}; expected the extra `view`: '
@@ -22,4 +23,4 @@ except ModuleNotFoundError as reason:
 EXECUTABLE = str(Path(rerun_cli.__file__).with_name('rerun'))
 """Program of the viewer."""
 
-__all__ = ['EXECUTABLE', 'rr', 'rrb']
+__all__ = ['EXECUTABLE', 'ViewerClient', 'rr', 'rrb']

@@ -36,6 +36,7 @@ from trawl_ros.records.topics import INSTRUMENTS, NAMESPACE, TRUTH, absolute
 from trawl_ros.report.style import DPI
 from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients
 from trawl_ros.sentences.table import load_tables
+from trawl_ros.view.bags import TowBags
 
 if TYPE_CHECKING:
     from trawl_ros.lab.running.monitor import Monitor
@@ -91,6 +92,7 @@ def command(out: Path, scenario: Path, diagnosis: bool) -> None:
         traffic = _traffic(monitor, folder)
         _replay(processes, monitor, loaded, folder, console)
     result = load_result(folder.path)
+    _view(loaded, folder, console)
     figures = _draw(loaded, folder)
     _speak(loaded, folder)
     folder.write_summary(
@@ -206,6 +208,18 @@ def _gear_file(scenario: Scenario) -> str:
     name = scenario.record.gear
     beside = scenario.path.parent / name
     return str(beside) if name.endswith(('.yaml', '.yml')) else name
+
+
+def _view(scenario: Scenario, folder: DemoFolder, console: Console) -> None:
+    """Draw the tow in the viewer, where that is installed and this machine can draw."""
+    try:
+        from trawl_ros.view.picture import write_picture
+
+        with ProgressDisplay(console) as display:
+            tow = TowBags([folder.bag])
+            write_picture(tow, scenario.plant, folder.path / 'view.png', on_progress=display)
+    except TrawlError as reason:
+        console.print(f'view.png is left out: {reason}', highlight=False, markup=False)
 
 
 def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
