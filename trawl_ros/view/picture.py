@@ -18,7 +18,7 @@ PATIENCE_S = 90.0
 Seen = TypeVar('Seen')
 
 LOOK_S = 1.0
-"""What has not changed for so long is complete."""
+"""Time without a change after which a picture is complete."""
 
 
 def write_picture(
@@ -61,7 +61,7 @@ def _span(client: ViewerClient) -> tuple[int, int]:
 
 
 def _still(viewer: Viewer, look: Callable[[], Seen]) -> Seen:
-    """What is seen once it no longer changes, or when patience ends."""
+    """Return what is seen once it no longer changes, or when patience ends."""
     end = time.monotonic() + PATIENCE_S
     last = look()
     while True:
