@@ -14,6 +14,7 @@ from rerun.experimental import ViewerClient
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.progress import ignore
+from trawl_ros.sentences.framing import framed
 from trawl_ros.view.bags import TowBags
 from trawl_ros.view.recording import to_viewer
 from trawl_ros.view.rerun_log import RerunLog
@@ -105,6 +106,25 @@ def test_the_command_draws_a_picture(client, tow, tmp_path):
     again = CliRunner().invoke(trawl, ['view', str(tow), '--out', str(out)])
     assert again.exit_code == 1
     assert 'exists already and is not written over' in again.output
+
+
+def test_a_log_of_a_ship_is_drawn_at_its_time_of_day(client, tmp_path):
+    log = tmp_path / 'ship.nmea'
+    rest = ',15215.2500,W,3.9,000.0,010826,,,A'
+    sentences = [
+        framed('$', f'GPRMC,1038{second:02d}.00,A,5730.{10 * second:04d},N{rest}', checksum=True)
+        for second in range(60)
+    ]
+    log.write_text('\n'.join(sentences))
+    bag, out = tmp_path / 'bag', tmp_path / 'ship.png'
+    imported = CliRunner().invoke(
+        trawl, ['import-log', str(log), '--mapping', 'nmea', '--out', str(bag)]
+    )
+    assert imported.exit_code == 0, imported.output
+    done = CliRunner().invoke(trawl, ['view', str(bag), '--out', str(out)])
+    assert done.exit_code == 0, done.output
+    with Image.open(out) as picture:
+        assert picture.size == (1920, 1080)
 
 
 def near(pixels, colour, away):

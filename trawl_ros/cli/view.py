@@ -13,7 +13,8 @@ import click
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.options import BAG, FILE, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.core.errors import RosMissing, TrawlError
+from trawl_ros.core.errors import RosMissing
+from trawl_ros.core.network import THIS_MACHINE
 from trawl_ros.core.progress import OnProgress
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ LOOK_S = 0.2
 )  # fmt: skip
 @click.option('--web', is_flag=True, help='Show it on a web page of this machine.')
 @click.option(
-    '--bind', default='127.0.0.1', show_default=True, metavar='ADDRESS',
+    '--bind', default=THIS_MACHINE, show_default=True, metavar='ADDRESS',
     help='Address on which the viewer listens. Whoever reaches another one than that of this '
     'machine sees the tow and can add to it.',
 )  # fmt: skip
@@ -113,12 +114,11 @@ def command(
 
 
 def _draw(tow: 'TowBags', out: Path, gear: str, force: bool) -> None:
-    from trawl_ros.core.files import new_folder
     from trawl_ros.gear.load import load_gear
     from trawl_ros.view.picture import write_picture
+    from trawl_ros.view.recording import check_file
 
-    if not force:
-        new_folder(out, TrawlError)
+    check_file(out, force=force)
     with ProgressDisplay(error_console()) as display:
         write_picture(tow, load_gear(gear), out, on_progress=display)
     for problem in tow.problems:

@@ -20,11 +20,11 @@ from distributed.comm.core import connect
 from distributed.security import Security
 
 from trawl_ros.core.errors import TrawlError, sentence_of
+from trawl_ros.core.network import THIS_MACHINE
 
 TaskT = TypeVar('TaskT')
 ResultT = TypeVar('ResultT')
 
-LOCALHOST = '127.0.0.1'
 PATIENCE_S = 5.0
 """Timeout of a scheduler's answer."""
 
@@ -132,10 +132,10 @@ def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
                     n_workers=workers,
                     threads_per_worker=1,
                     processes=True,
-                    host=LOCALHOST,
+                    host=THIS_MACHINE,
                     security=True,
                     # No dashboard, but what is left of its server would listen to all.
-                    dashboard_address=f'{LOCALHOST}:0',
+                    dashboard_address=f'{THIS_MACHINE}:0',
                     worker_dashboard_address=None,
                     scheduler_kwargs={'dashboard': False},
                     silence_logs=logging.CRITICAL,

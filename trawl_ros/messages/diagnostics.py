@@ -1,11 +1,13 @@
 """Diagnostic arrays: status of nodes, and findings of the identification."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.stamps import header
 
 OK = ros.diagnostic_msgs__msg__DiagnosticStatus.OK
@@ -46,6 +48,24 @@ def read_statuses(message: Any) -> tuple[Status, ...]:
         )
         for status in message.status
     )
+
+
+def read_number(status: Status, key: str) -> float:
+    """Read a number among the values of a status.
+
+    Raises
+    ------
+    MessageError
+        If it is missing, or no finite number.
+    """
+    text = status.values.get(key, '')
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise MessageError(f'{status.name}: {key} is {text!r}; expected a number')
+    return value
 
 
 def _to_message(status: Status) -> ros.diagnostic_msgs__msg__DiagnosticStatus:

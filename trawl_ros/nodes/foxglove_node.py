@@ -2,12 +2,12 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from ipaddress import ip_address
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rclpy.qos import QoSProfile
 
 from trawl_ros.core.errors import MessageError, TrawlError
+from trawl_ros.core.network import THIS_MACHINE, is_this_machine
 from trawl_ros.messages.diagnostics import OK, Status
 from trawl_ros.nodes.playback.recorded_qos import asks_too_much, matching
 from trawl_ros.nodes.runtime.incoming import size_limit
@@ -20,8 +20,6 @@ from trawl_ros.records.topics import STATIC_TRANSFORMS, TOPICS, Topic
 
 if TYPE_CHECKING:
     from trawl_ros.nodes.links.websocket import ViewerServer
-
-LOCAL = '127.0.0.1'
 
 LOOK_S = 0.05
 """Time after which a wish of a viewer is granted at the latest."""
@@ -37,8 +35,8 @@ class FoxgloveNode(TrawlNode):
     """
 
     SPECS: ClassVar = (
-        Text('host', LOCAL, 'Address of this machine at which viewers may connect. Whoever reaches '
-             f'another one than {LOCAL} sees all topics.'),
+        Text('host', THIS_MACHINE, 'Address of this machine at which viewers may connect. Whoever '
+             f'reaches another one than {THIS_MACHINE} sees all topics.'),
         Number('port', 8765, 'TCP', 1, 65_535, 'Port at which viewers may connect.', whole=True),
         Number('backlog', 200, 'messages', 10, 5000, 'Messages that wait for a slow viewer at '
                'most; older ones are given up.', whole=True),
@@ -62,7 +60,7 @@ class FoxgloveNode(TrawlNode):
         self._passed: Counter[str] = Counter()
         log = self.get_logger()
         log.info(f'ws://{host}:{port} is open to viewers')
-        if not _is_this_machine(host):
+        if not is_this_machine(host):
             log.warning(f'parameter host: whoever reaches {host} sees all topics')
         self.every(LOOK_S, self._look)
         self.every(MATCH_S, self._match)
@@ -143,14 +141,6 @@ class FoxgloveNode(TrawlNode):
             self._passed[name] += 1
 
         return take
-
-
-def _is_this_machine(host: str) -> bool:
-    """True if nobody from outside reaches an address."""
-    try:
-        return ip_address(host).is_loopback
-    except ValueError:
-        return host == 'localhost'
 
 
 def main(args: Sequence[str] | None = None) -> int:

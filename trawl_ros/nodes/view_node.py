@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from trawl_ros.core.network import THIS_MACHINE, is_this_machine
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.nodes.runtime.node import TrawlNode
@@ -16,7 +17,6 @@ from trawl_ros.view.reading import TOPICS, TowReader
 if TYPE_CHECKING:
     from trawl_ros.view.live import LiveView
 
-LOCAL = '127.0.0.1'
 LOOK_S = 0.5
 
 
@@ -52,8 +52,8 @@ class ViewNode(TrawlNode):
              choices=('window', 'web', 'headless')),
         Text('output', '', 'File (.rrd) to be recorded in place of a viewer; nothing may be there '
              'yet.'),
-        Text('host', LOCAL, 'Address at which the viewer listens. Whoever reaches another one than '
-             f'{LOCAL} sees the tow and can add to it.'),
+        Text('host', THIS_MACHINE, 'Address at which the viewer listens. Whoever reaches another '
+             f'one than {THIS_MACHINE} sees the tow and can add to it.'),
         Number('port', 0, 'TCP', 0, 65_534, 'Of the web page, whose data are at the next one; 0 '
                'takes free ones.', whole=True),
         Number('memory_mb', 2000, 'MB', 100, 1_000_000, 'Memory of the viewer; beyond it the '
@@ -68,8 +68,7 @@ class ViewNode(TrawlNode):
         self._view = open_view(self.parameters)
         if self._view.page:
             self.get_logger().info(f'{self._view.page} shows it')
-        if self.parameters['host'] != LOCAL:
-            host = self.parameters['host']
+        if not is_this_machine(host := self.parameters['host']):
             self.get_logger().warning(f'parameter host: whoever reaches {host} sees the tow')
         for topic in TOPICS:
             self._show(topic)

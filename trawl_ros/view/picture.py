@@ -3,12 +3,15 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
+
+import numpy as np
 
 from trawl_ros.core.files import written
 from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.view.bags import TowBags
+from trawl_ros.view.layout import TIMELINE
 from trawl_ros.view.recording import to_viewer
 from trawl_ros.view.rerun_library import ViewerClient
 from trawl_ros.view.rerun_log import RerunLog
@@ -37,9 +40,10 @@ def write_picture(
         with to_viewer(viewer.url) as recording:
             tow.show(RerunLog(recording, tow.topics), gear, on_progress=on_progress)
         client = ViewerClient(viewer.url)
-        begin, end = _still(viewer, lambda: _span(client))
-        middle = begin + (end - begin) // 2
-        client.set_time('time', duration=middle / 1e9, play_state='paused')
+        line = _still(viewer, lambda: _line(client))
+        if line is None:
+            raise ViewerFailed(f'the viewer has shown nothing of the tow in {PATIENCE_S:.0f} s')
+        _set_time(client, line)
         with written(path) as draft:
 
             def drawn() -> bytes:
@@ -49,15 +53,24 @@ def write_picture(
             _still(viewer, drawn)
 
 
-def _span(client: ViewerClient) -> tuple[int, int]:
-    """Begin and end (ns) of what has arrived in the viewer; both 0 before anything has."""
+def _line(client: ViewerClient) -> Any | None:
+    """Time line of what has arrived in the viewer; None before anything has."""
     lines = [
         line
         for recording in client.get_state().recordings
         for line in recording.timelines
-        if line.name == 'time' and line.end is not None
+        if line.name == TIMELINE and line.end is not None
     ]
-    return (lines[0].start or 0, lines[0].end) if lines else (0, 0)
+    return lines[0] if lines else None
+
+
+def _set_time(client: ViewerClient, line: Any) -> None:
+    """Stop halfway: at a time since the start of a simulation, or at a time of day."""
+    middle = (line.start + line.end) // 2
+    if line.time_type == 'timestamp':
+        client.set_time(TIMELINE, timestamp=np.datetime64(middle, 'ns'), play_state='paused')
+    else:
+        client.set_time(TIMELINE, duration=np.timedelta64(middle, 'ns'), play_state='paused')
 
 
 def _still(viewer: Viewer, look: Callable[[], Seen]) -> Seen:
@@ -68,6 +81,6 @@ def _still(viewer: Viewer, look: Callable[[], Seen]) -> Seen:
         time.sleep(LOOK_S)
         viewer.check()
         seen = look()
-        if (seen == last and seen != (0, 0)) or time.monotonic() > end:
+        if (seen is not None and seen == last) or time.monotonic() > end:
             return seen
         last = seen

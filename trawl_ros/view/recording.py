@@ -14,6 +14,21 @@ FLUSH_S = 10.0
 """A viewer that takes nothing for so long is given up."""
 
 
+def check_file(path: Path, *, force: bool) -> None:
+    """Check, before the work, that a file can be written.
+
+    Raises
+    ------
+    TrawlError
+        If the file exists already and ``force`` does not allow replacing it, or it cannot be
+        written.
+    """
+    if path.is_dir():
+        raise TrawlError(f'{path}: is a folder; expected a file such as tow{path.suffix or ".rrd"}')
+    if not force:
+        new_folder(path, TrawlError)
+
+
 @contextmanager
 def to_file(path: Path, *, force: bool) -> Iterator[rr.RecordingStream]:
     """Write a recording whole or not at all.
@@ -24,10 +39,7 @@ def to_file(path: Path, *, force: bool) -> Iterator[rr.RecordingStream]:
         If the file exists already and ``force`` does not allow replacing it, or it cannot be
         written.
     """
-    if path.is_dir():
-        raise TrawlError(f'{path}: is a folder; expected a file such as tow.rrd')
-    if not force:
-        new_folder(path, TrawlError)
+    check_file(path, force=force)
     with written(path) as draft:
         recording = rr.RecordingStream(APPLICATION)
         recording.save(draft)

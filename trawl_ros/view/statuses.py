@@ -1,12 +1,10 @@
 """Statuses of estimator, diagnosis and trial as estimates and notes to be shown."""
 
-import math
 from collections.abc import Iterator, Sequence
 
-from trawl_ros.core.errors import MessageError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import DIAGNOSIS
-from trawl_ros.messages.diagnostics import ERROR, OK, Status
+from trawl_ros.messages.diagnostics import ERROR, OK, Status, read_number
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.view.records import Coefficients, Interval, Level, Note
 
@@ -31,26 +29,15 @@ def coefficients_of(stamp: int, statuses: Sequence[Status]) -> Coefficients | No
         return None
     intervals = {
         name: Interval(
-            _number(status, name),
-            _number(status, f'{name} low'),
-            _number(status, f'{name} high'),
+            read_number(status, name),
+            read_number(status, f'{name} low'),
+            read_number(status, f'{name} high'),
             status.values.get(f'{name} determined') == 'true',
         )
         for name in COEFFICIENTS
     }
-    windows = int(_number(status, 'windows'))
+    windows = int(read_number(status, 'windows'))
     return Coefficients(stamp, windows, intervals, one_line(status.message, DIAGNOSIS.value))
-
-
-def _number(status: Status, key: str) -> float:
-    text = status.values.get(key, '')
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise MessageError(f'{status.name}: {key} is {text!r}; expected a number')
-    return value
 
 
 class NoteBook:

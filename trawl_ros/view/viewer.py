@@ -13,11 +13,11 @@ from typing import Literal
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import one_line
+from trawl_ros.core.network import THIS_MACHINE
 from trawl_ros.view.rerun_library import EXECUTABLE
 
 Kind = Literal['window', 'web', 'headless']
 
-THIS_MACHINE = '127.0.0.1'
 DISPLAYS = ('DISPLAY', 'WAYLAND_DISPLAY')
 
 STARTS_S = 30.0

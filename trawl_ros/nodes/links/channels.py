@@ -20,8 +20,8 @@ from pathlib import Path
 from urllib.parse import parse_qsl
 
 from trawl_ros.core.errors import SentenceError
+from trawl_ros.core.network import THIS_MACHINE
 
-LOCAL = '127.0.0.1'
 KINDS = ('udp', 'tcp', 'tcp-listen', 'serial', 'pty')
 MOST_CLIENTS = 8
 READ_BYTES = 65_536
@@ -41,11 +41,11 @@ class LinkAddress:
 
     text: str
     kind: str
-    host: str = LOCAL
+    host: str = THIS_MACHINE
     port: int = 0
     path: Path = Path()
     baud: int = 4800
-    interface: str = LOCAL
+    interface: str = THIS_MACHINE
     broadcast: bool = False
 
     @property
@@ -87,8 +87,9 @@ def parse_link(text: str) -> LinkAddress:
         raise SentenceError(f'link {text!r}: expected as {kind}://HOST:PORT')
     if not 1 <= int(port) <= 65_535:
         raise SentenceError(f'link {text!r}: found port {port}, expected 1 to 65535')
+    interface = options.get('interface', THIS_MACHINE)
     return LinkAddress(
-        text, kind, host or LOCAL, int(port), interface=options.get('interface', LOCAL),
+        text, kind, host or THIS_MACHINE, int(port), interface=interface,
         broadcast='broadcast' in options,
     )  # fmt: skip
 

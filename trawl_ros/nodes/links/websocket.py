@@ -87,7 +87,8 @@ class ViewerServer:
                 context=self._context,
                 message_backlog_size=backlog,
             )
-        except Exception as reason:
+        # The library's own error is one of these.
+        except RuntimeError as reason:
             raise TrawlError(
                 f'parameters host and port: {host}:{port} cannot be listened to '
                 f'({short(reason)}); expected an address of this machine with a free port'

@@ -1,12 +1,11 @@
 """Proposals for a trial as a diagnostic status, in ``identification/status``."""
 
-import math
 import re
 from collections.abc import Sequence
 
 from trawl_ros.control.trial.records import Knowledge, Proposal, TrialTarget
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.diagnostics import OK, WARN, Status, read_number
 
 NAME = 'identification: proposals'
 NOW = 'now'
@@ -58,14 +57,14 @@ def read_knowledge(statuses: Sequence[Status]) -> Knowledge | None:
     ratios: dict[str, float] = {}
     for key in status.values:
         if match := _KEY.fullmatch(key):
-            rows.setdefault(int(match[1]), {})[match[2]] = _number(status, key)
+            rows.setdefault(int(match[1]), {})[match[2]] = read_number(status, key)
         elif key.endswith(f' {NOW}'):
-            ratios[key.removesuffix(f' {NOW}')] = _number(status, key)
+            ratios[key.removesuffix(f' {NOW}')] = read_number(status, key)
     return Knowledge(
-        windows=int(_number(status, 'windows')),
+        windows=int(read_number(status, 'windows')),
         ratios=ratios,
-        advised=int(_number(status, 'advised')),
-        looked_up=_number(status, 'looked up'),
+        advised=int(read_number(status, 'advised')),
+        looked_up=read_number(status, 'looked up'),
         proposals=tuple(_proposal(number, rows[number]) for number in sorted(rows)),
         trouble='' if status.level == OK else status.message,
     )
@@ -77,14 +76,3 @@ def _proposal(number: int, row: dict[str, float]) -> Proposal:
     port, starboard, speed, minutes, nats, rate, tension, deepest = (row[name] for name in _COLUMNS)
     target = TrialTarget(port=port, starboard=starboard, speed=speed)
     return Proposal(target, minutes, nats, rate, tension, deepest)
-
-
-def _number(status: Status, key: str) -> float:
-    text = status.values.get(key, '')
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise MessageError(f'{NAME}: {key} is {text!r}; expected a number')
-    return value
