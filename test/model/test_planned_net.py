@@ -9,12 +9,14 @@ import yaml
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.resources import share_path
+from trawl_ros.gear.findings import findings
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.net_plan import NetPlanRecord, cut_slope
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.net.planned_cloth import PlannedCloth, mesh_angle, shielding
 from trawl_ros.model.net.planned_mouth import PlannedMouth
+from trawl_ros.solver.equilibrium import steady_state
 
 AROUND = (24, 36, 48)
 
@@ -85,6 +87,12 @@ SIX_PANELS = [
     piece('body', 'lower', 110, 40, 60, section='belly'),
     piece('codend', 'all', 140, 100, 20, section='codend'),
 ]
+ROPES = [
+    piece('body', panel, count, count, 15, section='ropes', orientation='ropes')
+    | {'rtex': None, 'twine_diameter_mm': 12.0}
+    for panel, count in (('upper', 110), ('side', 60), ('lower', 110))
+]
+ROPE_FRONT = [*WHOLE_SIDES[:3], *ROPES, *WHOLE_SIDES[3:]]
 NO_SIDE_WINGS = [SQUARE[0], SQUARE[4] | {'long_meshes': 30}, *WHOLE_SIDES[3:]]
 PLANS = {
     'published': None,
@@ -93,6 +101,7 @@ PLANS = {
     'square': SQUARE,
     'no side wings': NO_SIDE_WINGS,
     'six panels': SIX_PANELS,
+    'ropes ahead': ROPE_FRONT,
 }
 
 
@@ -335,6 +344,18 @@ def test_a_cutting_rate_stands_for_a_missing_count(tmp_path: Path) -> None:
             "panels of section '800 mm' are 20 to 32 m long, expected one length",
         ),
         (lambda p: p[0].update(material='cotton'), "found 'cotton', expected 'PA'"),
+        (
+            lambda p: p[0].update(orientation='ropes'),
+            'orientation: found ropes in a wing, 16 at its front',
+        ),
+        (
+            lambda p: p[5].update(orientation='ropes', back_meshes=p[5]['front_meshes']),
+            "section '800 mm' has ropes beside or behind netting",
+        ),
+        (
+            lambda p: p[13].update(orientation='ropes', back_meshes=p[13]['front_meshes']),
+            "section '120 mm' has ropes beside or behind netting",
+        ),
     ],
 )
 def test_a_plan_that_cannot_be_is_refused(tmp_path: Path, change: Any, part: str) -> None:
@@ -486,3 +507,35 @@ def test_square_meshes_are_refused_in_panels_alone(
         return
     with pytest.raises(GearError, match=message):
         loaded(tmp_path, data)
+
+
+def test_ropes_run_straight_from_the_mouth_to_the_netting(tmp_path: Path) -> None:
+    data = plan_data()
+    data['netting']['plan']['pieces'] = ROPE_FRONT
+    mesh = cut_to(loaded(tmp_path, data), 24).net_mesh
+    angle = np.arctan2(mesh.positions[:, 1], mesh.positions[:, 2])
+    straight = [bar for bar in mesh.bars if abs(angle[bar.start] - angle[bar.end]) < 1e-12]
+    straight = [bar for bar in straight if bar.group == 'netting']
+    # 340 ropes of 12 m and 12 mm, in 24 lines.
+    assert sum(bar.rest for bar in straight) == pytest.approx(24 * 12.0)
+    assert sum(bar.area * bar.rest for bar in straight) == pytest.approx(340 * 12.0 * 0.012)
+    assert {bar.shielding for bar in straight} == {1.0}
+    first = {bar.start for bar in straight} - {bar.end for bar in straight}
+    assert len(first) == 24
+    assert mesh.headrope[len(mesh.headrope) // 2] in first
+
+
+def test_a_gear_with_a_front_of_ropes_is_towed(tmp_path: Path) -> None:
+    data = plan_data()
+    data['netting']['around'] = 24
+    rows = data['netting']['plan']['pieces']
+    for row in rows:
+        if row.get('section') == '800 mm':
+            row.update(orientation='ropes', back_meshes=row['front_meshes'], twine_diameter_mm=10.0)
+            del row['rtex']
+    gear = loaded(tmp_path, data)
+    assert [f for f in findings(gear) if 'pieces' in f.key] == []
+    model = build_model(gear)
+    found = steady_state(model, 400.0, 1.3)
+    assert 10.0 < found.observables.vertical_opening < 30.0
+    assert 20.0 < found.observables.horizontal_opening < 60.0

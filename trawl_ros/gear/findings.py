@@ -134,7 +134,8 @@ def _plan(gear: GearRecord, plan: NetPlanRecord) -> Iterator[GearFinding]:
     number = {id(piece): f'netting.plan.pieces[{n}]' for n, piece in enumerate(plan.pieces)}
     for piece in plan.pieces:
         key = number[id(piece)]
-        yield from _twine(key, piece.twine.diameter, piece.mesh)
+        if piece.orientation != 'ropes':
+            yield from _twine(key, piece.twine.diameter, piece.mesh)
         yield from _cut(key, piece)
         filled = piece.twine.tex / piece.twine.fibre.density / piece.twine.section
         if not 0.35 <= filled <= 1.0:
@@ -148,6 +149,8 @@ def _plan(gear: GearRecord, plan: NetPlanRecord) -> Iterator[GearFinding]:
     for ahead, behind in pairwise(rows):
         if (ahead[0].orientation == 'square') != (behind[0].orientation == 'square'):
             continue  # joined as the net maker counts, stretched meshes to open ones
+        if ahead[0].orientation == 'ropes':
+            continue  # ropes spread or draw together from the frame to the netting
         key = number[id(behind[0])]
         if {p.panel for p in ahead} == {p.panel for p in behind}:
             back = {p.panel: p.widths[1] for p in ahead}

@@ -10,7 +10,7 @@ from trawl_ros.gear.twine import Material, Twine, twine_of
 
 Part = Literal['wing', 'body', 'codend']
 Panel = Literal['upper', 'lower', 'side', 'side_upper', 'side_lower', 'all']
-Orientation = Literal['T0', 'T90', 'square']
+Orientation = Literal['T0', 'T90', 'square', 'ropes']
 Meshes = Annotated[float, Field(ge=0, le=100_000)]
 
 WING_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower')
@@ -53,7 +53,9 @@ class PieceRecord(Record):
     Counts of a ``wing`` are those of one of its two pieces (or of one, where ``pieces`` is 1: a
     panel that reaches further forward over its whole width), those of a panel of the ``body`` are
     its own, and those of ``all`` go all around. Where the count of one edge is missing it follows
-    from the ``cut``. Counts of ``square`` meshes are those of their bars.
+    from the ``cut``. Counts of ``square`` meshes are those of their bars. Where there are ``ropes``
+    in place of meshes, counts across are ropes, and ``mesh_mm`` is what one of them takes of the
+    edge that is hung on the frame.
     """
 
     part: Part
@@ -104,6 +106,14 @@ class PieceRecord(Record):
                 'bars of square meshes lie along and across the flow, which is modelled in netting '
                 'that goes all around ahead of the codend, and in the codend'
             )
+        if self.orientation == 'ropes' and (
+            self.part != 'body' or self.front_meshes != self.back_meshes
+        ):
+            raise ValueError(
+                f'orientation: found ropes in a {self.part}, {self.front_meshes:g} at its front '
+                f'and {self.back_meshes:g} at its back, expected them in the body, and as many '
+                'at its back as at its front'
+            )
         if self.cut is not None:
             try:
                 cut_slope(self.cut)
@@ -149,7 +159,12 @@ class PieceRecord(Record):
 
     @property
     def twine_length(self) -> float:
-        """Length of twine (m) in all such pieces: two meshes long per mesh, two bars per square."""
+        """Length of twine or ropes (m) in all such pieces.
+
+        A mesh has two meshes' length of twine, a square one two bars.
+        """
+        if self.orientation == 'ropes':
+            return self.front_meshes * self.length * self.twines * self.count
         meshes = 0.5 * (self.front_meshes + self.back_meshes) * self.long_meshes
         return 2 * self.pitch * meshes * self.twines * self.count
 
@@ -214,6 +229,17 @@ class NetPlanRecord(Record):
                         f"pieces: panels of section '{name}' are {min(long):g} to {max(long):g} m "
                         'long, expected one length'
                     )
+        behind_netting = False
+        for name, pieces in self.sections('body'):
+            ropes = {piece.orientation == 'ropes' for piece in pieces}
+            if len(ropes) > 1 or (behind_netting and True in ropes):
+                raise ValueError(
+                    f"pieces: section '{name}' has ropes beside or behind netting, expected all of "
+                    'its panels, and those ahead of it, to be ropes'
+                )
+            behind_netting |= False in ropes
+        if not behind_netting:
+            raise ValueError('pieces: found no netting behind the ropes, expected some')
         for panel in ('upper', 'lower'):
             if not self.wing(panel):
                 raise ValueError(f'pieces: found no wing of the {panel} panel, expected one')

@@ -14,7 +14,8 @@ class SectionRecord(Record):
 
     ``shielding`` is the part of the drag of single twines that is left in this netting, ``twines``
     the number of them side by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of
-    their own, or lie along and across (``square``).
+    their own, or lie along and across (``square``). ``ropes`` of a plan have no meshes:
+    ``mesh_m`` is what one of them takes of the circumference at the mouth.
     """
 
     name: str
@@ -30,6 +31,7 @@ class SectionRecord(Record):
     shielding: Annotated[float, Field(gt=0, le=1)] = 1.0
     mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)] | None = None
     square: bool = False
+    ropes: bool = False
 
 
 class NettingRecord(Record):
@@ -76,4 +78,6 @@ class NettingRecord(Record):
                 raise ValueError(f'{key}: missing, expected it, or a plan')
             if self.plan is not None and value is not None:
                 raise ValueError(f'{key}: found beside a plan, expected one of them')
+        if any(section.ropes for section in (*self.body, *self.codend)):
+            raise ValueError('body: found ropes, expected them in a plan, which has the wings')
         return self

@@ -41,7 +41,13 @@ def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
         style.quiet(axes)
         for piece, corners in _shapes(plan, panel, ahead):
             axes.add_patch(
-                Polygon(corners, facecolor=FACES[piece.part], edgecolor='#333333', linewidth=0.8)
+                Polygon(
+                    corners,
+                    facecolor=FACES[piece.part],
+                    edgecolor='#333333',
+                    linewidth=0.8,
+                    hatch='|' if piece.orientation == 'ropes' else None,
+                )
             )
             long = corners[2][1] - corners[0][1]
             if abs(long) > LABEL_LENGTH * (ahead + rear) or piece.part == 'wing':
@@ -101,14 +107,18 @@ def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], w
     fits = piece.part == 'wing' or right > ROOM * wide
     knots = ', knotless' if piece.knots == 'knotless' else ''
     whole = ' around' if piece.panel == 'all' else ''
+    counts = f'{piece.mesh_mm:g} mm, {piece.front_meshes:g}–{piece.back_meshes:g} × '
+    counts += f'{piece.long_meshes:g}{whole}'
+    ropes = piece.orientation == 'ropes'
+    if ropes:
+        counts, knots = f'{piece.front_meshes:g} ropes of {piece.length:.3g} m', ''
     axes.text(
         across if fits else right + 0.02 * wide,
         behind,
-        f'{piece.mesh_mm:g} mm, {piece.front_meshes:g}–{piece.back_meshes:g} × '
-        f'{piece.long_meshes:g}{whole}\n{piece.material} '
-        f'{1e3 * piece.twine.diameter:.2g} mm{knots}',
+        f'{counts}\n{piece.material} {1e3 * piece.twine.diameter:.2g} mm{knots}',
         ha='center' if fits else 'left',
         va='center',
         fontsize=5.5,
         parse_math=False,
+        backgroundcolor=FACES[piece.part] if ropes else 'none',
     )

@@ -111,7 +111,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
     def sums(k: int, row: NettingRow, j: int, other: int) -> dict[str, float]:
         front = (2 * j + row.odd) / (2 * row.around)
         # The back edge has half as many nodes where meshes are joined.
-        odd = not row.odd and not row.joins
+        odd = not (row.odd or row.joins or row.straight)
         back = (2 * other + odd) / (2 * row.columns)
         return cloth.sums(row, front + 0.5 * ((back - front + 0.5) % 1.0 - 0.5))
 

@@ -49,7 +49,7 @@ def shielding(piece: PieceRecord, net: NettingRecord) -> float:
     the sheet as well: the wakes of twines lie along it, and what goes through a slanting sheet
     leaves the momentum of that motion too (docs/model.md, Netting).
     """
-    if net.plan is not None and not net.plan.shielded:
+    if piece.orientation == 'ropes' or (net.plan is not None and not net.plan.shielded):
         return 1.0
     bar, diameter = 0.5 * piece.mesh, piece.twine.diameter * piece.twines
     angle = np.pi / 4 if piece.orientation == 'square' else mesh_angle(piece, net)
@@ -76,12 +76,13 @@ def section_of(
         twine_density_kg_m3=twine.density(SEA),
         twine_modulus_pa=twine.fibre.modulus,
         twines=piece.twines,
-        knotless=piece.knots == 'knotless',
+        knotless=piece.knots == 'knotless' or piece.orientation == 'ropes',
         shielding=shielding(piece, net),
         mesh_angle_deg=(
             float(np.degrees(mesh_angle(piece, net))) if piece.orientation == 'T90' else None
         ),
         square=piece.orientation == 'square',
+        ropes=piece.orientation == 'ropes',
     )
 
 
@@ -170,7 +171,7 @@ class PlannedCloth:
         """Sums of `Profile.per_mesh_column` for the bar of a row whose middle lies at this part of
         the circumference from the top.
         """
-        width = 1.0 / (row.around if row.joins else 2 * row.around)
+        width = 1.0 / (row.around if row.joins or row.straight else 2 * row.around)
         place = min(middle % 1.0, 1.0 - middle % 1.0)
         x = 0.5 * (row.front + row.back)
         upper, middle_of_side, lower = self.bounds(x)

@@ -1,6 +1,7 @@
 """Netting along its length: the profile of the real one, and the rows of bars grouped from it."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class NettingRow:
 
     ``around`` nodes are on its front edge, those of an odd edge (``odd``) half a pitch further
     than the top. With ``joins`` each two of them are tied to one of the ``around / 2`` nodes of
-    the back edge.
+    the back edge. Those of a ``straight`` row are tied to the one behind them, by a single bar.
     """
 
     front: float
@@ -29,6 +30,7 @@ class NettingRow:
     around: int
     odd: bool
     joins: bool
+    straight: bool = False
 
     @property
     def rest(self) -> float:
@@ -139,8 +141,9 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
     GearError
         If they have more nodes than `GEAR_NODES` allows, or there are too few to carry a kite.
     """
-    rows: list[NettingRow] = []
-    x, odd, pending, nodes = 0.0, False, list(halved_at), 0
+    rows = _of_ropes(profile, around)
+    ropes, nodes = len(rows), around * len(rows)
+    x, odd, pending = rows[-1].back if rows else 0.0, False, list(halved_at)
     while True:
         _, circumference = profile.at(x)
         # The circumference shrinks along the row: use the one at its middle.
@@ -150,19 +153,42 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
             break
         nodes += around
         if nodes > GEAR_NODES.value:
-            raise GearError(
-                f'netting.body: {profile.length:g} m in rows of {end - x:g} m have more than '
-                f'{GEAR_NODES}, expected fewer meshes around or less netting'
-            )
+            raise _too_fine(profile, end - x)
         joins = bool(pending) and circumference <= pending[0] and odd and around % 2 == 0
         rows.append(NettingRow(x, end, around, odd, joins))
         x, odd = end, not odd
         if joins:
             around, odd = around // 2, False
             del pending[0]
-    if len(rows) < LEAST_ROWS:
+    if len(rows) - ropes < LEAST_ROWS:
+        behind = profile.length - (rows[ropes - 1].back if ropes else 0.0)
         raise GearError(
-            f'netting.body: {profile.length:g} m of netting are {len(rows)} rows of the mesh, '
+            f'netting.body: {behind:g} m of netting are {len(rows) - ropes} rows of the mesh, '
             f'expected at least {LEAST_ROWS}: more meshes around or more netting'
         )
     return tuple(rows)
+
+
+def _of_ropes(profile: Profile, around: int) -> list[NettingRow]:
+    """Rows of the ropes ahead of the netting, each about as long as one of netting would be."""
+    rows: list[NettingRow] = []
+    for section, front, back in zip(profile.sections, profile.edges, profile.edges[1:]):
+        if not section.ropes:
+            break
+        length = section.front_circumference_m / (2 * around)
+        number = max(1.0, round(section.length_m / length))
+        if number * around > GEAR_NODES.value:
+            raise _too_fine(profile, length)
+        edges = np.linspace(front, back, int(number) + 1).tolist()
+        rows += [
+            NettingRow(start, end, around, odd=False, joins=False, straight=True)
+            for start, end in pairwise(edges)
+        ]
+    return rows
+
+
+def _too_fine(profile: Profile, row: float) -> GearError:
+    return GearError(
+        f'netting.body: {profile.length:g} m in rows of {row:g} m have more than {GEAR_NODES}, '
+        'expected fewer meshes around or less netting'
+    )

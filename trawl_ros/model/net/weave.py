@@ -161,6 +161,8 @@ def _bar(
 
 def _behind(row: NettingRow, j: int) -> tuple[int, ...]:
     """Nodes of the back edge that the bars of node ``j`` of the front edge go to."""
+    if row.straight:
+        return (j,)
     if row.joins:
         return (((j + 1) // 2) % row.columns,)
     return ((j - 1 + row.odd) % row.around, (j + row.odd) % row.around)
