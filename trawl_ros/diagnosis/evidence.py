@@ -45,10 +45,16 @@ class Evidence:
 
     def chi2(self, block: Sequence[int]) -> float:
         """Score statistic: decrease of the χ² of all data with these values free."""
+        if len(block) == 1:
+            # Asked for thousands of times.
+            own = self.information[block[0], block[0]]
+            return float(self.score[block[0]] ** 2 / own) if own else 0.0
         return float(self.score[list(block)] @ self.values(block))
 
     def degrees_of_freedom(self, block: Sequence[int]) -> int:
         """Degrees of freedom: rank of the information on these values."""
+        if len(block) == 1:
+            return int(abs(self.information[block[0], block[0]]) > BLIND)
         return int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
 
     def strength(self, block: Sequence[int], doubt: float = 1.0) -> float:

@@ -1,7 +1,7 @@
 """Joint refit of boards and effects, all windows solved anew."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -47,11 +47,14 @@ class Refit:
         At rest, with all windows that have a steady state.
     estimate
         Its estimate of coefficients (12,) and values behind them.
+    predicted
+        Windows that it was not fitted to, once they are predicted, by their numbers.
     """
 
     wanted: tuple[Candidate, ...]
     estimator: Estimator
     estimate: Estimate
+    predicted: dict[int, Linearised] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def fit(self) -> Fit:

@@ -57,6 +57,12 @@ class EffectSet:
             readings = active.effect.apply_to_sensors(active.values, readings, at)
         return readings
 
+    @property
+    def on_sensors(self) -> bool:
+        """True if any effect changes what sensors show."""
+        plain = Effect.apply_to_sensors
+        return any(type(active.effect).apply_to_sensors is not plain for active in self.effects)
+
     def of(self, effect: Effect) -> ActiveEffect:
         """Effect with its values in this set, neutral where it is absent."""
         same = [active for active in self.effects if active.name == effect.name]

@@ -19,6 +19,7 @@ from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
+from trawl_ros.solver.likeness import same_forces, same_observables
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 
 PART = 1e-4
@@ -38,6 +39,7 @@ def shown_values(acting: EffectSet, values: FloatArray, at: Situation) -> FloatA
 
 def chained(
     model: GearModel,
+    gear: GearModel,
     found: Equilibrium,
     jacobian: FloatArray,
     acting: EffectSet,
@@ -48,8 +50,8 @@ def chained(
 
     Parameters
     ----------
-    model
-        The gear with board coefficients set, without any effect.
+    model, gear
+        The gear with board coefficients set, without any effect, and with ``acting``.
     found
         The steady state with ``acting``.
     jacobian
@@ -68,13 +70,14 @@ def chained(
             _slopes(model, found, 2.0 * INPUT_STEP,
                     [(acting, one, replace(at, inputs=_three(one))) for one in both])
         )  # fmt: skip
-    by_inputs = _carried(model, found, jacobian, acting, rows, at)
+    by_inputs = _carried(gear, found, jacobian, acting, rows, at)
     by_coefficients = sensor_slopes(acting, found, at) @ jacobian[:, :-3]
     return np.hstack((by_coefficients, by_inputs))
 
 
 def by_effects(
     model: GearModel,
+    gear: GearModel,
     found: Equilibrium,
     jacobian: FloatArray,
     acting: EffectSet,
@@ -86,8 +89,8 @@ def by_effects(
 
     Parameters
     ----------
-    model
-        The gear with board coefficients set, without any effect.
+    model, gear
+        The gear with board coefficients set, without any effect, and with ``acting``.
     found
         The steady state with ``acting``.
     jacobian
@@ -114,7 +117,7 @@ def by_effects(
                 for sign in (1.0, -1.0)
             ]
             rows.append(_slopes(model, found, 2.0 * size, [(one, inputs, at) for one in both]))
-    return _carried(model, found, jacobian, acting, rows, at)
+    return _carried(gear, found, jacobian, acting, rows, at)
 
 
 def _slopes(
@@ -126,22 +129,24 @@ def _slopes(
     """Slopes of forces (dof,), observables, true inputs (3,) and sensor readings, between two
     cases that are ``size`` apart, at a gear that stays where it is.
     """
-    cases = []
+    gears, cases = [], []
     for there, inputs, at in both:
-        gear = there.gear(model, at)
-        cases.append(
-            (
-                forces(gear, found.state, found.tow),
-                observe(gear, found.state, found.tow).array(),
-                there.apply_to_inputs(inputs, at),
-                shown_values(there, found.observables.array(), at),
-            )
-        )
-    return tuple((up - down) / size for up, down in zip(*cases, strict=True))
+        gears.append(there.gear(model, at))
+        readings = shown_values(there, found.observables.array(), at)
+        cases.append((there.apply_to_inputs(inputs, at), readings))
+    up, down = gears
+    at_rest = found.state, found.tow
+    push, direct = np.zeros(model.dof), np.zeros(len(OBSERVABLES))
+    # Most effects change few of the properties that these two are made of, or none.
+    if not same_forces(up, down):
+        push = (forces(up, *at_rest) - forces(down, *at_rest)) / size
+        if not same_observables(up, down):
+            direct = (observe(up, *at_rest).array() - observe(down, *at_rest).array()) / size
+    return push, direct, *((one - other) / size for one, other in zip(*cases, strict=True))
 
 
 def _carried(
-    model: GearModel,
+    gear: GearModel,
     found: Equilibrium,
     jacobian: FloatArray,
     acting: EffectSet,
@@ -150,7 +155,6 @@ def _carried(
 ) -> FloatArray:
     """Change of the readings (n_observables, n) by such slopes, once the gear has come to rest."""
     pushes, direct, towed, shown = (np.column_stack(part) for part in zip(*rows, strict=True))
-    gear = acting.gear(model, at)
     along = np.zeros(direct.shape)
     if pushes.any():
         shifts = solve_refined(rest_linearisation(gear, found.state, found.tow).factor, pushes)
@@ -166,7 +170,7 @@ def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> Float
     Most sensors show their own observable alone; swapped ones show that of the other side.
     """
     values = found.observables.array()
-    if not acting:
+    if not acting.on_sensors:
         return np.eye(len(values))
     sizes = 1e-6 * np.maximum(np.abs(values), 1e-3)
     columns = []

@@ -176,11 +176,11 @@ class Predictor:
         point = OperatingPoint(port, starboard, through)
         found = find_equilibrium(gear, point, start, cold=start is None)
         values, jacobian = found.observables.array(), sensitivities(gear, found)
-        shown = chained(board, found, jacobian, acting, inputs, at)
+        shown = chained(board, gear, found, jacobian, acting, inputs, at)
         extra = np.zeros((len(values), len(coefficients) - len(COEFFICIENTS)))
         if self.free and not self.absent:
             wanted = [acting.of(effect) for effect in self.free]
-            extra = by_effects(board, found, jacobian, acting, wanted, inputs, at)
+            extra = by_effects(board, gear, found, jacobian, acting, wanted, inputs, at)
         answer = Prediction(
             shown_values(acting, values, at),
             np.hstack((shown[:, :-3], extra, shown[:, -3:])),
@@ -210,5 +210,6 @@ class Predictor:
         """
         at, acting = self._situation(inputs), self.acting(coefficients)
         board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
-        jacobian = sensitivities(acting.gear(board, at), found)
-        return by_effects(board, found, jacobian, acting, wanted, inputs, at)
+        gear = acting.gear(board, at)
+        jacobian = sensitivities(gear, found)
+        return by_effects(board, gear, found, jacobian, acting, wanted, inputs, at)

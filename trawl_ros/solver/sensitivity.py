@@ -10,8 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.assembly import board_loads, forces
-from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.assembly import forces
+from trawl_ros.model.board import own_load_slopes
+from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.numerics import STEP, stepped
 from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.model.state import State, Tow, TowSlopes, held_boundary
@@ -25,28 +26,20 @@ PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
 """Parameters of the derivatives: per unit coefficient, per m, per m, per m/s."""
 
 
-def _perturbed(model: GearModel, found: Equilibrium, index: int) -> tuple[GearModel, State, Tow]:
-    """Model, state and tow with parameter ``index`` perturbed by an imaginary step."""
+def _perturbed(found: Equilibrium, place: int) -> tuple[State, Tow]:
+    """State and tow with an imaginary step of port or starboard warp, or speed."""
     state, tow = found.state, found.tow
-    if index < len(COEFFICIENTS):
-        values = model.coefficients.astype(complex)
-        values[index] += 1j * STEP
-        return model.with_coefficients(values), state, tow
-    side = index - len(COEFFICIENTS)
-    if side < 2:
+    if place < 2:
         lengths = tow.lengths.astype(complex)
-        lengths[side] += 1j * STEP
-        return model, state, replace(tow, lengths=lengths)
+        lengths[place] += 1j * STEP
+        return state, replace(tow, lengths=lengths)
     ahead = _ahead(found)
-    return (
-        model,
-        replace(
-            state,
-            node_velocities=stepped(state.node_velocities, ahead),
-            board_velocities=stepped(state.board_velocities, ahead),
-        ),
-        replace(tow, block_velocities=stepped(tow.block_velocities, ahead)),
+    towed = replace(
+        state,
+        node_velocities=stepped(state.node_velocities, ahead),
+        board_velocities=stepped(state.board_velocities, ahead),
     )
+    return towed, replace(tow, block_velocities=stepped(tow.block_velocities, ahead))
 
 
 def _ahead(found: Equilibrium) -> FloatArray:
@@ -62,15 +55,21 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     (n_observables, n_parameters) array
         In the orders of `OBSERVABLES` and `PARAMETERS`.
     """
-    moved = [_perturbed(model, found, index) for index in range(len(PARAMETERS))]
+    number, state = len(COEFFICIENTS), found.state
     pushes = np.zeros((model.dof, len(PARAMETERS)))
-    boards = slice(model.dof - 12, None)
-    for index, (changed, state, tow) in enumerate(moved):
-        if index < len(COEFFICIENTS):
-            # Coefficients push the boards and nothing else.
-            pushes[boards, index] = board_loads(changed, state).imag.ravel() / STEP
-        else:
-            pushes[:, index] = forces(changed, state, tow).imag / STEP
+    # Coefficients push the boards and nothing else.
+    pushes[-12:, :number] = own_load_slopes(
+        model.board,
+        model.coefficients,
+        OUTWARD,
+        state.board_positions,
+        state.board_rotations,
+        state.board_velocities,
+        state.board_rates,
+        model.water,
+    ).reshape(12, number)
+    for side in range(3):
+        pushes[:, number + side] = forces(model, *_perturbed(found, side)).imag / STEP
     shifts = solve_refined(rest_linearisation(model, found.state, found.tow).factor, pushes)
     found.remember(Tangent(model.coefficients, model.rest, shifts))
     along = shifts, *_changed_motion(model, found)

@@ -5,7 +5,7 @@ import numpy as np
 from trawl_ros.estimation.fit.error_terms import TERMS
 from trawl_ros.estimation.fit.estimate import NetFactor, TowBias
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.nuisance import calibration_root, joint_root
+from trawl_ros.estimation.fit.redundancy import calibration_root, joint_root
 from trawl_ros.records.channels import CHANNELS
 
 

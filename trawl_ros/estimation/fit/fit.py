@@ -18,15 +18,10 @@ from trawl_ros.estimation.fit.error_terms import (
 from trawl_ros.estimation.fit.estimate import Posterior, posterior_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised, measured_inputs
-from trawl_ros.estimation.fit.nuisance import (
-    NuisanceElimination,
-    clipped_variance,
-    eliminate_nuisance,
-    redundancy_numbers,
-    triangular,
-)
+from trawl_ros.estimation.fit.nuisance import NuisanceElimination, eliminate_nuisance, triangular
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import FARTHEST, ParameterVector
+from trawl_ros.estimation.fit.redundancy import clipped_variance, redundancy_numbers
 
 AS_STATED = (1.0,) * len(GROUPS)
 """Factors on the stated noise before anything is known of it."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.special import erf, ndtr
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.fit.error_stack import ErrorStack, stacked
 from trawl_ros.estimation.fit.error_terms import TowErrors
 
 ROUNDS = 50
@@ -117,18 +117,27 @@ def eliminate_nuisance(
     weights
         Huber weights (n, k) of each tow that are taken as they are; found if None.
     """
+    if not tows:
+        return _nothing(jacobian.shape[2])
+    stack = stacked(tows, scales, residual, jacobian)
     if weights is not None:
-        return _solved(tows, weights, scales, residual, jacobian, huber)
+        return _solved(stack, tows, weights, huber)
     guess: Sequence[FloatArray] = [np.ones(tow.noise.shape) for tow in tows]
     before: Sequence[FloatArray] | None = None
     for _ in range(ROUNDS):
-        elimination = _solved(tows, guess, scales, residual, jacobian, huber)
+        elimination = _solved(stack, tows, guess, huber)
         updated = reweighted(elimination, huber)
         steps = [a - b for a, b in zip(updated, guess, strict=True)]
         if max((float(np.max(np.abs(step))) for step in steps), default=0.0) < ALIKE:
             break
         guess, before = _extrapolated(updated, steps, before)
     return elimination
+
+
+def _nothing(q: int) -> NuisanceElimination:
+    """Elimination of no errors, from no tows."""
+    none = np.zeros(0)
+    return NuisanceElimination((), np.zeros((q, q)), np.zeros(q), np.zeros((0, q)), none, 0.0)
 
 
 def _extrapolated(
@@ -157,43 +166,30 @@ def reweighted(elimination: NuisanceElimination, huber: float) -> tuple[FloatArr
 
 
 def _solved(
+    stack: ErrorStack,
     tows: Sequence[TowErrors],
     weights: Sequence[FloatArray],
-    scales: FloatArray,
-    residual: FloatArray,
-    jacobian: FloatArray,
     huber: float,
 ) -> NuisanceElimination:
-    m = tows[0].model.shape[2] if tows else 0
-    q = jacobian.shape[2]
-    whitened, remainders = [], []
-    for tow, weight in zip(tows, weights, strict=True):
-        std = np.where(tow.present, tow.noise * scales, 1.0)
-        roots = _roots(tow, std, weight)
-        columns = np.concatenate(
-            (
-                tow.calibration,
-                tow.model,
-                jacobian[tow.rows],
-                residual[tow.rows][:, :, None],
-            ),
-            axis=2,
-        )
-        solved = np.asarray(np.linalg.solve(roots, columns), np.float64)
-        rows = solved.reshape(-1, columns.shape[2])
-        p = tow.calibration.shape[2]
-        triangle = _eliminated(rows, p)
-        whitened.append((std, roots, triangle[:p]))
-        remainders.append(triangle[p:, p:])
-    rest = np.vstack(remainders) if remainders else np.zeros((0, m + q + 1))
+    t, n, k, width = stack.columns.shape
+    p, m = tows[0].calibration.shape[2], tows[0].model.shape[2]
+    q = width - p - m - 1
+    every = np.ones(stack.std.shape)
+    for place, weight in enumerate(weights):
+        every[place, : len(weight)] = weight
+    diagonal = (stack.std**2 / every)[..., None] * np.eye(k)
+    roots = np.asarray(np.linalg.cholesky(diagonal + stack.shared), np.float64)
+    inverse = np.asarray(np.linalg.inv(roots), np.float64)
+    rows = (inverse @ stack.columns).reshape(t, n * k, width)
+    triangles = _eliminated(rows, p)
+    rest = triangles[:, p:, p:].reshape(-1, m + q + 1)
     triangle = _eliminated(rest, m)
     of_model, of_coefficients = triangle[:m], triangle[m:, m:]
     padded = np.vstack((of_coefficients, np.zeros((q + 1, q + 1))))
     last = triangular(padded)
     model = solve_triangular(of_model[:, :m], of_model[:, -1])
-    tow_parts = tuple(
-        _explained(tow, weight, *solution, model, residual, huber)
-        for tow, weight, solution in zip(tows, weights, whitened, strict=True)
+    tow_parts = _explained(
+        stack, tows, weights, roots, inverse, every, triangles[:, :p], model, huber
     )
     return NuisanceElimination(
         tows=tow_parts,
@@ -205,17 +201,11 @@ def _solved(
     )
 
 
-def _roots(tow: TowErrors, std: FloatArray, weights: FloatArray) -> FloatArray:
-    variance = std**2 / weights
-    diagonal = variance[:, :, None] * np.eye(variance.shape[1])
-    return np.linalg.cholesky(diagonal + tow.inputs @ tow.inputs.transpose(0, 2, 1))
-
-
 def _eliminated(rows: FloatArray, number: int) -> FloatArray:
     """Triangular rows with unit normal priors on the first columns added."""
-    prior = np.zeros((number, rows.shape[1]))
-    prior[:, :number] = np.eye(number)
-    return triangular(np.vstack((prior, rows)))
+    prior = np.zeros((*rows.shape[:-2], number, rows.shape[-1]))
+    prior[..., :number] = np.eye(number)
+    return triangular(np.concatenate((prior, rows), axis=-2))
 
 
 def triangular(rows: FloatArray) -> FloatArray:
@@ -224,99 +214,41 @@ def triangular(rows: FloatArray) -> FloatArray:
 
 
 def _explained(
-    tow: TowErrors,
-    weights: FloatArray,
-    std: FloatArray,
+    stack: ErrorStack,
+    tows: Sequence[TowErrors],
+    weights: Sequence[FloatArray],
     roots: FloatArray,
-    triangle: FloatArray,
+    inverse: FloatArray,
+    every: FloatArray,
+    triangles: FloatArray,
     model: FloatArray,
-    residual: FloatArray,
     huber: float,
-) -> TowPart:
-    p, m = len(triangle), len(model)
-    right = triangle[:, -1] - triangle[:, p : p + m] @ model
-    calibration = solve_triangular(triangle[:, :p], right)
-    left = residual[tow.rows] - tow.calibration @ calibration - tow.model @ model
-    half = np.linalg.solve(roots, left[:, :, None])
-    solved = np.linalg.solve(roots.transpose(0, 2, 1), half)
-    inputs = (tow.inputs.transpose(0, 2, 1) @ solved)[:, :, 0]
-    own = std / weights * solved[:, :, 0] * tow.present
+) -> tuple[TowPart, ...]:
+    """Find the most likely errors, tow by tow."""
+    p, m = triangles.shape[1], len(model)
+    right = triangles[..., -1] - triangles[..., p : p + m] @ model
+    calibration = np.linalg.solve(triangles[..., :p], right[..., None])[:, None]
+    of_tow, of_model = stack.columns[..., :p], stack.columns[..., p : p + m]
+    left = stack.residual - (of_tow @ calibration)[..., 0] - of_model @ model
+    solved = inverse.swapaxes(2, 3) @ (inverse @ left[..., None])
+    inputs = (stack.inputs.swapaxes(2, 3) @ solved)[..., 0]
+    own = stack.std / every * solved[..., 0] * stack.present
     size = np.abs(own)
     loss = np.where(size <= huber, 0.5 * size**2, huber * (size - 0.5 * huber))
-    squares = float(np.sum(inputs**2) + calibration @ calibration)
-    return TowPart(
-        errors=tow,
-        std=std,
-        weights=weights,
-        roots=roots,
-        triangle=triangle[:, :-1],
-        own=own,
-        calibration=calibration,
-        inputs=inputs,
-        cost=float(loss.sum() + 0.5 * squares),
+    calibration = calibration[:, 0, :, 0]
+    squares = np.sum(inputs**2, (1, 2)) + np.sum(calibration**2, 1)
+    costs = loss.sum((1, 2)) + 0.5 * squares
+    return tuple(
+        TowPart(
+            errors=tow,
+            std=stack.std[place, : len(tow.rows)],
+            weights=weights[place],
+            roots=roots[place, : len(tow.rows)],
+            triangle=triangles[place, :, :-1],
+            own=own[place, : len(tow.rows)],
+            calibration=calibration[place],
+            inputs=inputs[place, : len(tow.rows)],
+            cost=float(costs[place]),
+        )
+        for place, tow in enumerate(tows)
     )
-
-
-def redundancy_numbers(
-    elimination: NuisanceElimination, jacobian: FloatArray, root: FloatArray
-) -> FloatArray:
-    """Redundancy numbers (windows, k): share of each reading's variance kept by its own error.
-
-    The rest goes into inputs, calibration, the model's errors and the coefficients: diagonal of
-    D P with P = V⁻¹ - V⁻¹ X C Xᵀ V⁻¹, where C is the posterior covariance of all those.
-
-    Parameters
-    ----------
-    elimination
-        From `eliminate_nuisance` with the same ``jacobian``.
-    jacobian
-        Sensitivities (windows, k, q) per prior std.
-    root
-        Of the posterior covariance (q, q) of the coefficients, S Sᵀ, in prior std.
-    """
-    shares = np.zeros(jacobian.shape[:2])
-    joint = joint_root(elimination, root)
-    for tow_part in elimination.tows:
-        tow = tow_part.errors
-        p = tow_part.triangle.shape[0]
-        upper = np.concatenate((tow.model, jacobian[tow.rows]), axis=2)
-        solved = solve_triangular(tow_part.triangle[:, :p], np.eye(p))
-        of_tow = tow.calibration @ solved
-        of_upper = upper - of_tow @ tow_part.triangle[:, p:]
-        terms = np.concatenate((of_tow, of_upper @ joint), axis=2)
-        inverse = np.linalg.inv(tow_part.roots)
-        known = inverse.transpose(0, 2, 1) @ (inverse @ terms)
-        own = np.einsum('nij,nij->nj', inverse, inverse) - np.einsum('nkt,nkt->nk', known, known)
-        shares[tow.rows] = np.where(tow.present, tow_part.std**2 / tow_part.weights * own, 0.0)
-    return shares
-
-
-def joint_root(elimination: NuisanceElimination, root: FloatArray) -> FloatArray:
-    """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
-
-    ``root`` (q, q) is that of the coefficients alone.
-    """
-    m, q = len(elimination.model), len(root)
-    solved = solve_triangular(elimination.model_triangle[:, :m], np.eye(m))
-    joint = np.zeros((m + q, m + q))
-    joint[:m, :m] = solved
-    joint[:m, m:] = -solved @ elimination.model_triangle[:, m:] @ root
-    joint[m:, m:] = root
-    return joint
-
-
-def calibration_root(tow_part: TowPart, joint: FloatArray) -> FloatArray:
-    """Root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
-
-    ``joint`` is from `joint_root`.
-    """
-    p = len(tow_part.triangle)
-    solved = solve_triangular(tow_part.triangle[:, :p], np.eye(p))
-    return np.hstack((solved, -solved @ tow_part.triangle[:, p:] @ joint))
-
-
-def clipped_variance(limit: FloatArray) -> FloatArray:
-    """Mean of min(|z|, limit)² for a standard normal z."""
-    density = np.exp(-0.5 * limit**2) / np.sqrt(2.0 * np.pi)
-    mean: FloatArray = erf(limit / np.sqrt(2.0)) + 2.0 * limit * (limit * ndtr(-limit) - density)
-    return mean
