@@ -291,6 +291,9 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
               'too.')  # fmt: skip
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--sample', default=DiscrepancyPlan.sample, show_default=True,
+              type=click.IntRange(0, 10_000), help='So many of all these, drawn by chance, without '
+              'bags; 0 for all.')  # fmt: skip
 @SCHEDULER_OPTION
 def discrepancy(
     out: Path,
@@ -305,6 +308,7 @@ def discrepancy(
     deck: int,
     dynamic: int,
     around: int,
+    sample: int,
     scheduler: str | None,
 ) -> None:
     """Hide effects in trials of another plant, and count how often they are found and named.
@@ -314,7 +318,9 @@ def discrepancy(
     on where it was.
     """
     load_gear(gear)
-    plan = DiscrepancyPlan(gear, seed, clean, inside, outside, pairs, poor, dynamic, deck, around)
+    plan = DiscrepancyPlan(
+        gear, seed, clean, inside, outside, pairs, poor, dynamic, deck, around, sample
+    )
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         trials = run_blind(plan, out, display, scheduler=scheduler, force=force)
     rows = write_discrepancy(out, plan, trials, read_classes(out))

@@ -5,10 +5,12 @@ import os
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime, timezone
 from hashlib import sha256
 from pathlib import Path
+
+import numpy as np
 
 from trawl_ros.core.files import appending
 from trawl_ros.core.version import __version__
@@ -54,9 +56,17 @@ def write_discrepancy(
     )
     drawing = Drawing(page.name, CAPTION, verdicts_figure(trials, classes))
     sections = [*all_sections(trials, classes), Section('What it takes', cost_rows(folder))]
+    if plan.sample:
+        sections = [own for section in sections if (own := _measured(section)).rows]
     rows = write_page(folder, page, sections, [drawing])
     log_scoring(folder, plan, len(trials), rows)
     return rows
+
+
+def _measured(section: Section) -> Section:
+    """Section without what a sample has no trials of."""
+    rows = tuple(row for row in section.rows if np.isfinite(row.value) and (row.value or row.note))
+    return replace(section, rows=rows)
 
 
 def _options(plan: BlindStudyPlan) -> str:
@@ -98,10 +108,18 @@ def _method(plan: BlindStudyPlan, trials: Sequence[Scored], classes: Classes) ->
         f'tows of one course and one length of warps, and effects of {POOR_STRENGTH:g} times the '
         'smallest detectable size that look alike in such; what they leave open is towed on as '
         'the first proposal has it, and diagnosed again. '
-        f'{len(trials)} trials, of which {len(not_testable)} are not testable, for the size would '
-        f'not be possible or the gear could not be towed ({listed}). '
+        f'{_drawn(plan)}{len(trials)} trials, of which {len(not_testable)} are not testable, for '
+        f'the size would not be possible or the gear could not be towed ({listed}). '
         f'On {os.cpu_count()} cores of {cpu_model()}, with {versions}.'
     )
+
+
+def _drawn(plan: BlindStudyPlan) -> str:
+    """Sentence on a sample; none where all trials are made."""
+    if not plan.sample:
+        return ''
+    number = sum(spec.form == 'windows' for spec in replace(plan, sample=0).specs())
+    return f'Of {number} trials {plan.sample} were drawn by chance, before any was made. '
 
 
 def _listed(classes: Classes) -> str:

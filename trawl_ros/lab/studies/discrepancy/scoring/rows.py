@@ -10,6 +10,7 @@ import numpy as np
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.report.rates import rate
+from trawl_ros.lab.studies.discrepancy.scoring.deck import cause_rows, deck_rows
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
@@ -27,9 +28,6 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
 from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
-FEW = 3
-"""So many effects may be left for a cause on deck."""
-
 
 def all_sections(trials: Sequence[Scored], classes: Classes) -> list[Section]:
     """All sections with their rows."""
@@ -43,6 +41,7 @@ def all_sections(trials: Sequence[Scored], classes: Classes) -> list[Section]:
         Section('Full bags', bag_rows(trials)),
         Section('The repair', repair_rows(trials, classes)),
         Section('Each effect', effect_rows(trials, classes)),
+        Section('Each cause on deck', cause_rows(trials, classes)),
         Section('Shuffled keys', shuffled_rows(trials, classes)),
     ]
 
@@ -152,38 +151,6 @@ def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
         rate('wrong name', [verdict_word(t) == 'NAMED' for t in outside], most=10.0),
         rate('several names', [verdict_word(t) == 'AMBIGUOUS' for t in outside]),
     ]
-
-
-def deck_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Verdicts on causes on deck, by the names that were to count as right."""
-    rows = []
-    for strength in (3.0, 6.0):
-        own = chosen(trials, 'deck', strength)
-        found = [
-            named_right(trial, classes)
-            or verdict_word(trial) == 'UNKNOWN'
-            or (
-                verdict_word(trial) == 'AMBIGUOUS'
-                and len(reported(trial)) <= FEW
-                and right(trial, reported(trial), classes)
-            )
-            for trial in own
-        ]
-        rows += [
-            rate(
-                f'right single name or class at {strength:g} times',
-                [named_right(trial, classes) for trial in own],
-            ),
-            rate(
-                f'right, or in a set of at most {FEW}, or UNKNOWN, at {strength:g} times',
-                found,
-            ),
-            rate(
-                f'wrong confident name at {strength:g} times',
-                [verdict_word(t) == 'NAMED' and not right(t, names_of(t), classes) for t in own],
-            ),
-        ]
-    return rows
 
 
 def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:

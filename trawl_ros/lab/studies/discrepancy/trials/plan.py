@@ -72,6 +72,8 @@ class BlindStudyPlan:
         Trials of each cause on deck and strength, to both sides in turn.
     around
         Meshes around the mouth of the model's net.
+    sample
+        So many of the trials of windows alone, drawn by chance, and no bags; 0 for all of them.
     """
 
     gear: str = 'kaifuha'
@@ -84,6 +86,7 @@ class BlindStudyPlan:
     dynamic: int = 23
     deck: int = 1
     around: int = FINER.around
+    sample: int = 0
 
     @property
     def cut(self) -> Cut:
@@ -93,6 +96,10 @@ class BlindStudyPlan:
     def specs(self) -> tuple[Spec, ...]:
         """All trials."""
         alone = tuple(self._in_windows())
+        if self.sample:
+            chance = np.random.default_rng([self.seed, *b'sample'])
+            some = chance.permutation(len(alone))[: self.sample]
+            return tuple(alone[place] for place in sorted(some))
         numbers = count(len(alone))
         full = [one for one in alone if one.plan == 'full']
         again = full[IN_BAGS // 2 :: IN_BAGS]
