@@ -72,6 +72,10 @@ test-slow: $(VENV)/ready
 test-view: $(VENV)/ready
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
 	    --constraint requirements.lock --no-build-isolation --editable '.[view]'
+	@command -v chromium chromium-browser google-chrome > /dev/null || \
+	    echo 'no browser for the page: apt-get install chromium'
+	@ls /usr/share/vulkan/icd.d/*.json > /dev/null 2>&1 || \
+	    echo 'no graphics for the viewer: apt-get install mesa-vulkan-drivers'
 	@$(PYTEST) test/view test/promises -k 'view and not my_trial'
 
 promises: $(VENV)/ready

@@ -4,12 +4,18 @@ import json
 import os
 import socket
 from pathlib import Path
+from urllib.error import HTTPError
+from urllib.parse import urljoin
+from urllib.request import Request, urlopen
 
 import pytest
 
 pytest.importorskip('rerun', reason='needs the extra `view`: make test-view installs it')
 
-from trawl_ros.view.viewer import Viewer, ViewerFailed, address_of
+from trawl_ros.view.page import Page
+from trawl_ros.view.ports import address_of
+from trawl_ros.view.process import ViewerFailed
+from trawl_ros.view.viewer import Viewer
 
 NO_DISPLAY = {name: os.environ[name] for name in ('PATH', 'HOME') if name in os.environ}
 
@@ -34,21 +40,68 @@ def listening(process: int) -> set[str]:
 
 
 def test_a_page_listens_on_this_machine_alone_and_ends_with_the_command():
+    before = listening(os.getpid())
     with Viewer('web', environment=NO_DISPLAY) as viewer:
-        sockets = listening(viewer._process.pid)
+        # The page is served by this process, the data by the viewer's.
+        sockets = listening(viewer.pid) | (listening(os.getpid()) - before)
         assert {address.partition(':')[0] for address in sockets} == {'0100007F'}
         assert len(sockets) == 2
-        folder = Path(viewer._folder.name)
+        folder = viewer._process._log.parent
         settings = json.loads((folder / 'rerun' / 'analytics.json').read_text())
         assert settings['analytics_enabled'] is False
     assert not viewer.running
     assert not folder.exists()
 
 
+def test_the_page_comes_with_a_policy_that_lets_it_speak_to_its_data_alone():
+    with Viewer('web', environment=NO_DISPLAY) as viewer:
+        with urlopen(viewer.page) as given:
+            policy, page = given.headers['Content-Security-Policy'], given.read()
+        port = int(viewer.url.rpartition(':')[2].partition('/')[0])
+        assert f"connect-src 'self' data: blob: http://*:{port};" in policy
+        assert "default-src 'none';" in policy
+        assert b're_viewer.js' in page
+        with urlopen(urljoin(viewer.page, '/re_viewer_bg.wasm')) as given:
+            assert given.headers['Content-Type'] == 'application/wasm'
+            assert given.headers['Content-Security-Policy'] == policy
+            assert given.read(4) == b'\0asm'
+        for path in ('/log', '/../log', '/%2e%2e/log', '/rerun/analytics.json'):
+            with pytest.raises(HTTPError, match='404'):
+                urlopen(urljoin(viewer.page, path))
+
+
+def test_a_port_of_the_page_that_is_taken_meanwhile_is_told(tmp_path):
+    with socket.socket() as taken:
+        taken.bind(('127.0.0.1', 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(ViewerFailed, match=f'127.0.0.1 port {port}: cannot be listened on'):
+            Page(('127.0.0.1', port), port + 1, tmp_path, NO_DISPLAY)
+
+
+def admitted(viewer, host):
+    """Whether the data may be read by a page that a browser has from this host."""
+    page = viewer.page.partition('/?')[0].rpartition(':')[2]
+    asked = {'Origin': f'http://{host}:{page}', 'Access-Control-Request-Method': 'POST'}
+    data = viewer.url.removeprefix('rerun+')
+    request = Request(data, method='OPTIONS', headers=asked)
+    with urlopen(request) as given:
+        return given.headers.get('Access-Control-Allow-Origin') == asked['Origin']
+
+
+def test_a_page_open_to_all_has_its_data_by_each_name_of_the_machine():
+    with Viewer('web', bind='0.0.0.0', environment=NO_DISPLAY) as viewer:
+        assert viewer.page.startswith('http://127.0.0.1:')
+        assert admitted(viewer, 'ship')
+    with Viewer('web', environment=NO_DISPLAY) as viewer:
+        assert admitted(viewer, '127.0.0.1')
+        assert not admitted(viewer, 'ship')
+
+
 def test_statistics_stay_off_though_the_user_has_them_on(tmp_path):
     forced = {**NO_DISPLAY, 'HOME': str(tmp_path), 'FORCE_RERUN_ANALYTICS': '1'}
     with Viewer('web', environment=forced) as viewer:
-        own = Path(f'/proc/{viewer._process.pid}/environ').read_bytes()
+        own = Path(f'/proc/{viewer.pid}/environ').read_bytes()
         assert b'FORCE_RERUN_ANALYTICS' not in own
     assert not list(tmp_path.rglob('*.json'))
 

@@ -12,10 +12,11 @@ from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.view.bags import TowBags
 from trawl_ros.view.layout import TIMELINE
+from trawl_ros.view.process import ViewerFailed
 from trawl_ros.view.recording import to_viewer
 from trawl_ros.view.rerun_library import ViewerClient
 from trawl_ros.view.rerun_log import RerunLog
-from trawl_ros.view.viewer import Viewer, ViewerFailed
+from trawl_ros.view.viewer import Viewer
 
 PATIENCE_S = 90.0
 Seen = TypeVar('Seen')

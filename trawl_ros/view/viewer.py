@@ -1,51 +1,21 @@
-"""Viewer of Rerun as a process: its window, or its web page, bound to this machine unless asked."""
+"""Viewer of Rerun: its window, or its page in a browser, bound to this machine unless asked."""
 
-import ipaddress
 import os
-import socket
-import subprocess
-import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import Literal
 
-from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.foreign import one_line
-from trawl_ros.core.network import THIS_MACHINE
-from trawl_ros.view.rerun_library import EXECUTABLE
+from trawl_ros.core.network import THIS_MACHINE, is_this_machine
+from trawl_ros.view.page import Page
+from trawl_ros.view.ports import address_of, in_url, reached, two_ports
+from trawl_ros.view.process import RerunProcess, ViewerFailed
 
 Kind = Literal['window', 'web', 'headless']
 
 DISPLAYS = ('DISPLAY', 'WAYLAND_DISPLAY')
-
-STARTS_S = 30.0
-ENDS_S = 5.0
-POLL_S = 0.05
-LAST_WORDS = 300
-NEEDS = 'a display and graphics that work, or --web, or --out FILE.rrd'
-
-
-class ViewerFailed(TrawlError):
-    """Viewer that cannot be opened, or that ended when it should not have."""
-
-
-def address_of(bind: str) -> str:
-    """Check the address on which a viewer is to listen.
-
-    Raises
-    ------
-    ViewerFailed
-        If it is none.
-    """
-    try:
-        return str(ipaddress.ip_address(bind))
-    except ValueError:
-        raise ViewerFailed(
-            f'--bind {one_line(bind, 60)}: expected an IP address such as {THIS_MACHINE}, this '
-            'machine alone, or 0.0.0.0, everybody who reaches it'
-        ) from None
 
 
 class Viewer:
@@ -88,27 +58,38 @@ class Viewer:
         self._kind = kind
         self._bind = address_of(bind)
         self._environment = environment
-        page, data = _ports(self._bind, port)
-        host = _reached(self._bind)
-        self.url = f'rerun+http://{host}:{data}/proxy'
-        self.page = f'http://{host}:{page}/?url=rerun%2Bhttp%3A%2F%2F{host}%3A{data}%2Fproxy'
-        self._port = data
+        self._page_port, self._data_port = two_ports(self._bind, port)
+        host = in_url(reached(self._bind))
+        self.url = f'rerun+http://{host}:{self._data_port}/proxy'
+        asked = self.url.replace('+', '%2B').replace(':', '%3A').replace('/', '%2F')
+        self.page = f'http://{host}:{self._page_port}/?url={asked}'
         own: dict[Kind, list[str]] = {
             'window': ['--hide-welcome-screen', '--expect-data-soon'],
-            'web': ['--serve-web', '--web-viewer-port', str(page)],
+            'web': ['--serve-grpc', *self._origins()],
             'headless': ['--headless', '--hide-welcome-screen', '--window-size', '1920x1080'],
         }
         memory = f'{memory_mb}MB'
         self._arguments = [
-            *('--bind', self._bind, '--port', str(data)),
+            *('--bind', self._bind, '--port', str(self._data_port)),
             *('--memory-limit', memory, '--server-memory-limit', memory),
             *own[kind],
         ]
 
+    def _origins(self) -> list[str]:
+        """Let the page be opened by whatever name this machine has elsewhere."""
+        if is_this_machine(self._bind):
+            return []
+        return ['--cors-allow-origin', f'http://*:{self._page_port}']
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
     @property
     def running(self) -> bool:
         """True until it is closed."""
-        return self._process.poll() is None
+        return self._process.running
 
     def check(self) -> None:
         """Check that it did not end by itself because of an error.
@@ -118,23 +99,23 @@ class Viewer:
         ViewerFailed
             With its last words.
         """
-        if self._process.poll():
-            raise ViewerFailed(f'the viewer has ended: {self._last_words()}; expected {NEEDS}')
+        self._process.check()
 
     def wait(self, seconds: float) -> None:
         """Wait until it is closed, at most so long."""
-        try:
-            self._process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            return
+        self._process.wait(seconds)
 
     def __enter__(self) -> 'Viewer':
-        self._folder = TemporaryDirectory(prefix='trawl_view_')
-        try:
-            self._start(Path(self._folder.name))
-        except BaseException:
-            self._folder.cleanup()
-            raise
+        with ExitStack() as stack:
+            folder = Path(stack.enter_context(TemporaryDirectory(prefix='trawl_view_')))
+            if self._kind == 'web':
+                address = self._bind, self._page_port
+                page = Page(address, self._data_port, folder, self._environment)
+                stack.enter_context(page)
+            at = reached(self._bind), self._data_port
+            process = RerunProcess(self._arguments, at, folder, self._environment)
+            self._process = stack.enter_context(process)
+            self._stack = stack.pop_all()
         return self
 
     def __exit__(
@@ -143,102 +124,4 @@ class Viewer:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._end()
-        self._folder.cleanup()
-
-    def _start(self, folder: Path) -> None:
-        environment = _silent(self._environment, folder)
-        self._log = folder / 'log'
-        with self._log.open('wb') as log:
-            # A session of its own: Ctrl-C is for the command, which then ends it.
-            self._process = subprocess.Popen(
-                [EXECUTABLE, *self._arguments],
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-            )
-        try:
-            self._wait_for_port()
-        except BaseException:
-            self._end()
-            raise
-
-    def _wait_for_port(self) -> None:
-        end = time.monotonic() + STARTS_S
-        while not _listens(_reached(self._bind), self._port):
-            if not self.running or time.monotonic() > end:
-                said = self._last_words()
-                raise ViewerFailed(f'the viewer does not start: {said}; expected {NEEDS}')
-            time.sleep(POLL_S)
-
-    def _last_words(self) -> str:
-        text = self._log.read_text('utf-8', 'replace').strip().rpartition('\n')[2]
-        return one_line(text, LAST_WORDS) or 'it says nothing'
-
-    def _end(self) -> None:
-        if self.running:
-            self._process.terminate()
-            self.wait(ENDS_S)
-        if self.running:
-            self._process.kill()
-            self._process.wait()
-
-
-def _silent(environment: Mapping[str, str], folder: Path) -> dict[str, str]:
-    """Return the environment of a viewer whose usage statistics are off, whatever the user's are.
-
-    They are switched in the user's configuration alone, so this one has a configuration of its own.
-    """
-    private = {'XDG_CONFIG_HOME': str(folder), 'XDG_DATA_HOME': str(folder)}
-    subprocess.run(
-        [EXECUTABLE, 'analytics', 'disable'],
-        env={**environment, **private, 'CI': '1'},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        check=False,
-    )
-    forced = {'FORCE_RERUN_ANALYTICS'}
-    kept = {name: value for name, value in environment.items() if name not in forced}
-    return {**kept, 'XDG_CONFIG_HOME': str(folder)}
-
-
-def _reached(bind: str) -> str:
-    """Return the host by which this machine reaches an address on which it listens."""
-    address = ipaddress.ip_address(bind)
-    if address.is_unspecified:
-        return THIS_MACHINE if address.version == 4 else '[::1]'
-    return bind if address.version == 4 else f'[{bind}]'
-
-
-def _ports(bind: str, wanted: int | None) -> tuple[int, int]:
-    """Two ports that are free, one after the other where the first is wanted."""
-    asked: Sequence[int] = (0, 0) if wanted is None else (wanted, wanted + 1)
-    family = socket.AF_INET if ipaddress.ip_address(bind).version == 4 else socket.AF_INET6
-    ears = []
-    try:
-        for port in asked:
-            ear = socket.socket(family, socket.SOCK_STREAM)
-            ears.append(ear)
-            ear.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            try:
-                ear.bind((bind, port))
-            except OSError as reason:
-                raise ViewerFailed(
-                    f'{bind} port {port}: cannot be listened on ({reason.strerror}); expected an '
-                    'address of this machine and a free port'
-                ) from reason
-        page, data = (ear.getsockname()[1] for ear in ears)
-        return page, data
-    finally:
-        for ear in ears:
-            ear.close()
-
-
-def _listens(host: str, port: int) -> bool:
-    try:
-        with socket.create_connection((host.strip('[]'), port), 1.0):
-            return True
-    except OSError:
-        return False
+        self._stack.close()
