@@ -16,10 +16,10 @@ from trawl_ros.cli.main import trawl
 from trawl_ros.core.progress import ignore
 from trawl_ros.sentences.framing import framed
 from trawl_ros.view.bags import TowBags
-from trawl_ros.view.process import ViewerFailed
 from trawl_ros.view.recording import to_viewer
 from trawl_ros.view.rerun_log import RerunLog
-from trawl_ros.view.viewer import Viewer
+from trawl_ros.view.viewer.process import ViewerFailed
+from trawl_ros.view.viewer.viewer import Viewer
 
 PATIENCE_S = 60.0
 AT_S = 95.0

@@ -12,10 +12,10 @@ import pytest
 
 pytest.importorskip('rerun', reason='needs the extra `view`: make test-view installs it')
 
-from trawl_ros.view.page import Page
-from trawl_ros.view.ports import address_of
-from trawl_ros.view.process import ViewerFailed
-from trawl_ros.view.viewer import Viewer
+from trawl_ros.view.viewer.page import Page
+from trawl_ros.view.viewer.ports import address_of
+from trawl_ros.view.viewer.process import ViewerFailed
+from trawl_ros.view.viewer.viewer import Viewer
 
 NO_DISPLAY = {name: os.environ[name] for name in ('PATH', 'HOME') if name in os.environ}
 

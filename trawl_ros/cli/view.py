@@ -4,9 +4,10 @@ import json
 import os
 import sys
 from contextlib import ExitStack
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
@@ -15,14 +16,46 @@ from trawl_ros.cli.options import BAG, FILE, NAMESPACE_OPTION
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.network import THIS_MACHINE
-from trawl_ros.core.progress import OnProgress
 
 if TYPE_CHECKING:
     from trawl_ros.view.bags import TowBags
-    from trawl_ros.view.viewer import Kind, Viewer
+    from trawl_ros.view.viewer.viewer import Kind, Viewer
 
 LOOK_S = 0.2
 """Ctrl-C is looked for this often."""
+
+
+@dataclass(frozen=True)
+class Choices:
+    """Arguments and options of the command, by their names."""
+
+    bags: tuple[Path, ...]
+    live: bool
+    out: Path | None
+    web: bool
+    bind: str
+    port: int | None
+    memory: int
+    gear: str
+    model: bool
+    namespace: str
+    force: bool
+
+    @property
+    def picture(self) -> bool:
+        """True if a picture is asked for."""
+        return self.out is not None and self.out.suffix == '.png'
+
+    def check(self) -> None:
+        """Refuse options that do not go together."""
+        if self.out is not None and self.web:
+            raise click.UsageError('--out and --web: a recording is written, or shown')
+        if self.live == bool(self.bags):
+            raise click.UsageError('BAG... or --live: expected one of them')
+        if self.live and self.picture:
+            raise click.UsageError('--live: pictures are of bags; expected --out FILE.rrd')
+        if self.live and self.model:
+            raise click.UsageError('--live and --model: the model is drawn beside bags alone')
 
 
 @click.command('view')
@@ -51,20 +84,13 @@ LOOK_S = 0.2
     'comes with the package. Its water turns pressure into depth, and its sizes draw the gear '
     'where the bag does not.',
 )  # fmt: skip
+@click.option(
+    '--model', is_flag=True, help='Draw beside the readings what this gear shows when it is towed '
+    'steadily, in each steady window. A steady state takes up to some seconds.',
+)  # fmt: skip
 @NAMESPACE_OPTION
 @click.option('--force', is_flag=True, help='Replace the file of --out.')
-def command(
-    bags: tuple[Path, ...],
-    live: bool,
-    out: Path | None,
-    web: bool,
-    bind: str,
-    port: int | None,
-    memory: int,
-    gear: str,
-    namespace: str,
-    force: bool,
-) -> None:
+def command(**given: Any) -> None:
     """Show the tow in BAG..., or of the running graph, in Rerun.
 
     Shown are gear, sonar, track, histories, estimates and findings. Several bags are parts of one
@@ -72,65 +98,68 @@ def command(
     viewer's window, which ends with the command, and the command with it. With --live, `view_node`
     listens to the graph until Ctrl-C.
     """
-    if out is not None and web:
-        raise click.UsageError('--out and --web: a recording is written, or shown')
-    if live == bool(bags):
-        raise click.UsageError('BAG... or --live: expected one of them')
-    picture = out is not None and out.suffix == '.png'
-    if live and picture:
-        raise click.UsageError('--live: pictures are of bags; expected --out FILE.rrd')
-    if live:
-        _run_node(out, web, bind, port, memory, gear, namespace)
+    asked = Choices(**given)
+    asked.check()
+    if asked.live:
+        _run_node(asked)
     from trawl_ros.view.bags import TowBags
-    from trawl_ros.view.recording import to_file, to_viewer
-    from trawl_ros.view.viewer import Viewer
 
-    tow = TowBags(bags, namespace)
-    if out is not None and picture:
-        _draw(tow, out, gear, force)
+    tow = TowBags(asked.bags, asked.namespace)
+    if asked.out is not None and asked.picture:
+        _draw(tow, asked.out, asked)
         return
+    complete = _record_or_open(tow, asked)
+    if asked.out is not None:
+        click.echo(f'{asked.out}: {", ".join(map(str, asked.bags))}, for Rerun')
+        if not complete:
+            raise SystemExit(INTERRUPTED)
+
+
+def _draw(tow: 'TowBags', out: Path, asked: Choices) -> None:
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.view.picture import write_picture
+    from trawl_ros.view.recording import check_file
+
+    check_file(out, force=asked.force)
+    with ProgressDisplay(error_console()) as display:
+        gear = load_gear(asked.gear)
+        write_picture(tow, gear, out, model=asked.model, on_progress=display)
+    for problem in tow.problems:
+        click.echo(problem, err=True)
+    click.echo(f'{out}: {", ".join(map(str, tow.paths))}, as Rerun shows it')
+
+
+def _record_or_open(tow: 'TowBags', asked: Choices) -> bool:
+    """Write the recording, or show it until its viewer is closed; True if it is whole."""
+    from trawl_ros.view.recording import to_file, to_viewer
+    from trawl_ros.view.viewer.viewer import Viewer
+
     with ExitStack() as stack, Interruption() as interruption:
         viewer: Viewer | None = None
-        if out is not None:
-            recording = stack.enter_context(to_file(out, force=force))
+        if asked.out is not None:
+            recording = stack.enter_context(to_file(asked.out, force=asked.force))
         else:
-            kind: Kind = 'web' if web else 'window'
-            viewer = stack.enter_context(Viewer(kind, bind=bind, port=port, memory_mb=memory))
-            if web:
+            kind: Kind = 'web' if asked.web else 'window'
+            viewer = stack.enter_context(
+                Viewer(kind, bind=asked.bind, port=asked.port, memory_mb=asked.memory)
+            )
+            if asked.web:
                 click.echo(viewer.page)
             recording = stack.enter_context(to_viewer(viewer.url))
-        with ProgressDisplay(error_console()) as display:
-            complete = _show(tow, recording, gear, display, interruption, viewer)
+        complete = _show(tow, recording, asked, interruption, viewer)
         for problem in tow.problems:
             click.echo(problem, err=True)
         while viewer is not None and viewer.running and not interruption.requested:
             viewer.wait(LOOK_S)
         if viewer is not None:
             viewer.check()
-    if out is not None:
-        click.echo(f'{out}: {", ".join(map(str, bags))}, for Rerun')
-        if not complete:
-            raise SystemExit(INTERRUPTED)
-
-
-def _draw(tow: 'TowBags', out: Path, gear: str, force: bool) -> None:
-    from trawl_ros.gear.load import load_gear
-    from trawl_ros.view.picture import write_picture
-    from trawl_ros.view.recording import check_file
-
-    check_file(out, force=force)
-    with ProgressDisplay(error_console()) as display:
-        write_picture(tow, load_gear(gear), out, on_progress=display)
-    for problem in tow.problems:
-        click.echo(problem, err=True)
-    click.echo(f'{out}: {", ".join(map(str, tow.paths))}, as Rerun shows it')
+    return complete
 
 
 def _show(
     tow: 'TowBags',
     recording: object,
-    gear: str,
-    on_progress: OnProgress,
+    asked: Choices,
     interruption: Interruption,
     viewer: 'Viewer | None',
 ) -> bool:
@@ -140,29 +169,22 @@ def _show(
     def stopped() -> bool:
         return interruption.requested or (viewer is not None and not viewer.running)
 
-    log = RerunLog(recording, tow.topics)
-    return tow.show(log, load_gear(gear), on_progress=on_progress, stopped=stopped)
+    log, gear = RerunLog(recording, tow.topics), load_gear(asked.gear)
+    with ProgressDisplay(error_console()) as display:
+        return tow.show(log, gear, model=asked.model, on_progress=display, stopped=stopped)
 
 
-def _run_node(
-    out: Path | None,
-    web: bool,
-    bind: str,
-    port: int | None,
-    memory: int,
-    gear: str,
-    namespace: str,
-) -> NoReturn:
+def _run_node(asked: Choices) -> NoReturn:
     """Become `view_node`, which knows ROS as commands do not; Ctrl-C then is for the node."""
     if find_spec('rclpy') is None:
         raise RosMissing('trawl view --live', ModuleNotFoundError(name='rclpy'))
     parameters = {
-        'viewer': 'web' if web else 'window',
-        'output': '' if out is None else str(out),
-        'host': bind,
-        'port': port or 0,
-        'memory_mb': memory,
-        'gear': gear,
+        'viewer': 'web' if asked.web else 'window',
+        'output': '' if asked.out is None else str(asked.out),
+        'host': asked.bind,
+        'port': asked.port or 0,
+        'memory_mb': asked.memory,
+        'gear': asked.gear,
     }
     # JSON is YAML, so strings stay strings whatever is in them.
     options = [
@@ -172,5 +194,5 @@ def _run_node(
         "import sys; sys.argv[0] = 'view_node'; "
         'from trawl_ros.nodes.view_node import main; sys.exit(main())'
     )
-    remapped = ['--ros-args', '-r', f'__ns:=/{namespace.strip("/")}', *options]
+    remapped = ['--ros-args', '-r', f'__ns:=/{asked.namespace.strip("/")}', *options]
     os.execv(sys.executable, [sys.executable, '-c', code, *remapped])

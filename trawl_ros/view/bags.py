@@ -13,6 +13,7 @@ from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.messages.from_messages import SAMPLE_TOPICS
 from trawl_ros.plots.moments import GEAR, IMAGE, SCAN
 from trawl_ros.records.topics import NAMESPACE, absolute
 from trawl_ros.view.reading import TOPICS, TowReader
@@ -101,6 +102,7 @@ class TowBags:
         log: Log,
         gear: GearRecord,
         *,
+        model: bool = False,
         on_progress: OnProgress,
         stopped: Callable[[], bool] = lambda: False,
     ) -> bool:
@@ -110,7 +112,7 @@ class TowBags:
         ----------
         log
             Takes the records, in the order of log times.
-        gear
+        gear, model
             As for `TowReader`.
         on_progress
             Called as messages are read.
@@ -125,7 +127,7 @@ class TowBags:
         strides = {topic: _stride(topic, count) for topic, count in self._counts.items()}
         duration = (self._end - self._start) / SECOND
         pictures = self._counts[GEAR] // strides.get(GEAR, 1) or MOST_PICTURES
-        reader = TowReader(gear, duration / pictures)
+        reader = TowReader(gear, duration / pictures, model=model)
         seen: Counter[str] = Counter()
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
@@ -133,9 +135,12 @@ class TowBags:
         for number, (bag, raw) in enumerate(self._merged()):
             topic = self._names[raw.topic]
             seen[topic] += 1
-            if (seen[topic] - 1) % strides[topic] == 0:
+            due = (seen[topic] - 1) % strides[topic] == 0
+            # Windows need all readings, however few of them are shown.
+            if due or (model and topic in SAMPLE_TOPICS):
                 try:
-                    for record in reader.take(topic, bag.decode(raw)):
+                    take = reader.take if due else reader.model
+                    for record in take(topic, bag.decode(raw)):
                         log.show(record)
                 except MessageError as reason:
                     refused[topic] += 1
@@ -147,6 +152,9 @@ class TowBags:
                 if stopped():
                     complete = False
                     break
+        if complete:
+            for record in reader.finish():
+                log.show(record)
         log.finish()
         self._tell(strides, refused, reasons)
         return complete

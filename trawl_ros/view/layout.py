@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from trawl_ros.records.coefficients import COEFFICIENTS
-from trawl_ros.view.rerun_library import rr, rrb
 from trawl_ros.view.series import VIEW_PANELS, path_of, title_of
+from trawl_ros.view.viewer.rerun_library import rr, rrb
 
 TIMELINE = 'time'
 

@@ -11,9 +11,9 @@ from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.time import SECOND
 from trawl_ros.view.recording import to_file, to_viewer
 from trawl_ros.view.records import Shown
-from trawl_ros.view.rerun_library import rr
 from trawl_ros.view.rerun_log import RerunLog
-from trawl_ros.view.viewer import Kind, Viewer
+from trawl_ros.view.viewer.rerun_library import rr
+from trawl_ros.view.viewer.viewer import Kind, Viewer
 
 WAITING_RECORDS = 5000
 """Records that wait at most; of further ones the oldest are given up, and counted."""

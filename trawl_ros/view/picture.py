@@ -12,11 +12,11 @@ from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.view.bags import TowBags
 from trawl_ros.view.layout import TIMELINE
-from trawl_ros.view.process import ViewerFailed
 from trawl_ros.view.recording import to_viewer
-from trawl_ros.view.rerun_library import ViewerClient
 from trawl_ros.view.rerun_log import RerunLog
-from trawl_ros.view.viewer import Viewer
+from trawl_ros.view.viewer.process import ViewerFailed
+from trawl_ros.view.viewer.rerun_library import ViewerClient
+from trawl_ros.view.viewer.viewer import Viewer
 
 PATIENCE_S = 90.0
 Seen = TypeVar('Seen')
@@ -26,7 +26,12 @@ LOOK_S = 1.0
 
 
 def write_picture(
-    tow: TowBags, gear: GearRecord, path: Path, *, on_progress: OnProgress = ignore
+    tow: TowBags,
+    gear: GearRecord,
+    path: Path,
+    *,
+    model: bool = False,
+    on_progress: OnProgress = ignore,
 ) -> None:
     """Draw the tow in the viewer, halfway through its time, as a PNG file.
 
@@ -39,19 +44,21 @@ def write_picture(
         raise ViewerFailed('a picture needs Rerun 0.41, whose viewer tells what it has drawn')
     with Viewer('headless') as viewer:
         with to_viewer(viewer.url) as recording:
-            tow.show(RerunLog(recording, tow.topics), gear, on_progress=on_progress)
+            log = RerunLog(recording, tow.topics)
+            tow.show(log, gear, model=model, on_progress=on_progress)
         client = ViewerClient(viewer.url)
         line = _still(viewer, lambda: _line(client))
         if line is None:
             raise ViewerFailed(f'the viewer has shown nothing of the tow in {PATIENCE_S:.0f} s')
-        _set_time(client, line)
+        _still(viewer, lambda: _stopped(client, line))
         with written(path) as draft:
 
             def drawn() -> bytes:
                 client.save_screenshot(str(draft))
                 return draft.read_bytes()
 
-            _still(viewer, drawn)
+            if _still(viewer, drawn) is None:
+                raise ViewerFailed(f'the viewer has drawn nothing in {PATIENCE_S:.0f} s')
 
 
 def _line(client: ViewerClient) -> Any | None:
@@ -65,23 +72,32 @@ def _line(client: ViewerClient) -> Any | None:
     return lines[0] if lines else None
 
 
-def _set_time(client: ViewerClient, line: Any) -> None:
+def _stopped(client: ViewerClient, line: Any) -> bool:
     """Stop halfway: at a time since the start of a simulation, or at a time of day."""
     middle = (line.start + line.end) // 2
     if line.time_type == 'timestamp':
         client.set_time(TIMELINE, timestamp=np.datetime64(middle, 'ns'), play_state='paused')
     else:
         client.set_time(TIMELINE, duration=np.timedelta64(middle, 'ns'), play_state='paused')
+    return True
 
 
-def _still(viewer: Viewer, look: Callable[[], Seen]) -> Seen:
+def _still(viewer: Viewer, look: Callable[[], Seen | None]) -> Seen | None:
     """Return what is seen once it no longer changes, or when patience ends."""
     end = time.monotonic() + PATIENCE_S
-    last = look()
+    last = None
     while True:
-        time.sleep(LOOK_S)
         viewer.check()
-        seen = look()
+        seen = _seen(look)
         if (seen is not None and seen == last) or time.monotonic() > end:
-            return seen
-        last = seen
+            return seen or last
+        last = seen or last
+        time.sleep(LOOK_S)
+
+
+def _seen(look: Callable[[], Seen | None]) -> Seen | None:
+    """Look; None where a viewer that is drawing has no time to answer."""
+    try:
+        return look()
+    except OSError:
+        return None

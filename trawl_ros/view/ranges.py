@@ -64,9 +64,12 @@ class PanelRanges:
 
 
 def _limits(kinds: dict[str, _Thinned], least: float) -> tuple[float, float] | None:
-    sure = [[values.low, values.high] for kind, values in kinds.items() if kind != 'measured']
+    extremes = {kind: [values.low, values.high] for kind, values in kinds.items()}
+    sure = [span for kind, span in extremes.items() if kind in ('truth', 'wanted')]
     ordinary = [np.percentile(values.kept, ORDINARY).tolist() for values in kinds.values()]
-    spans = np.array(sure or ordinary)
+    # A model that is far from what was measured is seen to be.
+    modelled = [extremes['model']] if 'model' in extremes else []
+    spans = np.array((sure or ordinary) + modelled)
     low, high = float(spans.min()), float(spans.max())
     room = max(high - low, least)
     extent = max(v.high for v in kinds.values()) - min(v.low for v in kinds.values())

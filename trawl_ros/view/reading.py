@@ -31,6 +31,7 @@ from trawl_ros.records.samples import (
 )
 from trawl_ros.records.truth import SIDES
 from trawl_ros.view.gear_source import GearFollower
+from trawl_ros.view.model_source import ModelFollower
 from trawl_ros.view.records import (
     Echoes,
     Innovations,
@@ -39,10 +40,10 @@ from trawl_ros.view.records import (
     Section,
     SeenSchools,
     Shown,
-    Sweep,
 )
 from trawl_ros.view.ship import ShipFollower
 from trawl_ros.view.statuses import NoteBook, coefficients_of
+from trawl_ros.view.sweeps import SweepJoiner
 
 VESSEL, SCHOOLS, SEABED = 'truth/vessel/odom', 'truth/schools', 'truth/seabed'
 IDENTIFICATION, FINDINGS, TRIAL = (
@@ -85,15 +86,18 @@ class TowReader:
         Its water turns pressure into depth, and its sizes draw the gear where markers do not.
     apart_s
         Between two shapes of the gear.
+    model
+        True to have beside the readings what the gear's model says in steady windows.
     """
 
-    def __init__(self, gear: GearRecord, apart_s: float = 1.0) -> None:
+    def __init__(self, gear: GearRecord, apart_s: float = 1.0, *, model: bool = False) -> None:
         self._depth_at = build_water(gear).depth
         self._ship = ShipFollower()
         self._gear = GearFollower(gear, self._ship, apart_s)
+        self._model = ModelFollower(gear) if model else None
         self._newest: int | None = None
         self._due: dict[str, int] = {}
-        self._sweep: SonarImageSample | SonarScanSample | None = None
+        self._sweeps = SweepJoiner()
         self._notes = {topic: NoteBook() for topic in (IDENTIFICATION, FINDINGS, TRIAL)}
         self._estimate: tuple[int, int] | None = None
         self._doors: dict[str, tuple[int, Any]] = {}
@@ -122,6 +126,22 @@ class TowReader:
             raise MessageError(f'{topic}: not as its type has it ({reason})') from reason
         yield from records
 
+    def model(self, topic: str, message: Any) -> Iterator[Shown]:
+        """Yield what the model says, where it is asked, of a message that is not shown itself.
+
+        Raises
+        ------
+        MessageError
+            If it contradicts its topic.
+        """
+        if self._model is not None and topic in SAMPLE_TOPICS:
+            yield from self._model.take(to_sample(topic, message))
+
+    def finish(self) -> Iterator[Shown]:
+        """Yield the records that waited for more messages; no more come."""
+        if self._model is not None:
+            yield from self._model.finish()
+
     def _records(self, topic: str, message: Any) -> Iterator[Shown]:
         stamp = _stamp(topic, message)
         newest = self._newest
@@ -147,6 +167,8 @@ class TowReader:
         columns = sample_columns(sample, self._depth_at)
         if columns:
             yield from self._quantities(Quantities(sample.stamp, 'measured', columns))
+        if self._model is not None:
+            yield from self._model.take(sample)
         match sample:
             case HeadingSample():
                 self._ship.heading(sample.heading)
@@ -158,21 +180,8 @@ class TowReader:
             case SonarPointsSample():
                 yield Echoes(sample.stamp, sample.points)
             case SonarImageSample() | SonarScanSample():
-                yield from self._swept(sample)
-
-    def _swept(self, half: SonarImageSample | SonarScanSample) -> Iterator[Shown]:
-        """Join an image and the scan of the same stamp, whichever comes first."""
-        other, self._sweep = self._sweep, half
-        if other is None or other.stamp != half.stamp:
-            return
-        for image, scan in ((half, other), (other, half)):
-            if isinstance(image, SonarImageSample) and isinstance(scan, SonarScanSample):
-                if len(scan.ranges) != len(image.image):
-                    raise MessageError(
-                        f'sonar/image: {len(image.image)} beams, and sonar/scan of the same stamp '
-                        f'has {len(scan.ranges)}; expected as many'
-                    )
-                yield Sweep(image.stamp, image, scan)
+                sweep = self._sweeps.take(sample)
+                yield from () if sweep is None else (sweep,)
 
     def _truth(self, topic: str, stamp: int, message: Any) -> Iterator[Shown]:
         columns = TRUTH[topic](topic, message)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import new_folder, written
-from trawl_ros.view.rerun_library import rr
+from trawl_ros.view.viewer.rerun_library import rr
 
 APPLICATION = 'trawl_ros'
 

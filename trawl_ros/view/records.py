@@ -9,8 +9,8 @@ from trawl_ros.plots.records import Strand
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 from trawl_ros.records.truth import SchoolTruth
 
-Kind = Literal['truth', 'measured', 'wanted']
-"""Origin of a quantity: the simulation, an instrument, or a command."""
+Kind = Literal['truth', 'measured', 'wanted', 'model']
+"""Origin of a quantity: the simulation, an instrument, a command, or a state of the model."""
 
 
 @dataclass(frozen=True)

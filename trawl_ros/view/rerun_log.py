@@ -5,9 +5,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
-from trawl_ros.plots.sonar import PIXELS, seen
-from trawl_ros.records.truth import SchoolTruth
 from trawl_ros.report.style import FAINT, MEASURED, PORT, SECOND
 from trawl_ros.view.layout import TIMELINE, Camera, layout
 from trawl_ros.view.ranges import PanelRanges
@@ -26,9 +23,11 @@ from trawl_ros.view.records import (
     Shown,
     Sweep,
 )
-from trawl_ros.view.rerun_library import rr
+from trawl_ros.view.sea_scene import SeaScene, from_above
 from trawl_ros.view.series import CURVES, HEADING, LEGEND, Line, Unwrapped, rgb_of
+from trawl_ros.view.sonar_screen import LINE, THIN, SonarScreen
 from trawl_ros.view.track import Track
+from trawl_ros.view.viewer.rerun_library import rr
 
 SIMULATED_BEFORE = 15 * 365 * 86_400 * 1_000_000_000
 """Stamps (ns) of the first years since 1970 are times since the start of a simulation."""
@@ -36,12 +35,8 @@ SIMULATED_BEFORE = 15 * 365 * 86_400 * 1_000_000_000
 BATCH = 20_000
 """So many values of all series wait at most until they are passed on together."""
 
-LINE, THIN = -1.3, -0.7
-"""Widths of lines in points of the screen, which Rerun takes for negative radii."""
 
-FISH = (242, 166, 102)
 SHIP = (230, 230, 235)
-RINGS = 4
 
 
 @dataclass
@@ -85,7 +80,8 @@ class RerunLog:
         self._pose: ShipPose | None = None
         self._tracks = {'track': Track(), 'fixes': Track()}
         self._source = ''
-        self._reach: float | None = None
+        self._screen = SonarScreen(self._at)
+        self._sea = SeaScene(self._at)
         self._camera: Camera | None = None
         self._ranges = PanelRanges()
         recording.set_log_time_enabled(False)
@@ -107,15 +103,15 @@ class RerunLog:
             case Gear():
                 self._gear(record)
             case Schools():
-                self._schools(record)
+                self._sea.schools(record)
             case SeenSchools():
-                self._seen_schools(record)
+                self._sea.seen_schools(record)
             case Sweep():
-                self._sweep(record)
+                self._screen.sweep(record)
             case Section():
-                self._section(record)
+                self._screen.section(record)
             case Echoes():
-                self._echoes(record)
+                self._sea.echoes(record)
             case Coefficients():
                 self._coefficients(record)
             case Innovations():
@@ -151,6 +147,10 @@ class RerunLog:
             return rr.TimeColumn(TIMELINE, duration=times.astype('timedelta64[ns]'))
         return rr.TimeColumn(TIMELINE, timestamp=times.astype('datetime64[ns]'))
 
+    def _at(self, stamp: int, path: str, shown: object) -> None:
+        self._set_time(stamp)
+        self._log(path, shown)
+
     def _log(self, path: str | list[str], shown: object) -> None:
         self._recording.log(path, shown)
 
@@ -165,7 +165,7 @@ class RerunLog:
             styled = (
                 rr.SeriesPoints(colors=[line.colour], names=[line.name], marker_sizes=[1.6])
                 if line.dots
-                else rr.SeriesLines(colors=[line.colour], names=[line.name], widths=[1.3])
+                else rr.SeriesLines(colors=[line.colour], names=[line.name], widths=[line.width])
             )
             self._recording.log(line.path, styled, static=True)
         waiting = self._waiting.setdefault(line.path, _Waiting())
@@ -178,15 +178,16 @@ class RerunLog:
     def _quantities(self, record: Quantities) -> None:
         for name, value in record.values.items():
             placed = CURVES.get(name)
-            if placed is None or not np.isfinite(value):
+            if placed is None or not (np.isfinite(value) or record.kind == 'model'):
                 continue
             if name == HEADING:
                 value = self._turns[record.kind].take(name, value)
             shown = placed.shown(value)
             self._value(placed.line(record.kind), record.stamp, shown)
-            self._ranges.take(placed.panel, record.kind, shown)
+            if np.isfinite(shown):
+                self._ranges.take(placed.panel, record.kind, shown)
         if record.kind == 'measured':
-            self._opening(record)
+            self._screen.opening(record)
 
     def _ship(self, pose: ShipPose) -> None:
         self._pose = pose
@@ -199,14 +200,14 @@ class RerunLog:
                 quaternion=rr.Quaternion(xyzw=[0.0, 0.0, np.sin(half), np.cos(half)]),
             ),
         )
-        here = _from_above(pose.position[None])
+        here = from_above(pose.position[None])
         self._log('/top/ship', rr.Points2D(here, colors=[SHIP], radii=[-5.0]))
         track = self._tracks['track'].take(here[0])
         if track is not None:
             self._log('/top/track', rr.LineStrips2D([track], colors=[SHIP], radii=[LINE]))
 
     def _fix(self, fix: Fix) -> None:
-        fixes = self._tracks['fixes'].take(_from_above(fix.position[None])[0])
+        fixes = self._tracks['fixes'].take(from_above(fix.position[None])[0])
         if fixes is not None:
             self._set_time(fix.stamp)
             self._log('/top/fixes', rr.Points2D(fixes, colors=[rgb_of(MEASURED)], radii=[-2.0]))
@@ -230,7 +231,7 @@ class RerunLog:
                 ['map', 'gear', strand.name],
                 rr.LineStrips3D(strand.pieces, colors=colours, radii=[LINE]),
             )
-            flat = _from_above(strand.pieces.reshape(-1, 3)).reshape(-1, 2, 2)
+            flat = from_above(strand.pieces.reshape(-1, 3)).reshape(-1, 2, 2)
             self._log(
                 ['top', 'gear', strand.name],
                 rr.LineStrips2D(flat, colors=colours, radii=[THIN]),
@@ -258,88 +259,6 @@ class RerunLog:
         ahead, port = c * middle[0] + s * middle[1], -s * middle[0] + c * middle[1]
         return Camera((float(ahead), float(port), float(middle[2])), length)
 
-    def _schools(self, record: Schools) -> None:
-        self._set_time(record.stamp)
-        if not record.schools:
-            return
-        places = np.array([school.position for school in record.schools])
-        halves = 0.5 * np.array([school.size for school in record.schools])
-        self._log(
-            '/map/schools',
-            rr.Ellipsoids3D(centers=places, half_sizes=halves, colors=[FISH], line_radii=[THIN]),
-        )
-        self._log(
-            '/top/schools',
-            rr.LineStrips2D(
-                [_outline(school) for school in record.schools], colors=[FISH], radii=[LINE]
-            ),
-        )
-
-    def _seen_schools(self, record: SeenSchools) -> None:
-        self._set_time(record.stamp)
-        points = rr.Points3D(record.positions, colors=[FISH], radii=[-4.0])
-        self._log('/map/fish_sonar', points)
-        flat = rr.Points2D(_from_above(record.positions), colors=[FISH], radii=[-4.0])
-        self._log('/top/fish_sonar', flat)
-
-    def _sweep(self, sweep: Sweep) -> None:
-        self._set_time(sweep.stamp)
-        if sweep.scan.max_range != self._reach:
-            self._reach = sweep.scan.max_range
-            self._rings(self._reach)
-        echoes = seen(sweep.image, sweep.scan, PIXELS).filled(0)
-        self._log(
-            '/sonar/image',
-            rr.DepthImage(echoes, meter=1.0, colormap='inferno', depth_range=[0.0, 255.0]),
-        )
-
-    def _rings(self, reach: float) -> None:
-        """Draw circles of equal range, with their radii."""
-        turn = np.linspace(0.0, 2.0 * np.pi, 91)
-        circle = np.column_stack([np.cos(turn), np.sin(turn)])
-        radii = [reach * k / RINGS for k in range(1, RINGS + 1)]
-        self._log(
-            '/sonar/rings',
-            rr.LineStrips2D(
-                [_on_screen(radius * circle, reach) for radius in radii],
-                colors=[(120, 120, 120)],
-                radii=[THIN],
-                labels=[f'{radius:.4g} m' for radius in radii],
-                show_labels=False,
-            ),
-        )
-
-    def _section(self, record: Section) -> None:
-        if self._reach is None:
-            return
-        self._set_time(record.stamp)
-        points = _on_screen(record.points, self._reach)
-        self._log('/sonar/truth', rr.Points2D(points, colors=[(255, 255, 255)], radii=[-1.5]))
-
-    def _opening(self, record: Quantities) -> None:
-        """Draw height and width as read off the image, from the sonar down and across."""
-        ends = {
-            'opening_height': ((0.0, 0.0), (1.0, 0.0)),
-            'opening_width': ((0.0, 0.5), (0.0, -0.5)),
-        }
-        for name, line in ends.items():
-            size = record.values.get(name)
-            if size is not None and self._reach is not None:
-                self._set_time(record.stamp)
-                known = np.isfinite(size)
-                strips = [_on_screen(size * np.array(line), self._reach)] if known else []
-                labels = [f'{name.partition("_")[2]} {size:.1f} m'] if known else []
-                self._log(
-                    f'/sonar/{name}',
-                    rr.LineStrips2D(strips, colors=[(77, 210, 255)], radii=[LINE], labels=labels),
-                )
-
-    def _echoes(self, record: Echoes) -> None:
-        self._set_time(record.stamp)
-        strength = np.clip(record.points[:, 3:] / 255.0, 0.0, 1.0)
-        colours = np.round(255.0 * strength * [[1.0, 0.75, 0.3]]).astype(np.uint8)
-        self._log('/map/echoes', rr.Points3D(record.points[:, :3], colors=colours, radii=[-1.2]))
-
     def _coefficients(self, record: Coefficients) -> None:
         for name, interval in record.intervals.items():
             for what, value in (
@@ -362,25 +281,6 @@ class RerunLog:
     def _note(self, note: Note) -> None:
         self._set_time(note.stamp)
         self._log(['notes', note.source], rr.TextLog(note.text, level=note.level))
-
-
-def _from_above(points: FloatArray) -> FloatArray:
-    """Points (n, 3) in ``map`` as seen from above (n, 2): north is up on the screen."""
-    return points[:, :2] * [1.0, -1.0]
-
-
-def _outline(school: SchoolTruth) -> FloatArray:
-    """Outline (n, 2) of a school from above."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 37)
-    circle = np.column_stack([np.cos(turn), np.sin(turn)])
-    outline: FloatArray = _from_above(school.position[None]) + 0.5 * school.size[:2] * circle
-    return outline
-
-
-def _on_screen(points: FloatArray, reach: float) -> FloatArray:
-    """Points (n, 2) in the sonar's plane, x down and y port, as pixels of its image."""
-    down, port = points.T
-    return np.column_stack([reach - port, reach + down]) * (0.5 * PIXELS / reach)
 
 
 def _table(record: Coefficients) -> str:

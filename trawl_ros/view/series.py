@@ -47,22 +47,29 @@ COLOUR_NAMES = {
     style.FAINT: 'grey',
 }
 
-LEGEND = 'dots are measured, lines are true or wanted; port is red, starboard green'
+LEGEND = (
+    'dots are measured, lines are true or wanted, broad ones the model; port is red, starboard '
+    'green'
+)
 
 WHITER = 0.4
 """Of lines over dots: seen on the dark background of a window and on the white one of a page."""
+
+NARROW, BROAD = 1.3, 4.0
+"""Widths of lines: dots lie on the broad ones of the model where it is right."""
 
 RGB = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
 class Line:
-    """Line or dots of a quantity: entity, name in the legend, colour, and whether it is dots."""
+    """Line or dots of a quantity: entity, name in the legend, colour, whether it is dots, width."""
 
     path: str
     name: str
     colour: RGB
     dots: bool
+    width: float = NARROW
 
 
 @dataclass(frozen=True)
@@ -80,6 +87,7 @@ class PlacedCurve:
             ' '.join(words),
             rgb_of(self.curve.colour, 0.0 if kind == 'measured' else WHITER),
             dots=kind == 'measured',
+            width=BROAD if kind == 'model' else NARROW,
         )
 
     def shown(self, value: float) -> float:

@@ -17,8 +17,8 @@ from urllib.error import HTTPError, URLError
 from urllib.request import ProxyHandler, build_opener
 
 from trawl_ros.core.network import THIS_MACHINE
-from trawl_ros.view.ports import family_of, two_ports
-from trawl_ros.view.process import RerunProcess, ViewerFailed
+from trawl_ros.view.viewer.ports import family_of, two_ports
+from trawl_ros.view.viewer.process import RerunProcess, ViewerFailed
 
 FILES = ('index.html', 're_viewer.js', 're_viewer_bg.wasm', 'favicon.ico')
 FETCH_S = 30.0

@@ -10,7 +10,7 @@ from types import TracebackType
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import one_line
-from trawl_ros.view.rerun_library import EXECUTABLE
+from trawl_ros.view.viewer.rerun_library import EXECUTABLE
 
 STARTS_S = 30.0
 ENDS_S = 5.0

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.network import THIS_MACHINE
-from trawl_ros.view.process import ViewerFailed
+from trawl_ros.view.viewer.process import ViewerFailed
 
 
 def address_of(bind: str) -> str:

@@ -9,9 +9,9 @@ from types import TracebackType
 from typing import Literal
 
 from trawl_ros.core.network import THIS_MACHINE, is_this_machine
-from trawl_ros.view.page import Page
-from trawl_ros.view.ports import address_of, in_url, reached, two_ports
-from trawl_ros.view.process import RerunProcess, ViewerFailed
+from trawl_ros.view.viewer.page import Page
+from trawl_ros.view.viewer.ports import address_of, in_url, reached, two_ports
+from trawl_ros.view.viewer.process import RerunProcess, ViewerFailed
 
 Kind = Literal['window', 'web', 'headless']
 
