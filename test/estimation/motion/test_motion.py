@@ -119,11 +119,12 @@ def rows(chance, number=60, noise=0.5, model=1.0):
         noise=np.full(2 * number, noise),
         drift=np.ones(2 * number),
         model=np.full(2 * number, model),
+        state=np.ones(2 * number),
     )
 
 
 def test_tows_that_are_joined_are_one_least_squares_problem():
-    chance, sizes, times = np.random.default_rng(5), np.array([1.0, 0.3, 2.0]), ErrorTimes()
+    chance, sizes, times = np.random.default_rng(5), np.array([1.0, 0.3, 2.0, 0.5]), ErrorTimes()
     shared, own = 3, 4
     groups = []
     for _ in range(2):
@@ -155,11 +156,11 @@ def test_tows_that_are_joined_are_one_least_squares_problem():
 
 
 def test_sizes_of_noise_and_of_the_models_error_are_found():
-    chance, truth, times = np.random.default_rng(8), np.array([1.6, 0.1, 3.0]), ErrorTimes()
+    chance, truth, times = np.random.default_rng(8), np.array([1.6, 0.1, 3.0, 0.3]), ErrorTimes()
     own = rows(chance, 200)
     root = np.linalg.cholesky(own.covariance(truth, times))
     columns = chance.standard_normal((400, 14))
-    nothing = GroupRows(*(np.zeros(0, dtype=int),) * 2, *np.zeros((4, 0)))
+    nothing = GroupRows(*(np.zeros(0, dtype=int),) * 2, *np.zeros((5, 0)))
     empty = LinearGroup(nothing, np.zeros((0, 14)), np.zeros(0))
     one = LinearGroup(own, columns, root @ chance.standard_normal(400))
     groups = (one, *(empty,) * (len(GROUPS) - 1))

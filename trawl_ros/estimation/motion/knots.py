@@ -2,8 +2,9 @@
 
 A log is wrong anew with each reading, and the gear feels its speed in all channels at once. So the
 course of that error is estimated along: its values at the knots are parameters, whose covariance
-before the fit is that of a least-squares fit of the knots to the log's readings. A counter is wrong
-by another amount after each time that its winch has run: a first-order Gauss-Markov process.
+before the fit is that of a least-squares fit of the knots to the log's readings, and of a slow
+error beside. A counter is wrong by another amount after each time that its winch has run: a
+first-order Gauss-Markov process.
 """
 
 from dataclasses import dataclass
@@ -63,7 +64,13 @@ def hats(times: FloatArray, number: int, spacing_s: float) -> FloatArray:
 
 
 def knots_of_log(
-    times: FloatArray, std: float, duration_s: float, spacing_s: float, memory_s: float
+    times: FloatArray,
+    std: float,
+    duration_s: float,
+    spacing_s: float,
+    memory_s: float,
+    slow_std: float = 0.0,
+    slow_time_s: float = 900.0,
 ) -> Knots:
     """Knots of a log's error.
 
@@ -77,6 +84,8 @@ def knots_of_log(
         Of the tow.
     spacing_s, memory_s
         Time between knots; time after which the gear has forgotten an error.
+    slow_std, slow_time_s
+        Std (m/s) and correlation time of an error that no averaging wears down.
     """
     number = int(np.ceil(duration_s / spacing_s)) + 1
     rows = hats(times, number, spacing_s) / std
@@ -87,6 +96,9 @@ def knots_of_log(
     lower = cholesky_banded(banded, lower=True)
     factor = np.diag(lower[0]) + np.diag(lower[1, :-1], -1)
     root = solve_triangular(factor, np.eye(number), lower=True).T
+    if slow_std:
+        slow = slow_std**2 * np.exp(-_apart(number, spacing_s) / slow_time_s)
+        root = np.linalg.cholesky(root @ root.T + slow)
     return Knots('speed', number, spacing_s, _columns(spacing_s, memory_s), root)
 
 
@@ -95,9 +107,13 @@ def knots_of_counter(
 ) -> Knots:
     """Knots of a counter's error, a process of a std (m) and a correlation time; else as above."""
     number = int(np.ceil(duration_s / spacing_s)) + 1
-    apart = spacing_s * np.abs(np.subtract.outer(np.arange(number), np.arange(number)))
-    root = std * np.linalg.cholesky(np.exp(-apart / time_s))
+    root = std * np.linalg.cholesky(np.exp(-_apart(number, spacing_s) / time_s))
     return Knots(channel, number, spacing_s, _columns(spacing_s, memory_s), root)
+
+
+def _apart(number: int, spacing_s: float) -> FloatArray:
+    apart: FloatArray = spacing_s * np.abs(np.subtract.outer(np.arange(number), np.arange(number)))
+    return apart
 
 
 def _columns(spacing_s: float, memory_s: float) -> int:

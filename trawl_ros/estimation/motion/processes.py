@@ -1,8 +1,9 @@
 """Errors of stretches as stated processes: noise, drifts of sensors, and the model's own error.
 
-The error of a mean is the sum of three: its own, which no other mean shares; a first-order
-Gauss-Markov process of its sensor; and one of the model, slower, which is the same for both sides
-of the gear. Sizes are parts of what is stated for each, and are estimated (`sizes`).
+The error of a mean is the sum of four: its own, which no other mean shares; two first-order
+Gauss-Markov processes of its sensor, a drift and one that changes as steady states do; and one of
+the model, slow too, which is the same for both sides of the gear. Sizes are parts of what is stated
+for each, and are estimated (`sizes`).
 """
 
 from dataclasses import dataclass, replace
@@ -10,17 +11,30 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
+from trawl_ros.estimation.fit.error_terms import (
+    GROUPS,
+    MODEL_ANGLE,
+    MODEL_FRACTION,
+    Scheme,
+    group_of,
+)
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.records.channels import CHANNELS
+
+STATE_SHARE = Scheme.state_share
+"""Part of a channel's bias that changes from one state of a tow to the next, before the data speak;
+as for steady windows."""
 
 
 @dataclass(frozen=True)
 class ErrorTimes:
-    """Correlation times (s) of the drift of sensors and of the model's error."""
+    """Correlation times (s) of the drift of sensors, of the model's error, and of what is wrong
+    with sensors by another amount in each state of a tow.
+    """
 
     drift: float = 30.0
     model: float = 300.0
+    state: float = 900.0
 
 
 @dataclass(frozen=True)
@@ -35,6 +49,8 @@ class ErrorSizes:
         On the noise of a single reading in the channel table: std of the sensor's process.
     model
         On `MODEL_FRACTION` of the value, or `MODEL_ANGLE`: std of the model's process.
+    state
+        On the bias in the channel table: std of the process that changes with states.
     log
         On the errors of the speed log at its knots.
     """
@@ -42,9 +58,12 @@ class ErrorSizes:
     noise: tuple[float, ...] = (1.0,) * len(GROUPS)
     drift: tuple[float, ...] = (0.1,) * len(GROUPS)
     model: tuple[float, ...] = (1.0,) * len(GROUPS)
+    state: tuple[float, ...] = (STATE_SHARE,) * len(GROUPS)
     log: float = 1.0
 
-    def having(self, group: int, noise: float, drift: float, model: float) -> 'ErrorSizes':
+    def having(
+        self, group: int, noise: float, drift: float, model: float, state: float
+    ) -> 'ErrorSizes':
         """Sizes with those of one group replaced."""
 
         def put(values: tuple[float, ...], value: float) -> tuple[float, ...]:
@@ -55,6 +74,7 @@ class ErrorSizes:
             noise=put(self.noise, noise),
             drift=put(self.drift, drift),
             model=put(self.model, model),
+            state=put(self.state, state),
         )
 
     def tempered(self, factor: float) -> 'ErrorSizes':
@@ -63,21 +83,28 @@ class ErrorSizes:
         def more(values: tuple[float, ...]) -> tuple[float, ...]:
             return tuple(factor * value for value in values)
 
-        return replace(self, noise=more(self.noise), drift=more(self.drift), model=more(self.model))
+        return replace(
+            self, noise=more(self.noise), drift=more(self.drift), model=more(self.model),
+            state=more(self.state),
+        )  # fmt: skip
 
     def of_group(self, group: int) -> FloatArray:
-        """Factors (3,) on noise, drift and model's error of a group."""
-        return np.array([self.noise[group], self.drift[group], self.model[group]])
+        """Factors (4,) on noise, drift, model's error and what changes with states of a group."""
+        return np.array(
+            [self.noise[group], self.drift[group], self.model[group], self.state[group]]
+        )
 
 
-EXACT_MODEL = ErrorSizes(drift=(0.0,) * len(GROUPS), model=(0.0,) * len(GROUPS))
+NO_ERROR = (0.0,) * len(GROUPS)
+
+EXACT_MODEL = ErrorSizes(drift=NO_ERROR, model=NO_ERROR, state=NO_ERROR)
 """White noise as it scatters, of a model without errors."""
 
 
 @dataclass(frozen=True)
 class GroupRows:
     """Rows (m,) of one group of channels: stretch and channel of each mean that is there, its
-    noise, and the std there of a drift and an error of the model of size 1.
+    noise, and the std there of a drift, an error of the model and one of the state of size 1.
     """
 
     stretches: IntArray
@@ -86,16 +113,31 @@ class GroupRows:
     noise: FloatArray
     drift: FloatArray
     model: FloatArray
+    state: FloatArray
 
-    def covariance(self, sizes: FloatArray, times: ErrorTimes) -> FloatArray:
-        """Covariance (m, m) of the errors by sizes (3,) of noise, drift and model's error."""
+    def processes(self, times: ErrorTimes) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Covariances (m, m) of a drift, an error of the model and one of the state of size 1."""
         apart = np.abs(self.times[:, None] - self.times)
         same = self.channels[:, None] == self.channels
-        total = np.diag((sizes[0] * self.noise) ** 2)
-        drift, model = sizes[1] * self.drift, sizes[2] * self.model
-        total += np.where(same, np.outer(drift, drift) * np.exp(-apart / times.drift), 0.0)
-        total += np.outer(model, model) * np.exp(-apart / times.model)
-        return total
+        return (
+            np.where(same, np.outer(self.drift, self.drift) * np.exp(-apart / times.drift), 0.0),
+            np.outer(self.model, self.model) * np.exp(-apart / times.model),
+            np.where(same, np.outer(self.state, self.state) * np.exp(-apart / times.state), 0.0),
+        )
+
+    def covariance(self, sizes: FloatArray, times: ErrorTimes) -> FloatArray:
+        """Covariance (m, m) of the errors by their sizes (4,)."""
+        return total_covariance(self.noise, self.processes(times), sizes)
+
+
+def total_covariance(
+    noise: FloatArray, processes: tuple[FloatArray, FloatArray, FloatArray], sizes: FloatArray
+) -> FloatArray:
+    """Covariance (m, m) of noise (m,) and processes, by sizes (4,)."""
+    drift, model, state = processes
+    total = sizes[1] ** 2 * drift + sizes[2] ** 2 * model + sizes[3] ** 2 * state
+    total[np.diag_indices_from(total)] += (sizes[0] * noise) ** 2
+    return np.asarray(total, np.float64)
 
 
 def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list[GroupRows]:
@@ -124,6 +166,12 @@ def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list
                 noise[stretches, channels],
                 np.array([CHANNELS[tow.channels[c]].noise for c in channels]),
                 np.full(len(values), MODEL_ANGLE) if angle else MODEL_FRACTION * values,
+                np.array(
+                    [
+                        CHANNELS[tow.channels[c]].bias_std(value)
+                        for c, value in zip(channels, values, strict=True)
+                    ]
+                ),
             )
         )
     return found

@@ -9,6 +9,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.motion.inputs import TowInputs, on_grid, stacked
 from trawl_ros.estimation.motion.knots import knots_of_counter, knots_of_log
+from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorTimes
 from trawl_ros.estimation.motion.records import LeftOut, MovingTow
 from trawl_ros.estimation.motion.series import Series, TowReadings
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
@@ -154,12 +155,16 @@ def _inputs(read: TowReadings, duration_s: float, options: StretchOptions) -> To
     end, memory = float(grid[-1]), options.memory_s
     std, time = options.counter_std_m, options.counter_time_s
     knots = (
-        knots_of_log(log.times, log.noise, end, options.knot_s, memory),
+        knots_of_log(
+            log.times, log.noise, end, options.knot_s, memory,
+            slow_std=STATE_SHARE * CHANNELS['speed'].bias_std(float(np.median(log.values))),
+            slow_time_s=ErrorTimes().state,
+        ),
         *(
             knots_of_counter(name, std, time, end, options.counter_knot_s, memory)
             for name in INPUTS[:2]
         ),
-    )
+    )  # fmt: skip
     values, rates = stacked(paths)
     return TowInputs(GRID_S, values, rates, headings, yaw_rates, knots)
 

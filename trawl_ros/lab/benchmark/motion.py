@@ -12,7 +12,8 @@ from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.estimation.motion.fit import MotionFit, MotionOptions, fit_motion
+from trawl_ros.estimation.motion.fit import fit_motion
+from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.inputs import TowInputs
 from trawl_ros.estimation.motion.knots import knots_of_log
 from trawl_ros.estimation.motion.nuisances import columns, layout_of, linear_part, point_of

@@ -8,7 +8,8 @@ from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.fit import MotionFit, MotionOptions, fit_motion
+from trawl_ros.estimation.motion.fit import fit_motion
+from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.inputs import (
     CorrectedInputs,
     TowInputs,
