@@ -1,6 +1,7 @@
 """Sea trials: identification and diagnosis from their bags, and the plan of a next one."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from trawl_ros.core.errors import TrawlError
@@ -10,6 +11,7 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.repair import source
 from trawl_ros.diagnosis.report.writing import write_diagnosis
+from trawl_ros.estimation.bag_motion import learn_from_motion, why_windows_alone
 from trawl_ros.estimation.bag_windows import read_tows
 from trawl_ros.estimation.from_gear import estimator_options, identification_for
 from trawl_ros.estimation.planning.plan import TrialPlan
@@ -43,6 +45,7 @@ def identify(
     prior: bool = True,
     net: bool = False,
     namespace: str = NAMESPACE,
+    motion: bool = False,
     scheduler: str | None = None,
     force: bool = False,
     on_note: OnNote = _silent,
@@ -68,6 +71,9 @@ def identify(
         True if drag and weight of the net are estimated along.
     namespace
         Of the topics.
+    motion
+        True if all of the tows is learned from too, hauling and veering included, which takes
+        minutes for each hour of tow; ``out`` has the results of the windows meanwhile.
     scheduler
         Address of a Dask cluster that reads the bags. A scheduler runs code: it must be trusted.
     force
@@ -78,7 +84,8 @@ def identify(
     Returns
     -------
     Report
-        With ``estimate`` (values and covariance, SI), residuals, what was held out.
+        With ``estimate`` (values and covariance, SI), residuals, what was held out; ``motion`` by
+        all of the tows, or ``motion_refused`` with the reason why not.
 
     Raises
     ------
@@ -116,6 +123,17 @@ def identify(
     result = report(identification, known, tows=names, gear=record, on_progress=on_progress)
     if out is not None:
         write_report(result, Path(out))
+    if motion:
+        why_not = why_windows_alone(record, prior=prior, net=net)
+        try:
+            if why_not:
+                raise TrawlError(why_not)
+            learned = learn_from_motion(record, identification, recordings, namespace, on_progress)
+            result = replace(result, motion=learned)
+        except TrawlError as reason:
+            result = replace(result, motion_refused=str(reason))
+        if out is not None:
+            write_report(result, Path(out))
     return result
 
 

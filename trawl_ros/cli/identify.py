@@ -17,6 +17,7 @@ from trawl_ros.cli.options import (
     SCHEDULER_OPTION,
 )
 from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.table import (
     channel_table,
@@ -41,6 +42,10 @@ TABLE_WIDTH = 100
     '--net', is_flag=True, help='Estimate drag and weight of the net along; else they are held as '
     'the gear file has them.',
 )  # fmt: skip
+@click.option(
+    '--motion/--steady', help='Learn from all of the tow too, hauling and veering included, and '
+    'show both: minutes of work for each hour of tow. Else from steady windows alone.',
+)  # fmt: skip
 @NAMESPACE_OPTION
 @SCHEDULER_OPTION
 @FORCE_OPTION
@@ -51,6 +56,7 @@ def command(
     truth: Path | None,
     no_prior: bool,
     net: bool,
+    motion: bool,
     namespace: str,
     scheduler: str | None,
     force: bool,
@@ -58,7 +64,8 @@ def command(
     """Refit the twelve board coefficients from BAGS, each of them a tow.
 
     Writes report.html, identification.json and figures. Each tow is left out in turn and
-    predicted from the others; with a single one, its steady states are.
+    predicted from the others; with a single one, its steady states are. Who stops it while it
+    learns from the motion finds the results of the windows in the folder.
     """
     console = error_console()
     with ProgressDisplay(console) as display:
@@ -69,6 +76,7 @@ def command(
             truth=truth,
             prior=not no_prior,
             net=net,
+            motion=motion,
             namespace=namespace,
             scheduler=scheduler,
             force=force,
@@ -88,3 +96,7 @@ def print_report(report: Report) -> None:
     console.print(channel_table(report), width=width)
     for line in closing_lines(report):
         console.print(line)
+    if report.motion is not None:
+        console.print(motion_table(report), width=width)
+    for line in motion_lines(report):
+        console.print(line, markup=False)

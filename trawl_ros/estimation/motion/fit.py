@@ -7,7 +7,6 @@ from functools import partial
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
-from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup, joined
@@ -38,6 +37,9 @@ was taken."""
 LEAST_DAMPING = 0.02
 """Damping below this is none."""
 
+LOST = 0.1
+"""Part of the stretches that a step may lose, where the motion of the model cannot be computed."""
+
 OnTow = Callable[[int, int, int], None]
 
 
@@ -56,14 +58,12 @@ class _Search:
     noise: tuple[FloatArray, ...] = ()
     damping: float = 0.0
 
-    def linearise(
-        self, at: Place, iteration: int, needed: Sequence[BoolArray | None]
-    ) -> tuple[LinearisedTow, ...]:
+    def linearise(self, at: Place, iteration: int) -> tuple[LinearisedTow, ...]:
         found = []
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
             then = partial(self.on_stretch, iteration, number)
-            found.append(linearise_tow(self.gear, tow, point, needed[number], then))
+            found.append(linearise_tow(self.gear, tow, point, on_stretch=then))
         return tuple(found)
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
@@ -89,20 +89,25 @@ class _Search:
     def advance(self, sizes: ErrorSizes, iteration: int) -> bool:
         """Take a step that lowers the cost, ever shorter; tell whether one was found."""
         data = self.data(self.linear, self.here)
-        before = cost(data, self.here, sizes)
-        needed = [tow.towed for tow in self.linear]
+        towed = [tow.towed for tow in self.linear]
         for _ in range(self.options.attempts):
             there = step(
                 data, self.here, self.prior, sizes, self.options.largest_step, self.damping
             )
-            try:
-                tried = self.linearise(there, iteration, needed)
-            except NoSteadyState:
-                pass
-            else:
-                # Stretches that can be towed there alone would raise the cost by being there.
-                alike = [only(tow, flags) for tow, flags in zip(tried, needed, strict=True)]
-                if cost(self.data(alike, there), there, sizes) <= before * (1.0 + 1e-9):
+            tried = self.linearise(there, iteration)
+            both = [old & new.towed for old, new in zip(towed, tried, strict=True)]
+            lost = sum(int(np.sum(old)) for old in towed) - sum(int(np.sum(b)) for b in both)
+            if lost <= LOST * sum(int(np.sum(old)) for old in towed):
+                # Stretches that can be towed at one place alone belong to neither cost.
+                before, after = (
+                    cost(
+                        self.data([only(*each) for each in zip(tows, both, strict=True)], z),
+                        z,
+                        sizes,
+                    )
+                    for tows, z in ((self.linear, self.here), (tried, there))
+                )
+                if after <= before * (1.0 + 1e-9):
                     self.here, self.linear = there, tried
                     self.damping *= LOOSER
                     if self.damping < LEAST_DAMPING:
@@ -139,7 +144,7 @@ def fit_motion(
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
     search = _Search(gear, tows, layouts, prior, options, on_stretch, here)
     search.noise = tuple(tow.noise for tow in tows)
-    search.linear = search.linearise(here, 0, [None for _ in tows])
+    search.linear = search.linearise(here, 0)
     sizes = options.sizes
     reason = f'still moving after {options.iterations} iterations'
     converged, iteration, temper = False, 0, np.inf

@@ -183,7 +183,7 @@ def linearise_tow(
     point
         Point of linearisation.
     required
-        Flags (n,) of stretches that may not be left out.
+        Flags (n,) of stretches that may not be left out, none where None.
     on_stretch
         Called after each stretch, with its number.
 

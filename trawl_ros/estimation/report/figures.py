@@ -7,12 +7,14 @@ from trawl_ros.estimation.report.figures_coefficients import (
 )
 from trawl_ros.estimation.report.figures_course import convergence_figure, objective_figure
 from trawl_ros.estimation.report.figures_fit import channels_figure, residuals_figure
+from trawl_ros.estimation.report.figures_motion import motion_figure
 from trawl_ros.estimation.report.figures_tows import held_out_figure, tow_biases_figure
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.report.pictures import Drawing
 
 FIT = 'How well it fits'
 KNOWN = 'What the data know'
+IN_MOTION = 'What motion adds'
 COURSE = 'How it got there'
 
 
@@ -20,7 +22,8 @@ def drawings(report: Report) -> list[Drawing]:
     """Return all figures for which the report has the numbers."""
     if report.paired:
         return [*_fit(report), _objective(report)]
-    return [*_fit(report), *_known(report), _objective(report), _convergence(report)]
+    course = [_objective(report), _convergence(report)]
+    return [*_fit(report), *_known(report), *_motion(report), *course]
 
 
 def _fit(report: Report) -> list[Drawing]:
@@ -73,6 +76,19 @@ def _known(report: Report) -> list[Drawing]:
             '95 % bands. Shaded: where the boards worked, where that is known.',
             lift_drag_figure(report), KNOWN,
         ),
+    ]  # fmt: skip
+
+
+def _motion(report: Report) -> list[Drawing]:
+    if report.motion is None:
+        return []
+    return [
+        Drawing(
+            'motion',
+            'Each coefficient by its steady windows and by all of the tow, in standard deviations '
+            'of the prior; below, what either leaves of these.',
+            motion_figure(report.motion, report.truth), IN_MOTION,
+        )
     ]  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from trawl_ros.core.version import __version__
 from trawl_ros.estimation.fit.laws import LAWS
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.figures import drawings
+from trawl_ros.estimation.report.motion import coefficient_rows, motion_lines
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.report.result import result
@@ -63,6 +64,8 @@ def report_page(report: Report, pictures: Iterable[Picture], advice: Sequence[st
         verdict=verdict(report),
         advice=advice,
         coefficients=_coefficients(report),
+        motion=coefficient_rows(report.motion, report.truth) if report.motion else [],
+        motion_lines=motion_lines(report),
         sections=by_section(pictures),
         residuals=[_residual(row) for row in report.residuals],
         channels=PAPER_CHANNELS,

@@ -20,6 +20,7 @@ from trawl_ros.estimation.fit.laws import (
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
 from trawl_ros.estimation.report.holdout import HeldOut, hold_out
 from trawl_ros.estimation.report.residuals import (
@@ -99,6 +100,10 @@ class Report:
         Quantities of the boards' laws; None where the gear is not at hand, or has no boards.
     paired
         True for a gear without boards, whose coefficients do nothing.
+    motion
+        What all of the tows tell, where that was asked for and can be told.
+    motion_refused
+        Reason for which it cannot, in a sentence without its full stop; '' without one.
 
     Examples
     --------
@@ -128,6 +133,8 @@ class Report:
     spectrum: Spectrum
     laws: KnownLaws | None
     paired: bool = False
+    motion: MotionOutcome | None = None
+    motion_refused: str = ''
 
     @property
     def inputs(self) -> FloatArray:

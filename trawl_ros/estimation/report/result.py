@@ -5,6 +5,7 @@ import math
 from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.motion import motion_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -13,6 +14,7 @@ from trawl_ros.records.coefficients import COEFFICIENTS
 def result(report: Report) -> dict[str, object]:
     """Build the content of ``identification.json``; numbers that do not exist are None."""
     estimate, errors = report.estimate, report.errors
+    asked = report.motion is not None or report.motion_refused
     return {
         'windows': estimate.windows,
         'rejected': dict(report.rejected),
@@ -67,6 +69,7 @@ def result(report: Report) -> dict[str, object]:
         'innovations': {row.channel: _statistics(row) for row in report.innovations},
         'laws': _laws(report),
         'rejected_last': dict(report.found),
+        **({'motion': motion_result(report)} if asked else {}),
     }
 
 

@@ -1,0 +1,146 @@
+"""``trawl identify --motion`` learns from all of the tow, or says why it cannot."""
+
+import json
+from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from trawl_ros.estimation import bag_motion
+from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.samples import VelocitySample, WinchSample
+from trawl_ros.records.topics import NAMESPACE
+
+SECOND = 1_000_000_000
+
+
+@pytest.fixture
+def identify(run, coarse_gear):
+    """Run ``trawl identify --motion`` with the gear that the bags were made with."""
+    return lambda *arguments: run('identify', '--motion', '--gear', coarse_gear, *arguments)
+
+
+@pytest.fixture(scope='module')
+def still_bag(steady_tow, tmp_path_factory):
+    """Eleven minutes in one steady state, of which the model is the plant."""
+    still = replace(steady_tow, states=(steady_tow.states[0],))
+    return still.bag(tmp_path_factory.mktemp('bags') / 'still', leg_s=661)
+
+
+def result_in(folder):
+    return json.loads((folder / 'identification.json').read_text())
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+def test_a_still_tow_of_the_model_comes_to_rest(identify, still_bag, tmp_path):
+    done = identify(still_bag, '--out', tmp_path / 'out')
+    assert done.exit_code == 0, done.output
+    found = result_in(tmp_path / 'out')['motion']
+    assert found['converged'], found['reason']
+    assert 0.5 < found['misfit'] < 1.5
+
+
+def test_both_estimates_are_shown_beside_one_another(identify, still_bag, tmp_path, monkeypatch):
+    # One step, with errors as stated, is enough to be shown.
+    quick = partial(MotionOptions, iterations=1, attempts=1, estimate_sizes=False)
+    monkeypatch.setattr(bag_motion, 'MotionOptions', quick)
+    out = tmp_path / 'out'
+    done = identify(still_bag, '--out', out)
+    assert done.exit_code == 0, done.output
+    found = result_in(out)['motion']
+    assert list(found['coefficients']) == list(COEFFICIENTS)
+    for row in found['coefficients'].values():
+        assert row['low'] <= row['value'] <= row['high']
+        assert 0.0 < row['std'] <= 1.01 * row['prior_std']
+        assert row['ratio'] == pytest.approx(row['std'] / row['windows_std'])
+    assert found['left_out'][0]['why'] == 'what the gear did before is not known'
+    assert found['counted_s'] == 360.0
+    assert (out / 'motion.png').exists()
+    assert 'All of the tow beside its steady windows' in (out / 'report.html').read_text()
+    assert 'all of the tow' in done.stdout
+    assert 'Std over that of the prior, geometric mean' in done.stdout
+
+
+def test_without_pay_out_speeds_windows_alone_are_used_and_that_is_told(
+    identify, steady_tow, tmp_path
+):
+    silent = (
+        replace(sample, speeds=(np.nan, np.nan)) if isinstance(sample, WinchSample) else sample
+        for sample in steady_tow.samples()
+    )
+    bag = steady_tow.write(tmp_path / 'bag', silent)
+    out = tmp_path / 'out'
+    done = identify(bag, '--out', out)
+    assert done.exit_code == 0, done.output
+    found = result_in(out)
+    assert found['windows'] >= 1
+    assert 'Steady windows alone were used' in done.stdout
+    assert not (out / 'motion.png').exists()
+    assert "0 readings of the winches' pay-out speed" in found['motion']['refused']
+
+
+def tows_of(gear, bag):
+    """Tows in motion of a bag, and the sentences on what cannot be used."""
+    tows, numbers, refused = bag_motion.moving_tows(
+        gear, [SimpleNamespace(name=str(bag), windows=())], NAMESPACE, lambda progress: None
+    )
+    assert len(tows) == len(numbers)
+    return tows, refused
+
+
+def without_log(samples, begin, end):
+    for sample in samples:
+        if not (isinstance(sample, VelocitySample) and begin < sample.stamp / SECOND < end):
+            yield sample
+
+
+def test_a_tow_too_short_is_refused_and_told(gear, steady_tow, tmp_path):
+    tows, refused = tows_of(gear, steady_tow.bag(tmp_path / 'bag', leg_s=250))
+    assert not tows
+    assert refused == [f'{tmp_path / "bag"}: lasts 499 s, expected at least 600 s']
+
+
+def test_a_log_that_falls_silent_divides_a_tow(gear, steady_tow, tmp_path):
+    samples = list(steady_tow.samples(leg_s=700))
+    bag = steady_tow.write(tmp_path / 'bag', without_log(samples, 690, 730))
+    tows, refused = tows_of(gear, bag)
+    assert not refused
+    assert [tow.name for tow in tows] == [f'{bag}, part 1', f'{bag}, part 2']
+    assert len(tows[0]) == 690 // 30
+    assert 20 <= len(tows[1]) <= 22
+    assert tows[1].start_ns >= 730 * SECOND
+    assert np.all(tows[1].counts[:, tows[1].channels.index('door_spread')] >= 28)
+
+
+def test_a_log_that_leaves_no_part_long_enough_is_told(gear, steady_tow, tmp_path):
+    bag = steady_tow.write(tmp_path / 'bag', without_log(steady_tow.samples(), 390, 430))
+    tows, refused = tows_of(gear, bag)
+    assert not tows
+    assert 'no part of 600 s is left' in refused[0]
+
+
+def test_what_is_asked_for_beside_and_cannot_be_had_in_motion_is_told(gear, pair_gear):
+    assert bag_motion.why_windows_alone(gear, prior=True, net=False) is None
+    assert 'prior' in bag_motion.why_windows_alone(gear, prior=False, net=False)
+    assert 'net' in bag_motion.why_windows_alone(gear, prior=True, net=True)
+    assert 'no boards' in bag_motion.why_windows_alone(pair_gear, prior=True, net=False)
+
+
+def test_who_stops_it_on_the_way_has_the_results_of_the_windows(
+    identify, still_bag, tmp_path, monkeypatch
+):
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(bag_motion, 'fit_motion', stopped)
+    out = tmp_path / 'out'
+    done = identify(still_bag, '--out', out)
+    assert done.exit_code != 0
+    found = result_in(out)
+    assert found['windows'] >= 1
+    assert 'motion' not in found
+    assert (out / 'report.html').exists()

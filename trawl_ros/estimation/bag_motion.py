@@ -1,0 +1,145 @@
+"""Learning from all of the tow in bags, from what their steady windows tell on."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from trawl_ros.bags.samples import SampleStream
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.fit import fit_motion
+from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.estimation.motion.holdout import hold_out_states
+from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.motion.parts import parts_of
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.series import tow_readings
+from trawl_ros.estimation.motion.start import starting_point
+from trawl_ros.estimation.motion.stretches import FEWEST, StretchOptions, moving_tow
+from trawl_ros.estimation.motion.towing import TowedGear
+from trawl_ros.estimation.pipeline import Identification
+from trawl_ros.estimation.tows import FoundWindows
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.water import build_water
+
+STRETCHES = StretchOptions(step_s=3.0, stretch_s=30.0, knot_s=30.0, counter_knot_s=90.0)
+"""Of a tow of hours; the linearised tow costs some twenty times less time than it took at sea."""
+
+STAGE = 'towing all of it'
+
+Refused = Callable[[str], None]
+
+
+def why_windows_alone(gear: GearRecord, *, prior: bool, net: bool) -> str | None:
+    """Reason, in a sentence, for which all of a tow cannot be used; None where it can."""
+    if gear.pair is not None:
+        return f'{gear.name} has no boards, and only their coefficients are learned in motion'
+    if effects_of(gear):
+        return f'{gear.name} has effects switched on, with which no motion is fitted yet'
+    if net:
+        return 'drag and weight of the net cannot be estimated along in motion yet'
+    if not prior:
+        return 'in motion the prior of the gear file always takes part'
+    return None
+
+
+def learn_from_motion(
+    gear: GearRecord,
+    identification: Identification,
+    recordings: Sequence[FoundWindows],
+    namespace: str,
+    on_progress: OnProgress,
+) -> MotionOutcome:
+    """Fit all of the tows, from the estimate of their steady windows on.
+
+    Parameters
+    ----------
+    gear
+        The gear as the model has it.
+    identification
+        At rest, with the windows of all recordings.
+    recordings
+        In the order in which the identification took them.
+    namespace
+        Of the topics.
+    on_progress
+        Called after each stretch that was towed, with the time (s) towed so far.
+
+    Raises
+    ------
+    TrawlError
+        If no bag can be used, with a reason for each, or the model cannot be towed along them.
+    """
+    estimate = identification.estimate
+    if estimate is None:
+        raise TrawlError(identification.why_not() or 'nothing is estimated')
+    tows, numbers, refused = moving_tows(gear, recordings, namespace, on_progress)
+    if not tows:
+        raise TrawlError('; '.join(refused))
+    prior, options, towed = board_prior(gear), MotionOptions(), TowedGear(build_model(gear))
+    layouts = [layout_of(tow, towed.motions, options.model) for tow in tows]
+    start = [
+        starting_point(estimate, prior, tow, layout, of_tow)
+        for tow, layout, of_tow in zip(tows, layouts, numbers, strict=True)
+    ]
+    done = 0.0
+
+    def show(iteration: int, tow: int, stretch: int) -> None:
+        nonlocal done
+        done += tows[tow].stretch_s
+        of = f' of {len(tows)}' if len(tows) > 1 else ''
+        minute = (stretch + 1) * tows[tow].stretch_s / 60.0
+        detail = f'step {iteration}, tow {tow + 1}{of}, minute {minute:.0f}'
+        on_progress(WorkProgress(STAGE, done, None, 's', detail))
+
+    fit = fit_motion(towed, tows, prior, options, start, show)
+    if not fit.readings:
+        raise TrawlError('the model cannot be towed along any stretch of the tows')
+    held_out = hold_out_states(
+        fit, prior, identification.estimator.windows, numbers, identification.estimator.predictions
+    )
+    return MotionOutcome(fit, prior, estimate, tuple(refused), held_out)
+
+
+def moving_tows(
+    gear: GearRecord, recordings: Sequence[FoundWindows], namespace: str, on_progress: OnProgress
+) -> tuple[list[MovingTow], list[tuple[int, ...]], list[str]]:
+    """Read bags as tows in motion.
+
+    Returns
+    -------
+    list
+        The tows: of a bag whose inputs fall silent on the way, one for each part.
+    list
+        For each, the numbers of its bag's tows among those of the windows.
+    list
+        A sentence for each bag that cannot be used.
+    """
+    tows: list[MovingTow] = []
+    numbers: list[tuple[int, ...]] = []
+    refused: list[str] = []
+    depth, first = build_water(gear).depth, 0
+    shortest = STRETCHES.settling_s + FEWEST * STRETCHES.stretch_s
+    for number, recording in enumerate(recordings):
+        on_progress(WorkProgress('reading all of it', number, len(recordings), 'bags'))
+        own = 1 + max((window.tow for window in recording.windows), default=-1)
+        samples = (sample for _, sample in SampleStream([Path(recording.name)], namespace))
+        try:
+            read = tow_readings(samples, depth, recording.name)
+            parts = parts_of(read, shortest)
+            if not parts:
+                raise TrawlError(
+                    f'{recording.name}: counters, log or winches fall silent so often that no '
+                    f'part of {shortest:.0f} s is left'
+                )
+            for place, part in enumerate(parts, start=1):
+                several = f', part {place}' if len(parts) > 1 else ''
+                tows.append(moving_tow(part, recording.name + several, STRETCHES))
+                numbers.append(tuple(range(first, first + own)))
+        except TrawlError as error:
+            refused.append(str(error))
+        first += own
+    return tows, numbers, refused

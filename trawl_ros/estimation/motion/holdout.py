@@ -1,0 +1,106 @@
+"""Hold-out of steady states from a fit in motion, at the place where its tows are linearised."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
+from trawl_ros.estimation.motion.information import LinearGroup
+from trawl_ros.estimation.motion.processes import GroupRows
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.sizes import LinearData
+from trawl_ros.estimation.motion.steps import step
+from trawl_ros.estimation.windows.records import SteadyWindow
+
+FOLDS = 5
+"""Parts into which the states of a single tow are dealt, as by the hold-out of the windows."""
+
+Predict = Callable[[FloatArray, Sequence[SteadyWindow]], FloatArray]
+"""Channels of eq. 35 (n, 4) in windows, by coefficients (12,)."""
+
+
+def hold_out_states(
+    fit: MotionFit,
+    prior: ParameterVector,
+    windows: Sequence[SteadyWindow],
+    tow_of: Sequence[tuple[int, ...]],
+    predict: Predict,
+    seed: int = 0,
+) -> FloatArray:
+    """Predict each window by a fit without its tow, or its state where there is one tow.
+
+    A state is left out with the motion that led to it: from the end of the state before to its own
+    end. The tows are not towed again.
+
+    Parameters
+    ----------
+    fit, prior
+        The fit in motion.
+    windows
+        Steady windows (n).
+    tow_of
+        Of each tow of the fit, the numbers of its tows among the windows.
+    predict
+        Predicts windows.
+    seed
+        Of the order in which states are dealt.
+    """
+    predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
+    tows = sorted({window.tow for window in windows})
+    if len(tows) > 1:
+        folds = [{window.state for window in windows if window.tow == tow} for tow in tows]
+    else:
+        states = np.random.default_rng(seed).permutation(sorted({w.state for w in windows}))
+        parts = np.array_split(states, min(FOLDS, len(states)))
+        folds = [set(part.tolist()) for part in parts]
+    if len(folds) < 2:
+        return predicted
+    options = MotionOptions()
+    for fold in folds:
+        hidden = {window.tow for window in windows if window.state in fold}
+        keep = [
+            np.zeros(len(linear.tow), np.bool_)
+            if len(tows) > 1 and hidden & set(numbers)
+            else ~_stretches(linear.tow, windows, fold, numbers)
+            for linear, numbers in zip(fit.linear, tow_of, strict=True)
+        ]
+        data = restricted(fit.data, keep)
+        there = step(data, fit.parameters, prior, fit.sizes, options.largest_step)
+        rows = [i for i, window in enumerate(windows) if window.state in fold]
+        values = prior.start + prior.std * there[0][:12]
+        predicted[rows] = predict(values, [windows[i] for i in rows])
+    return predicted
+
+
+def _stretches(
+    tow: MovingTow, windows: Sequence[SteadyWindow], states: set[int], numbers: Sequence[int]
+) -> BoolArray:
+    """Flags (n,) of the stretches that belong to states, with what led to them."""
+    flags = np.zeros(len(tow), np.bool_)
+    own = sorted((w for w in windows if w.tow in numbers), key=lambda window: window.end_ns)
+    before = -np.inf
+    for number, window in enumerate(own):
+        end = (window.end_ns - tow.start_ns) / SECOND
+        if window.state in states:
+            flags |= (tow.middles > before) & (tow.middles <= end)
+        if number + 1 == len(own) or own[number + 1].state != window.state:
+            before = end
+    return flags
+
+
+def restricted(data: LinearData, keep: Sequence[BoolArray]) -> LinearData:
+    """Linearised tows with the flagged (n,) stretches of each alone."""
+    tows = []
+    for groups, flags in zip(data.tows, keep, strict=True):
+        found = []
+        for group in groups:
+            rows = flags[group.rows.stretches]
+            parts = {name: values[rows] for name, values in vars(group.rows).items()}
+            found.append(LinearGroup(GroupRows(**parts), group.columns[rows], group.residual[rows]))
+        tows.append(tuple(found))
+    return replace(data, tows=tuple(tows))

@@ -1,0 +1,130 @@
+"""Rows, sentences and JSON on what all of the tow adds to its steady windows."""
+
+from rich.table import Table
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.files import finite
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae
+from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.report.report import Report
+from trawl_ros.records.coefficients import COEFFICIENTS
+
+CAUTION = (
+    'Of one tow whose plant is not the model, intervals in motion held 10 of 12 true coefficients, '
+    'where 11.4 are due: they are too narrow (docs/identification/motion.md).'
+)
+
+MOST_NAMED = 3
+"""Stretches that are named in a sentence."""
+
+
+def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[dict[str, object]]:
+    """Rows of the coefficients: prior std, estimates of windows and whole tow, ratio of std."""
+    windows, rows = motion.windows, []
+    for i, name in enumerate(COEFFICIENTS):
+        row: dict[str, object] = {
+            'name': name,
+            'prior_std': float(motion.prior.std[i]),
+            'windows': float(windows.values[i]),
+            'windows_std': float(windows.std[i]),
+            'value': float(motion.fit.values[i]),
+            'std': float(motion.std[i]),
+            'low': float(motion.low[i]),
+            'high': float(motion.high[i]),
+            'ratio': float(motion.ratio[i]),
+        }
+        if truth is not None:
+            row['truth'] = float(truth[i])
+            row['inside'] = bool(motion.low[i] <= truth[i] <= motion.high[i])
+        rows.append(row)
+    return rows
+
+
+def motion_table(report: Report) -> Table:
+    """Std of the prior, windows' and whole tow's estimate with theirs, and the ratio of these."""
+    motion = report.motion
+    assert motion is not None
+    minutes = motion.duration_s / 60.0
+    table = Table(title=f'Steady windows alone, and all of the tow ({minutes:.0f} min)')
+    table.add_column('', style='bold')
+    headings = ['prior', 'windows', 'all of the tow', 'ratio']
+    if report.truth is not None:
+        headings += ['truth', 'in interval']
+    for heading in headings:
+        table.add_column(heading, justify='right', no_wrap=True)
+    for row in coefficient_rows(motion, report.truth):
+        cells = [
+            f'{row["prior_std"]:.3f}',
+            f'{row["windows"]:.3f} ± {row["windows_std"]:.3f}',
+            f'{row["value"]:.3f} ± {row["std"]:.3f}',
+            f'{row["ratio"]:.2f}',
+        ]
+        if report.truth is not None:
+            cells += [f'{row["truth"]:.3f}', 'yes' if row['inside'] else '[red]no[/red]']
+        table.add_row(str(row['name']), *cells)
+    return table
+
+
+def motion_lines(report: Report) -> list[str]:
+    """Sentences on the fit in motion; why there is none where it was asked for."""
+    motion = report.motion
+    if motion is None:
+        why = report.motion_refused
+        return [f'Steady windows alone were used: {why}.'] if why else []
+    means, fit = motion.geometric_means, motion.fit
+    lines = [
+        f'Std over that of the prior, geometric mean: {means["windows"]:.3f} by the windows, '
+        f'{means["whole"]:.3f} by all of the tow, a ratio of {means["ratio"]:.2f}.',
+        f'{_held_out(report, motion)}',
+        f'{"At rest" if fit.converged else "NOT at rest"}: {fit.reason}. Whitened residuals have '
+        f'{fit.misfit:.2f} of their std.',
+    ]
+    for name, part in motion.left_out:
+        lines.append(f'Left out: {name}, {part.begin:.0f} to {part.end:.0f} s: {part.why}.')
+    if poor := motion.poor:
+        places = ', '.join(
+            f'{each.tow} at {each.begin:.0f} s ({each.size:.1f})' for each in poor[:MOST_NAMED]
+        )
+        lines.append(f'Stretches that fit badly: {len(poor)}, the worst {places}.')
+    lines += [f'Not used: {sentence}' for sentence in motion.refused]
+    return [*lines, CAUTION]
+
+
+def _held_out(report: Report, motion: MotionOutcome) -> str:
+    by = 'Tows' if report.held_out.by == 'tow' else 'States'
+    windows = mnae(report.held_out.predicted, report.measured)
+    whole = mnae(motion.held_out, report.measured)
+    errors = ', '.join(
+        f'{channel.words} {100.0 * new:.1f} % (windows alone {100.0 * old:.1f} %)'
+        for channel, new, old in zip(PAPER_CHANNELS, whole, windows, strict=True)
+    )
+    return f'{by} held out: {errors}.'
+
+
+def motion_result(report: Report) -> dict[str, object]:
+    """Build what ``identification.json`` has on the fit in motion."""
+    motion = report.motion
+    if motion is None:
+        return {'refused': report.motion_refused}
+    fit = motion.fit
+    whole = mnae(motion.held_out, report.measured)
+    return {
+        'coefficients': {row.pop('name'): row for row in coefficient_rows(motion, report.truth)},
+        'covariance': fit.covariance.tolist(),
+        'geometric_means': motion.geometric_means,
+        'mnae_held_out': {
+            channel.name: finite(error)
+            for channel, error in zip(PAPER_CHANNELS, whole, strict=True)
+        },
+        'converged': fit.converged,
+        'reason': fit.reason,
+        'iterations': fit.iterations,
+        'misfit': fit.misfit,
+        'readings': fit.readings,
+        'counted_s': motion.duration_s,
+        'tows': list(motion.names),
+        'whitened': dict(motion.spread),
+        'poor_stretches': [vars(each) for each in motion.poor],
+        'left_out': [{'tow': name, **vars(part)} for name, part in motion.left_out],
+        'not_used': list(motion.refused),
+    }
