@@ -39,7 +39,7 @@ class MotionOutcome:
     fit
         The fit.
     prior, windows
-        What was known before, and the estimate of the steady windows.
+        The prior, and the estimate of the steady windows.
     refused
         A sentence for each bag, or part of one, that is not in the fit.
     held_out : (n, 4) array

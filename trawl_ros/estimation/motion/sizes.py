@@ -155,7 +155,7 @@ class GroupGivenOthers:
     spread : tuple of (m, m) arrays
         Covariance of that by the tow's own parameters.
     matrix : (s, s) array
-        What the others and the prior know of the shared parameters.
+        Information of the others and the prior on the shared parameters.
     """
 
     noise: tuple[FloatArray, ...]

@@ -35,7 +35,7 @@ def step(
     data
         Linearised tows.
     here
-        Where they are linearised.
+        Place where they are linearised.
     prior
         Of the twelve coefficients.
     sizes
@@ -43,7 +43,7 @@ def step(
     largest
         Largest change of a coefficient, in prior std.
     damping
-        What staying weighs, as a part of what the data know of each parameter; 0 is Gauss-Newton.
+        Weight of staying, as a part of what the data know of each parameter; 0 is Gauss-Newton.
     """
     shared = data.shared
     tows, precisions = data.information(sizes), data.precisions(sizes.log)

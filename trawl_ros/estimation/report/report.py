@@ -101,7 +101,7 @@ class Report:
     paired
         True for a gear without boards, whose coefficients do nothing.
     motion
-        What all of the tows tell, where that was asked for and can be told.
+        Outcome of learning from all of the tows, where that was asked for and can be told.
     motion_refused
         Reason for which it cannot, in a sentence without its full stop; '' without one.
 
