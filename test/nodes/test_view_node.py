@@ -15,7 +15,7 @@ from trawl_ros.records.samples import RangeSample, WinchSample  # noqa: E402
 from trawl_ros.view import live  # noqa: E402
 from trawl_ros.view.live import LiveView  # noqa: E402
 from trawl_ros.view.reading import TOPICS  # noqa: E402
-from trawl_ros.view.records import Quantities  # noqa: E402
+from trawl_ros.view.records import Innovations, Note, Quantities  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -72,6 +72,18 @@ def test_a_tow_that_begins_anew_is_a_recording_of_its_own(tmp_path):
     assert view.trouble == ''
     assert set(lengths(tmp_path / 'live.rrd').values()) == {1300.0}
     assert set(lengths(tmp_path / 'live_2.rrd').values()) == {300.0}
+
+
+def test_estimates_that_lag_behind_the_readings_begin_no_tow(tmp_path):
+    view = recorded_to(tmp_path / 'live.rrd')
+    for second in range(30):
+        view.put(Quantities((1000 + second) * SECOND, 'measured', {'port_length': 300.0}))
+        view.put(Note(second * SECOND, 'estimator', 'INFO', 'a window of long ago'))
+        view.put(Innovations(second * SECOND, {'door_spread': 1.0}))
+    view.close()
+    assert (view.trouble, view.shown) == ('', 90)
+    assert len(lengths(tmp_path / 'live.rrd')) == 30
+    assert not (tmp_path / 'live_2.rrd').exists()
 
 
 def test_what_a_slow_viewer_does_not_take_is_given_up_and_counted(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from threading import Event, Lock, Thread
 from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.time import SECOND
 from trawl_ros.view.recording import to_file, to_viewer
-from trawl_ros.view.records import Shown
+from trawl_ros.view.records import Coefficients, Innovations, Note, Shown
 from trawl_ros.view.rerun_log import RerunLog
 from trawl_ros.view.viewer.rerun_library import rr
 from trawl_ros.view.viewer.viewer import Kind, Viewer
@@ -24,6 +24,9 @@ IDLE_S = 0.02
 BACK_S = 120.0
 CONFIRM = 20
 """So many records in a row that are stamped so far back begin a tow anew."""
+
+LAGGING = (Coefficients, Innovations, Note)
+"""Records of windows, which are thought about while the tow goes on: they begin no tow."""
 
 ENDS_S = 15.0
 
@@ -166,13 +169,14 @@ class LiveView:
             return self._waiting.popleft() if self._waiting else None
 
     def _show(self, record: Shown) -> None:
-        if self._newest is not None and record.stamp < self._newest - BACK_S * SECOND:
-            self._back += 1
-            if self._back < CONFIRM:
-                return
-            self._begin()
-        self._back = 0
-        self._newest = max(record.stamp, self._newest or record.stamp)
+        if not isinstance(record, LAGGING):
+            if self._newest is not None and record.stamp < self._newest - BACK_S * SECOND:
+                self._back += 1
+                if self._back < CONFIRM:
+                    return
+                self._begin()
+            self._back = 0
+            self._newest = max(record.stamp, self._newest or record.stamp)
         self._logged(lambda log: log.show(record))
         self.shown += 1
 

@@ -70,6 +70,9 @@ TOPICS = (
 )
 """Relative names of the topics that are shown."""
 
+LAGGING = (IDENTIFICATION, INNOVATION, FINDINGS, TRIAL)
+"""Topics whose stamps are those of windows, which are thought about while the tow goes on."""
+
 FAR_BACK_S = 120.0
 """Stamps further back than this are those of a tow that has begun anew."""
 
@@ -146,7 +149,8 @@ class TowReader:
         stamp = _stamp(topic, message)
         newest = self._newest
         # A sweep is stamped at its first ping, seconds before it comes.
-        if newest is None or stamp > newest or stamp < newest - FAR_BACK_S * SECOND:
+        moved = newest is None or stamp > newest or stamp < newest - FAR_BACK_S * SECOND
+        if moved and topic not in LAGGING:
             # Of the instant before, which is complete.
             gear = None if newest is None else self._gear.drawn(newest)
             if gear is not None:
