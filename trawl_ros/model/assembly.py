@@ -8,6 +8,7 @@ to rounding.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarMotion
 from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
-from trawl_ros.model.numerics import STEP, skew
+from trawl_ros.model.numerics import STEP, skew, stepped
 from trawl_ros.model.point_pass import fill_board_masses, fill_masses, fill_points, gather_loads
 from trawl_ros.model.rotations import rotation
 from trawl_ros.model.state import State, Tow
@@ -272,19 +273,13 @@ def _rigged_blocks(
 
 def _board_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Boards' own loads by the complex step in their 12 positions and velocities."""
-    turn = np.zeros((12, 1, 3), complex)
-    shift = np.zeros((12, 1, 3), complex)
-    velocity = np.zeros((12, 1, 3), complex)
-    rate = np.zeros((12, 1, 3), complex)
-    for axis in range(3):
-        shift[axis, 0, axis] = turn[3 + axis, 0, axis] = 1j * STEP
-        velocity[6 + axis, 0, axis] = rate[9 + axis, 0, axis] = 1j * STEP
+    shift, turned, velocity, rate = _board_steps()
     load = board_physics.own_load(
         model.board,
         model.coefficients,
         OUTWARD,
         state.board_positions + shift,
-        rotation(turn) @ state.board_rotations,
+        turned @ state.board_rotations,
         state.board_velocities + velocity,
         state.board_rates + rate,
         model.water,
@@ -293,18 +288,33 @@ def _board_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArra
     return -slopes[..., :6], -slopes[..., 6:], load[0].real
 
 
+@cache
+def _board_steps() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Complex steps in a board's place, attitude (as rotations), velocity and rate, in this order:
+    each of them for all twelve.
+    """
+    steps = stepped(np.zeros((12, 12)), np.eye(12)).reshape(12, 4, 1, 3)
+    return steps[:, 0], rotation(steps[:, 1]), steps[:, 2], steps[:, 3]
+
+
+@cache
+def _kite_steps() -> FloatArray:
+    """Complex steps (12, 2, 2, 3) in place and velocity of both carrying points of the kite."""
+    return stepped(np.zeros((12, 12)), np.eye(12)).reshape(12, 2, 2, 3)
+
+
 def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The kite's load by the complex step in its two carriers' positions and velocities."""
     held = model.layout.kite
     if not held.held:
         return np.zeros((1, 9, 9)), np.zeros((1, 9, 9)), np.zeros(3)
-    steps = (1j * STEP * np.eye(12)).reshape(12, 2, 2, 3)
+    steps = _kite_steps()
     x = held.weights @ state.nodes[held.nodes] + steps[:, 0]
     v = held.weights @ state.node_velocities[held.nodes] + steps[:, 1]
     load = kite_physics.load(model.kite, x[:, 0], x[:, 1], v[:, 0], v[:, 1], model.water)
-    slopes = (load.imag / STEP).T.reshape(3, 2, 6) @ np.kron(held.weights, np.eye(3))
-    blocks = np.einsum('i,jvk->vijk', held.shares, slopes).reshape(2, 9, 9)
-    return -blocks[:1], -blocks[1:], load[0].real
+    slopes = (load.imag / STEP).T.reshape(3, 2, 6) @ held.carried
+    blocks = -(held.shares[:, None, None, None] * slopes).transpose(2, 0, 1, 3).reshape(2, 9, 9)
+    return blocks[:1], blocks[1:], load[0].real
 
 
 def _lump_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import SuperLU, splu
 
 from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.memory import keep_freed_memory
 from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.solver.frontal.elimination import Elimination, elimination
 from trawl_ros.solver.frontal.fronts import factorise, solve
@@ -23,6 +24,8 @@ fixed order are not trusted and SuperLU chooses its own."""
 
 ROUNDING = 1e-14
 """Such a share is that of rounding: with the default gear it stays below 2.5e-15."""
+
+keep_freed_memory()
 
 MANY = 6
 """So many right-hand sides are solved faster side by side than one after another."""

@@ -24,6 +24,12 @@ class KiteNodes:
         return shares
 
     @cached_property
+    def carried(self) -> FloatArray:
+        """Change (6, 9) of both carrying points with the places of the three nodes."""
+        carried: FloatArray = np.asarray(np.kron(self.weights, np.eye(3)), float)
+        return carried
+
+    @cached_property
     def held(self) -> bool:
         """True if there is a kite."""
         return bool(self.weights.any())
