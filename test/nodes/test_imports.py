@@ -17,7 +17,7 @@ from trawl_ros.gear.records import EffectRecord
 from trawl_ros.lab.running.own_graph import own_graph
 
 HEAVY = ('dask', 'jinja2', 'jsonschema', 'llvmlite', 'matplotlib', 'numba', 'pandas', 'rich',
-         'scipy', 'scipy.stats')  # fmt: skip
+         'scipy', 'scipy.interpolate', 'scipy.optimize', 'scipy.stats')  # fmt: skip
 MODEL = {'llvmlite', 'numba', 'scipy'}
 
 LIMIT_MB = 120.0

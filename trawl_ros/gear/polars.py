@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import GearError
@@ -81,6 +80,9 @@ def _foil(law: BoardLawRecord, aspect: float) -> Polar:
     assert law.stall_deg is not None
     slope = 2 * np.pi * aspect / (2 + np.sqrt(aspect**2 + 4))
     stall, end = np.radians([law.stall_deg, STALLED])
+    # Imported here: it takes long, and boards by formula have no use for it.
+    from scipy.interpolate import CubicHermiteSpline
+
     start = min(slope * 2 * law.camber, 0.6 * law.max_lift)
     # A cubic that rises to its top without overshooting has at most three times the mean slope.
     rise = min(slope, 2.5 * (law.max_lift - start) / stall)

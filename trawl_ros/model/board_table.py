@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.polars import Polar
@@ -37,6 +36,9 @@ class TableLaw:
         """Polynomials (n, 3, 4) of lift, drag and centre of pressure behind each point, the last
         being constant.
         """
+        # Imported here: it takes long, and boards by formula have no use for it.
+        from scipy.interpolate import PchipInterpolator
+
         values = np.stack([self.polar.lift, self.polar.drag, self.polar.ahead], 1)
         pieces = PchipInterpolator(self.polar.attack, values).c
         last = np.zeros((1, 3, 4))

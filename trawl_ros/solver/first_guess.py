@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
@@ -123,6 +122,9 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
     The net's displacement from the shape it was built in is a smooth function of the place
     there, which is the same for both.
     """
+    # Imported here: it takes long, and warm starts have no use for it.
+    from scipy.interpolate import RBFInterpolator
+
     layout = coarse.layout
     built = coarse.net_mesh.positions
     shape = RBFInterpolator(

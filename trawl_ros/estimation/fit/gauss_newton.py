@@ -7,7 +7,6 @@ come to rest together in some ten rounds. On the linearised windows a round cost
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.fit import Fit
@@ -38,6 +37,9 @@ def gauss_newton_step(fit: Fit, low: FloatArray, high: FloatArray) -> Fit:
     """
     std = fit.prior.std
     here = fit.rescaled()
+    # Imported here: it takes a node's start long, and nothing is fitted before the first window.
+    from scipy.optimize import lsq_linear
+
     for _ in range(ROUNDS):
         triangle, right = here.system
         box = ((low - here.coefficients) / std, (high - here.coefficients) / std)
