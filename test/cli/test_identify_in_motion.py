@@ -144,3 +144,21 @@ def test_who_stops_it_on_the_way_has_the_results_of_the_windows(
     assert found['windows'] >= 1
     assert 'motion' not in found
     assert (out / 'report.html').exists()
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+def test_of_several_bags_all_are_learned_from_and_one_that_cannot_be_is_told(
+    identify, steady_tow, still_bag, tmp_path, monkeypatch
+):
+    quick = partial(MotionOptions, iterations=1, attempts=1, estimate_sizes=False)
+    monkeypatch.setattr(bag_motion, 'MotionOptions', quick)
+    other = replace(steady_tow, states=(steady_tow.states[1],))
+    second = other.bag(tmp_path / 'second', leg_s=661, seed=1)
+    short = other.bag(tmp_path / 'short', leg_s=500, seed=2)
+    done = identify(still_bag, second, short, '--out', tmp_path / 'out')
+    assert done.exit_code == 0, done.output
+    found = result_in(tmp_path / 'out')['motion']
+    assert found['tows'] == [str(still_bag), str(second)]
+    assert found['not_used'] == [f'{short}: lasts 499 s, expected at least 600 s']
+    assert all(np.isfinite(error) for error in found['mnae_held_out'].values())

@@ -30,15 +30,18 @@ NEAR = 0.1
 COOLER = 0.4
 """Factor from step to step on the errors of the data while these are taken for too large."""
 
-DAMPING, STIFFER, LOOSER = 0.1, 8.0, 0.2
+DAMPING, STIFFER, LOOSER = 1.0, 8.0, 0.2
 """First damping after a step that was refused, factors after each further one and after one that
 was taken."""
 
-LEAST_DAMPING = 0.02
+LEAST_DAMPING = 0.1
 """Damping below this is none."""
 
 LOST = 0.1
 """Part of the stretches that a step may lose, where the motion of the model cannot be computed."""
+
+FINDINGS = 6
+"""Steps in which weights and sizes of the errors are found, before they stay."""
 
 OnTow = Callable[[int, int, int], None]
 
@@ -147,12 +150,15 @@ def fit_motion(
     search.linear = search.linearise(here, 0)
     sizes = options.sizes
     reason = f'still moving after {options.iterations} iterations'
-    converged, iteration, temper = False, 0, np.inf
+    converged, iteration, temper, found = False, 0, np.inf, 0
     for iteration in range(1, options.iterations + 1):
-        if temper == 1.0:
+        # Weights and sizes that are found anew for ever would keep a fit from its rest.
+        finding = temper == 1.0 and found < FINDINGS
+        found += finding
+        if finding:
             search.weigh(sizes)
         data = search.data(search.linear, search.here)
-        if options.estimate_sizes and temper == 1.0:
+        if options.estimate_sizes and finding:
             sizes = estimated_sizes(data, options.sizes, sizes)
         # Data much sharper than what is known before would lead a full step to where boards fold.
         temper = max(1.0, min(COOLER * temper, misfit(data, search.here, sizes)))
@@ -174,11 +180,11 @@ def fit_motion(
     place: Place = search.here
     if converged:
         place = step(data, search.here, prior, sizes, options.largest_step)
-    found = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
-    covariance = np.linalg.inv(found.matrix + np.eye(data.shared))[:12, :12]
+    told = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
+    covariance = np.linalg.inv(told.matrix + np.eye(data.shared))[:12, :12]
     return MotionFit(
         values=prior.start + prior.std * place[0][:12],
-        matrix=found.matrix,
+        matrix=told.matrix,
         covariance=covariance * np.outer(prior.std, prior.std),
         parameters=tuple(place),
         linear=search.linear,

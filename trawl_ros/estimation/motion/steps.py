@@ -43,7 +43,7 @@ def step(
     largest
         Largest change of a coefficient, in prior std.
     damping
-        Weight of staying, as a part of what the data know of each parameter; 0 is Gauss-Newton.
+        Weight of staying, as a part of what is known of each parameter before; 0 is Gauss-Newton.
     """
     shared = data.shared
     tows, precisions = data.information(sizes), data.precisions(sizes.log)
@@ -67,7 +67,9 @@ def step(
 
 def _damped(tow: Information, precision: FloatArray, z: FloatArray, damping: float) -> Information:
     """Information of a tow with that of staying at a place (p,) beside it."""
-    stays = damping * (np.diag(tow.matrix) + precision)
+    # By the prior's std: by what the data know, a step along what several parameters share all but
+    # ends, since each of them alone seems well known.
+    stays = damping * precision
     return tow + Information(np.diag(stays), stays * z, 0.0, 0.0)
 
 
