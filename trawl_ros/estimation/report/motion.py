@@ -10,8 +10,8 @@ from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 CAUTION = (
-    'Of one tow whose plant is not the model, intervals in motion held 10 of 12 true coefficients, '
-    'where 11.4 are due: they are too narrow (docs/identification/motion.md).'
+    'Take intervals in motion for too narrow: of the one tow whose plant is not the model, they '
+    'were (docs/identification/motion.md).'
 )
 
 MOST_NAMED = 3
