@@ -16,7 +16,8 @@ from distributed import LocalCluster
 from distributed.security import Security
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.parallel import LOCALHOST, run_tasks
+from trawl_ros.core.network import THIS_MACHINE
+from trawl_ros.core.parallel import run_tasks
 
 TASKS = {f'root {number}': float(number) for number in range(6)}
 ROOTS = {name: math.sqrt(number) for name, number in TASKS.items()}
@@ -28,8 +29,8 @@ def cluster() -> Iterator[str]:
     with LocalCluster(
         n_workers=1,
         threads_per_worker=1,
-        host=LOCALHOST,
-        dashboard_address=f'{LOCALHOST}:0',
+        host=THIS_MACHINE,
+        dashboard_address=f'{THIS_MACHINE}:0',
         silence_logs=50,
     ) as running:
         yield running.scheduler_address
@@ -96,10 +97,10 @@ def test_a_cluster_with_keys_is_joined_by_those_who_have_them() -> None:
     with LocalCluster(
         n_workers=1,
         threads_per_worker=1,
-        host=LOCALHOST,
+        host=THIS_MACHINE,
         protocol='tls://',
         security=security,
-        dashboard_address=f'{LOCALHOST}:0',
+        dashboard_address=f'{THIS_MACHINE}:0',
         silence_logs=50,
     ) as running:
         keys = {
@@ -117,8 +118,8 @@ def test_a_cluster_with_keys_is_joined_by_those_who_have_them() -> None:
 
 def test_one_that_listens_and_says_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr('trawl_ros.core.parallel.PATIENCE_S', 0.2)
-    with socket.create_server((LOCALHOST, 0)) as silent:
-        address = f'tcp://{LOCALHOST}:{silent.getsockname()[1]}'
+    with socket.create_server((THIS_MACHINE, 0)) as silent:
+        address = f'tcp://{THIS_MACHINE}:{silent.getsockname()[1]}'
         with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
             list(run_tasks(abs, {'first': 1}, scheduler=address))
 

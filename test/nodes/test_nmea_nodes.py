@@ -10,12 +10,12 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 import numpy as np  # noqa: E402
 
 from trawl_ros.core.errors import SentenceError  # noqa: E402
+from trawl_ros.core.network import THIS_MACHINE  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.commands import read_vessel_command, read_winch_command  # noqa: E402
 from trawl_ros.messages.diagnostics import WARN, read_statuses  # noqa: E402
 from trawl_ros.messages.from_messages import to_sample  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.nodes.links.channels import LOCAL  # noqa: E402
 from trawl_ros.nodes.nmea_in import NmeaIn  # noqa: E402
 from trawl_ros.nodes.nmea_out import NmeaOut  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
@@ -84,7 +84,7 @@ def graph(open_graph):
 @pytest.fixture
 def port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind((LOCAL, 0))
+        probe.bind((THIS_MACHINE, 0))
         return probe.getsockname()[1]
 
 
@@ -108,7 +108,7 @@ def say(port, *bodies):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as line:
         for body in bodies:
             data = body if isinstance(body, bytes) else framed('$', body, checksum=True).encode()
-            line.sendto(data, (LOCAL, port))
+            line.sendto(data, (THIS_MACHINE, port))
 
 
 def readings(second):
@@ -190,7 +190,7 @@ def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, p
 
 def test_each_link_goes_by_its_own_clock(graph, ship, port):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind((LOCAL, 0))
+        probe.bind((THIS_MACHINE, 0))
         other = probe.getsockname()[1]
     links = [f'udp://:{port}', f'udp://:{other}']
     heard(graph, links=links, systems=['marport', 'scantrol', 'ship'], time='sentences')

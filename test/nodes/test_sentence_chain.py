@@ -10,6 +10,7 @@ import pytest
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from trawl_ros.bags.samples import SampleStream  # noqa: E402
+from trawl_ros.core.network import THIS_MACHINE  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.estimation.from_gear import identification_for  # noqa: E402
 from trawl_ros.estimation.pipeline import WindowUsed  # noqa: E402
@@ -19,7 +20,6 @@ from trawl_ros.messages.from_messages import to_sample  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode  # noqa: E402
 from trawl_ros.nodes.identification_node import SAMPLES, IdentificationNode  # noqa: E402
-from trawl_ros.nodes.links.channels import LOCAL  # noqa: E402
 from trawl_ros.nodes.nmea_in import NmeaIn  # noqa: E402
 from trawl_ros.nodes.nmea_out import NmeaOut  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
@@ -94,7 +94,7 @@ def graph(open_graph):
 def links(tmp_path):
     """A pseudo-terminal, as its maker and its user name it, and a UDP port."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind((LOCAL, 0))
+        probe.bind((THIS_MACHINE, 0))
         port = probe.getsockname()[1]
     tty = tmp_path / 'tty'
     return f'pty:{tty}', f'serial:{tty}', f'udp://:{port}'

@@ -9,8 +9,9 @@ import tty
 import pytest
 
 from trawl_ros.core.errors import SentenceError
+from trawl_ros.core.network import THIS_MACHINE
 from trawl_ros.nodes.links import threads
-from trawl_ros.nodes.links.channels import LOCAL, parse_link
+from trawl_ros.nodes.links.channels import parse_link
 from trawl_ros.nodes.links.threads import WAITING_LINES, LineSource, SentenceSink
 
 LINE = b'$SCWTP,4.25,T*00'
@@ -44,7 +45,7 @@ def until(condition):
 
 def free_port():
     with socket.socket() as probe:
-        probe.bind((LOCAL, 0))
+        probe.bind((THIS_MACHINE, 0))
         return probe.getsockname()[1]
 
 
@@ -62,8 +63,8 @@ def arrive(sink, source, count=3):
 
 
 def test_without_a_host_it_is_this_machine_alone():
-    assert parse_link('udp://:10110').host == LOCAL
-    assert parse_link('tcp-listen://:10110').host == LOCAL
+    assert parse_link('udp://:10110').host == THIS_MACHINE
+    assert parse_link('tcp-listen://:10110').host == THIS_MACHINE
     assert parse_link('udp://239.192.0.1:60001').is_multicast
 
 
@@ -133,7 +134,7 @@ def test_a_flood_is_given_up_in_part_and_counted(opened):
     source = opened(LineSource, f'tcp-listen://:{port}')
     until(lambda: source.state == '')
     block = (LINE + b'\r\n') * 1000
-    with socket.create_connection((LOCAL, port)) as client:
+    with socket.create_connection((THIS_MACHINE, port)) as client:
         for _ in range(100):
             client.sendall(block)
         client.sendall(b'x' * 5000 + b'\n')

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
-from scipy.optimize import minimize, minimize_scalar
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS
@@ -99,6 +98,9 @@ def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: 
     # Left to itself the simplex begins with steps of 0.00025 about 0, and ends there.
     simplex = start + SIMPLEX * np.vstack((np.zeros(len(start)), np.eye(len(start))))
     options = {'initial_simplex': simplex, 'xatol': 0.1, 'fatol': 0.05, 'maxfev': 80}
+    # Imported here: it takes a node's start long, and no node fits a tow in motion.
+    from scipy.optimize import minimize
+
     best = minimize(cost, start, method='Nelder-Mead', options=options)
     return sizes.having(group, *map(float, factors(best.x)))
 
@@ -193,6 +195,9 @@ def _of_log(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes) -> ErrorS
         size = expected.log * np.exp(logarithm * LOG_SPREAD)
         found = joined(tows, data.precisions(size), data.shared).negative_log_likelihood
         return found + 0.5 * logarithm**2
+
+    # Imported here: it takes a node's start long, and no node fits a tow in motion.
+    from scipy.optimize import minimize_scalar
 
     best = minimize_scalar(cost, bounds=(-4.0, 4.0), method='bounded', options={'xatol': 0.02})
     return replace(sizes, log=float(expected.log * np.exp(best.x * LOG_SPREAD)))

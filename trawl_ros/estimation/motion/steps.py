@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import cholesky
-from scipy.optimize import lsq_linear
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
@@ -58,6 +57,9 @@ def step(
     low[:12], high[:12] = (prior.departure(edge) for edge in box)
     # Water that goes with a board has no negative mass.
     low[12], high[12] = 0.0, MOST_ADDED_MASS / ADDED_MASS_STD
+    # Imported here: it takes a node's start long, and no node fits a tow in motion.
+    from scipy.optimize import lsq_linear
+
     common = lsq_linear(triangle, right, (low, high), 'bvls', max_iter=300).x
     return [
         np.concatenate((common, own_values(tow, precision, common)))
