@@ -238,3 +238,37 @@ def steady_samples(steady_tow):
         return found
 
     return samples
+
+
+@pytest.fixture(scope='session')
+def tight_tows(steady_tow, model, tmp_path_factory) -> SimpleNamespace:
+    """Three tows in one bag; from the second on cells show an eighth too much.
+
+    `path` of the bag, how many `tows`, and how many seconds lie between their starts, `apart_s`.
+    """
+    from dataclasses import replace
+
+    from trawl_ros.core.time import SECOND
+    from trawl_ros.records.samples import WinchSample
+    from trawl_ros.solver.equilibrium import steady_state
+
+    legs = ((300.0, 2.4), (450.0, 2.1), (600.0, 2.4), (600.0, 2.1))
+    tows, leg_s, apart_s, too_much = 3, 60, 3000, 1.12
+
+    def tight(sample):
+        if isinstance(sample, WinchSample):
+            port, starboard = sample.tensions
+            return replace(sample, tensions=(too_much * port, too_much * starboard))
+        return sample
+
+    states = [
+        (length, speed, steady_state(model, length, speed).observables) for length, speed in legs
+    ]
+    tow = replace(steady_tow, states=tuple(states))
+    samples = []
+    for number in range(tows):
+        start = (1000 + number * apart_s) * SECOND
+        own = tow.samples(start=start, seed=number, leg_s=leg_s)
+        samples += own if number == 0 else map(tight, own)
+    path = tow.write(tmp_path_factory.mktemp('tows') / 'bag', samples)
+    return SimpleNamespace(path=path, tows=tows, apart_s=apart_s)

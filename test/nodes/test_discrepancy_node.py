@@ -1,7 +1,6 @@
 """`discrepancy_node` raises a finding while tows go on, and writes the report at the end."""
 
 import json
-from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -18,15 +17,10 @@ from trawl_ros.nodes.discrepancy_node import FINDINGS, FINISH, DiscrepancyNode  
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.records.samples import WinchSample  # noqa: E402
-from trawl_ros.solver.equilibrium import steady_state  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
 DOMAIN = 97
-LEGS = ((300.0, 2.4), (450.0, 2.1), (600.0, 2.4), (600.0, 2.1))
-TOWS, LEG_S, APART_S = 3, 60, 3000
-TOO_MUCH = 1.12
-"""What cells of the second and third tow show."""
 
 
 class Listener(TrawlNode):
@@ -43,28 +37,8 @@ class Listener(TrawlNode):
         self.found.append(read_statuses(message))
 
 
-def tight(sample):
-    if isinstance(sample, WinchSample):
-        port, starboard = sample.tensions
-        return replace(sample, tensions=(TOO_MUCH * port, TOO_MUCH * starboard))
-    return sample
-
-
-@pytest.fixture(scope='module')
-def bag(steady_tow, model, tmp_path_factory):
-    states = [
-        (length, speed, steady_state(model, length, speed).observables) for length, speed in LEGS
-    ]
-    tow = replace(steady_tow, states=tuple(states))
-    samples = []
-    for number in range(TOWS):
-        own = tow.samples(start=1000 * SECOND + number * APART_S * SECOND, seed=number, leg_s=LEG_S)
-        samples += own if number == 0 else map(tight, own)
-    return tow.write(tmp_path_factory.mktemp('tows') / 'bag', samples)
-
-
 def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
-    open_graph, bag, coarse_gear, tmp_path
+    open_graph, tight_tows, coarse_gear, tmp_path
 ):
     with open_graph(DOMAIN) as graph:
         node = graph.add(
@@ -73,7 +47,9 @@ def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
         )  # fmt: skip
         listener = graph.add(Listener)
         assert node.statuses()[0].level == OK
-        player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['discrepancy_node'])
+        player = graph.add(
+            BagPlayer, bag=str(tight_tows.path), rate=0.0, wait_for=['discrepancy_node']
+        )
         graph.until(lambda: player.exit_code is not None)
         graph.remove(player)
         graph.until(lambda: listener.found and node._watching.idle, timeout_s=120.0)

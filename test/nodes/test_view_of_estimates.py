@@ -1,7 +1,6 @@
 """What identification_node and discrepancy_node publish is shown, from their first window on."""
 
 import runpy
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +16,6 @@ from trawl_ros.nodes.discrepancy_node import DiscrepancyNode  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.nodes.view_node import ViewNode  # noqa: E402
 from trawl_ros.records.coefficients import COEFFICIENTS  # noqa: E402
-from trawl_ros.records.samples import WinchSample  # noqa: E402
-from trawl_ros.solver.equilibrium import steady_state  # noqa: E402
 from trawl_ros.view.live import LiveView  # noqa: E402
 from trawl_ros.view.reading import TOPICS  # noqa: E402
 
@@ -27,32 +24,9 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 Recording = runpy.run_path(str(Path(__file__).parents[1] / 'view' / 'conftest.py'))['Recording']
 
 DOMAIN = 230
-LEGS = ((300.0, 2.4), (450.0, 2.1), (600.0, 2.4), (600.0, 2.1))
-TOWS, LEG_S, APART_S = 3, 60, 3000
-TOO_MUCH = 1.12
-"""What cells of the second and third tow show."""
+
 
 STEADY = {'settle_s': 10.0, 'settle_passages': 0.0, 'window_s': 20.0}
-
-
-def tight(sample):
-    if isinstance(sample, WinchSample):
-        port, starboard = sample.tensions
-        return replace(sample, tensions=(TOO_MUCH * port, TOO_MUCH * starboard))
-    return sample
-
-
-@pytest.fixture(scope='module')
-def bag(steady_tow, model, tmp_path_factory):
-    states = [
-        (length, speed, steady_state(model, length, speed).observables) for length, speed in LEGS
-    ]
-    tow = replace(steady_tow, states=tuple(states))
-    samples = []
-    for number in range(TOWS):
-        own = tow.samples(start=1000 * SECOND + number * APART_S * SECOND, seed=number, leg_s=LEG_S)
-        samples += own if number == 0 else map(tight, own)
-    return tow.write(tmp_path_factory.mktemp('tows') / 'bag', samples)
 
 
 def recorded_to(path):
@@ -60,7 +34,7 @@ def recorded_to(path):
 
 
 @pytest.fixture(scope='module')
-def shown(open_graph, bag, coarse_gear, estimate_listener, tmp_path_factory):
+def shown(open_graph, tight_tows, coarse_gear, estimate_listener, tmp_path_factory):
     """The recording of the view, and what the nodes know at the end."""
     folder = tmp_path_factory.mktemp('shown')
     gear = str(coarse_gear)
@@ -73,7 +47,7 @@ def shown(open_graph, bag, coarse_gear, estimate_listener, tmp_path_factory):
         )
         listener = graph.add(estimate_listener)
         player = graph.add(
-            BagPlayer, bag=str(bag), rate=0.0,
+            BagPlayer, bag=str(tight_tows.path), rate=0.0,
             wait_for=['identification_node', 'discrepancy_node'],
         )  # fmt: skip
         graph.until(lambda: player.exit_code is not None, timeout_s=120.0)
@@ -85,14 +59,14 @@ def shown(open_graph, bag, coarse_gear, estimate_listener, tmp_path_factory):
         return Recording(folder / 'live.rrd'), values
 
 
-def test_estimates_are_shown_as_the_node_has_them_and_narrow(shown):
+def test_estimates_are_shown_as_the_node_has_them_and_narrow(shown, tight_tows):
     recording, values = shown
     narrowed = 0
     for name in COEFFICIENTS:
         stamps, estimates = recording.series(f'/estimate/{name}/value')
         _, low = recording.series(f'/estimate/{name}/low')
         _, high = recording.series(f'/estimate/{name}/high')
-        assert len(stamps) > TOWS
+        assert len(stamps) > tight_tows.tows
         assert (np.diff(stamps) > 0).all()
         assert (low < estimates).all()
         assert (estimates < high).all()
@@ -103,17 +77,17 @@ def test_estimates_are_shown_as_the_node_has_them_and_narrow(shown):
     assert narrowed >= len(COEFFICIENTS) / 2
 
 
-def test_innovations_come_with_every_window(shown):
+def test_innovations_come_with_every_window(shown, tight_tows):
     recording, _ = shown
     channels = {path for path in recording.entities if path.startswith('/innovations/')}
     assert {'/innovations/door_spread', '/innovations/port_tension'} <= channels
     stamps, deviations = recording.series('/innovations/port_tension')
-    second_tow = stamps > (1000 + APART_S - 1) * SECOND
+    second_tow = stamps > (1000 + tight_tows.apart_s - 1) * SECOND
     # Cells that show an eighth too much are far from what the first tow lets expect.
     assert np.abs(deviations[second_tow][0]) > 2.0 * np.abs(deviations[~second_tow]).mean()
 
 
-def test_the_finding_is_told_at_its_time(shown):
+def test_the_finding_is_told_at_its_time(shown, tight_tows):
     recording, _ = shown
     told = [
         (stamp, row['text'][0])
@@ -123,4 +97,4 @@ def test_the_finding_is_told_at_its_time(shown):
     ]
     stamps = [stamp for stamp, text in told if 'tension cell' in text]
     assert stamps, told
-    assert min(stamps) > (1000 + APART_S) * SECOND
+    assert min(stamps) > (1000 + tight_tows.apart_s) * SECOND

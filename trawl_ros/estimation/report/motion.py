@@ -1,5 +1,6 @@
 """Rows, sentences and JSON on what all of the tow adds to its steady windows."""
 
+import numpy as np
 from rich.table import Table
 
 from trawl_ros.core.arrays import FloatArray
@@ -91,6 +92,8 @@ def motion_lines(report: Report) -> list[str]:
 
 
 def _held_out(report: Report, motion: MotionOutcome) -> str:
+    if np.isnan(motion.held_out).all():
+        return 'Nothing could be held out: it takes two tows, or two states.'
     by = 'Tows' if report.held_out.by == 'tow' else 'States'
     windows = mnae(report.held_out.predicted, report.measured)
     whole = mnae(motion.held_out, report.measured)

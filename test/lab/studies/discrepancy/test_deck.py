@@ -6,6 +6,7 @@ import pytest
 
 from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
 from trawl_ros.lab.studies.discrepancy.scoring.deck import cause_rows, deck_rows
+from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.trials.plan import DECK_STRENGTHS, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
@@ -56,3 +57,18 @@ def test_verdicts_on_causes_on_deck_are_counted_as_fair_or_wrong():
         '1 of 2; 3 times AMBIGUOUS net_drag or board_rigging, floats, kite; 6 times UNKNOWN',
         '1 of 1; 3 times AMBIGUOUS net_drag or board_rigging',
     ]
+
+
+def test_the_picture_of_causes_on_deck_has_them_and_its_caption_says_so():
+    trials = [
+        said('rigging_epsilon', 'NAMED', 'board_rigging'),
+        said('kite_gone', 'UNKNOWN', strength=6.0),
+    ]
+    drawing = verdicts_figure(trials, {})
+    above, below = drawing.figure.axes
+    assert [tick.get_text() for tick in above.get_yticklabels()] == [
+        'on deck, 3 ×\n1 trials', 'on deck, 6 ×\n1 trials'
+    ]  # fmt: skip
+    assert [tick.get_text() for tick in below.get_yticklabels()] == ['kite gone', 'rigging epsilon']
+    assert 'cause on deck' in drawing.caption
+    assert 'catalogue' not in drawing.caption

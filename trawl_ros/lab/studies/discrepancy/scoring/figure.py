@@ -1,11 +1,13 @@
 """Verdicts by strength, and which effect was taken for which."""
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
@@ -21,6 +23,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
 )
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 from trawl_ros.report import style
+from trawl_ros.report.pictures import Drawing
 
 KINDS = {
     'right name': '#1b7f4b',
@@ -42,6 +45,8 @@ BARS = (
     ('outside', 6.0, 'outside, 6 ×'),
     ('outside', 10.0, 'outside, 10 ×'),
     ('pair', 3.0, 'two at once, 3 ×'),
+    ('deck', 3.0, 'on deck, 3 ×'),
+    ('deck', 6.0, 'on deck, 6 ×'),
     ('poor', 2.0, 'a poor trial, 2 ×'),
     ('followed', 2.0, 'and the proposed tow'),
 )
@@ -67,13 +72,31 @@ def kind_of(trial: Scored, classes: Classes) -> str:
     return 'no discrepancy seen'
 
 
-def verdicts_figure(trials: Sequence[Scored], classes: Classes) -> Figure:
-    """Draw all verdicts, and the effects of the catalogue beside what they were named."""
-    figure = Figure(figsize=(10.0, 12.0), layout='constrained')
-    above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.8))
-    _draw_verdicts(above, trials, classes)
-    _draw_names(below, trials, classes)
-    return figure
+def verdicts_figure(trials: Sequence[Scored], classes: Classes) -> Drawing:
+    """Draw all verdicts, and what was said of each effect of the catalogue and cause on deck."""
+    effects, causes = _strong(trials), chosen(trials, 'deck')
+    caption = ['What was said of trials, by what is hidden and its strength in smallest '
+               'detectable sizes']  # fmt: skip
+    heights = [1.0]
+    if effects:
+        caption.append('each hidden effect beside what it was named, in trials')
+        heights.append(1.8)
+    if causes:
+        caption.append('each cause on deck beside how right the verdict was, in trials')
+        heights.append(1.2)
+    figure = Figure(figsize=(10.0, 2.0 + 3.8 * sum(heights)), layout='constrained')
+    axes = figure.subplots(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
+    _draw_verdicts(axes[0], trials, classes)
+    if effects:
+        _draw_names(axes[1], effects, classes)
+    if causes:
+        _draw_causes(axes[-1], causes, classes)
+    return Drawing('discrepancy', f'{"; below, ".join(caption)}.', figure)
+
+
+def _strong(trials: Sequence[Scored]) -> list[Scored]:
+    """Trials with an effect of the catalogue, at 3 times and more."""
+    return [t for t in chosen(trials, 'inside') if t.key['spec']['strength'] >= 3.0]
 
 
 def _draw_verdicts(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
@@ -100,13 +123,9 @@ def _draw_verdicts(axes: Axes, trials: Sequence[Scored], classes: Classes) -> No
     style.quiet(axes)
 
 
-def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
+def _draw_names(axes: Axes, own: Sequence[Scored], classes: Classes) -> None:
     """Hidden effect by what was said of it, in per cent of its trials at 3 and 6 times."""
-    own = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
     hidden = sorted({hidden_names(trial)[0] for trial in own})
-    if not hidden:
-        axes.set_axis_off()
-        return
     answers = [*hidden, 'several names', 'UNKNOWN', 'nothing seen']
     counts = np.zeros((len(hidden), len(answers)))
     for trial in own:
@@ -120,6 +139,29 @@ def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
             words = {'AMBIGUOUS': 'several names', 'UNKNOWN': 'UNKNOWN'}
             column = answers.index(words.get(found, 'nothing seen'))
         counts[row, column] += 1.0
+    _draw_counts(axes, counts, hidden, answers)
+    axes.set_xticks(range(len(answers)), [name.replace('_', ' ') for name in answers], rotation=60,
+                    ha='right')  # fmt: skip
+    axes.set_xlabel('what was said (trials at 3 and 6 times)')
+
+
+def _draw_causes(axes: Axes, own: Sequence[Scored], classes: Classes) -> None:
+    """Cause on deck by how right the verdict was."""
+    hidden = sorted({hidden_names(trial)[0] for trial in own})
+    kinds = [kind_of(trial, classes) for trial in own]
+    answers = [kind for kind in KINDS if kind in kinds]
+    counts = np.zeros((len(hidden), len(answers)))
+    for trial, kind in zip(own, kinds, strict=True):
+        counts[hidden.index(hidden_names(trial)[0]), answers.index(kind)] += 1.0
+    _draw_counts(axes, counts, hidden, answers)
+    axes.set_xticks(range(len(answers)), [textwrap.fill(kind, 20) for kind in answers])
+    axes.set_xlabel('the verdict (trials)')
+
+
+def _draw_counts(
+    axes: Axes, counts: FloatArray, hidden: Sequence[str], answers: Sequence[str]
+) -> None:
+    """Table of what is hidden by what was said, shaded by the part of a row's trials."""
     totals = np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
     axes.imshow(100.0 * counts / totals, cmap='Greens', vmin=0.0, vmax=100.0, aspect='auto')
     for (row, column), count in np.ndenumerate(counts):
@@ -127,8 +169,5 @@ def _draw_names(axes: Axes, trials: Sequence[Scored], classes: Classes) -> None:
             dark = count > 0.6 * totals[row, 0]
             axes.text(column, row, f'{count:.0f}', ha='center', va='center',
                       color='white' if dark else 'black', fontsize=9)  # fmt: skip
-    axes.set_xticks(range(len(answers)), [name.replace('_', ' ') for name in answers], rotation=60,
-                    ha='right')  # fmt: skip
     axes.set_yticks(range(len(hidden)), [name.replace('_', ' ') for name in hidden])
-    axes.set_xlabel('what was said (trials at 3 and 6 times)')
     axes.set_ylabel('what is hidden')

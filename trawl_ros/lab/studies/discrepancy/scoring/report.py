@@ -34,14 +34,8 @@ from trawl_ros.lab.studies.discrepancy.trials.plan import (
 from trawl_ros.lab.studies.discrepancy.trials.towing import HAULING_SPEED
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
-from trawl_ros.report.pictures import Drawing
 
 REPORT = 'discrepancy.md'
-CAPTION = (
-    'Above: what was said of trials with nothing hidden, with effects of the catalogue at three '
-    'strengths in smallest detectable sizes, with effects the catalogue does not have, and with '
-    'two at once. Below: each hidden effect beside what it was named, in trials.'
-)
 
 
 def write_discrepancy(
@@ -54,11 +48,10 @@ def write_discrepancy(
         command=f'trawl study discrepancy{_options(plan)}',
         method=_method(plan, trials, classes),
     )
-    drawing = Drawing(page.name, CAPTION, verdicts_figure(trials, classes))
     sections = [*all_sections(trials, classes), Section('What it takes', cost_rows(folder))]
     if plan.sample:
         sections = [own for section in sections if (own := _measured(section)).rows]
-    rows = write_page(folder, page, sections, [drawing])
+    rows = write_page(folder, page, sections, [verdicts_figure(trials, classes)])
     log_scoring(folder, plan, len(trials), rows)
     return rows
 
