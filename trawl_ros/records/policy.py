@@ -31,12 +31,12 @@ def policy(namespace: str = NAMESPACE) -> str:
     for name, rights in enclaves().items():
         enclave = ElementTree.SubElement(every, 'enclave', path=f'/{namespace}/{name}')
         profiles = ElementTree.SubElement(enclave, 'profiles')
-        node = 'nmea_in' if name == SET_POINTS else name
+        node = node_of(name)
         profile = ElementTree.SubElement(profiles, 'profile', ns=f'/{namespace}', node=node)
-        for what, kind, names in _granted(rights):
-            granted = ElementTree.SubElement(profile, f'{what}s', {kind: 'ALLOW'})
+        for what, kind, names in granted(rights):
+            listed = ElementTree.SubElement(profile, f'{what}s', {kind: 'ALLOW'})
             for name in sorted(set(names)):
-                ElementTree.SubElement(granted, what).text = name
+                ElementTree.SubElement(listed, what).text = name
     ElementTree.indent(root)
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -45,7 +45,12 @@ def policy(namespace: str = NAMESPACE) -> str:
     )
 
 
-def _granted(rights: Rights) -> list[tuple[str, str, tuple[str, ...]]]:
+def node_of(enclave: str) -> str:
+    """Node that runs in an enclave: it has the enclave's name, but for set points."""
+    return 'nmea_in' if enclave == SET_POINTS else enclave
+
+
+def granted(rights: Rights) -> list[tuple[str, str, tuple[str, ...]]]:
     """Return element, attribute and names of each list that is not empty."""
     lists = [
         ('topic', 'publish', (*EVERY_NODE.publishes, *rights.publishes)),

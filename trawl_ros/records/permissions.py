@@ -1,0 +1,146 @@
+"""Governance and permissions of DDS Security: the rights of all nodes as the middleware reads them.
+
+SROS 2 makes the same of the policy when it makes keys. Written out they can be read before they are
+signed, and signed without SROS 2. The forms are those of OMG's DDS Security 1.1, 9.4.
+"""
+
+from xml.etree import ElementTree
+
+from trawl_ros.records.policy import granted, node_of, policy
+from trawl_ros.records.rights import Rights, enclaves
+from trawl_ros.records.topics import NAMESPACE
+
+NOT_BEFORE, NOT_AFTER = '2026-01-01T00:00:00', '2036-01-01T00:00:00'
+"""Times between which permissions hold; certificates have an end of their own."""
+
+SCHEMA = 'http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_{}.xsd'
+INSTANCE = '{http://www.w3.org/2001/XMLSchema-instance}noNamespaceSchemaLocation'
+
+GRAPH = 'ros_discovery_info'
+"""Topic of DDS on which each process tells which nodes are in it."""
+
+DOMAIN_RULE = {
+    'allow_unauthenticated_participants': 'false',
+    'enable_join_access_control': 'true',
+    'discovery_protection_kind': 'ENCRYPT',
+    'liveliness_protection_kind': 'ENCRYPT',
+    'rtps_protection_kind': 'SIGN',
+}
+TOPIC_RULE = {
+    'topic_expression': '*',
+    'enable_discovery_protection': 'true',
+    'enable_liveliness_protection': 'true',
+    'enable_read_access_control': 'true',
+    'enable_write_access_control': 'true',
+    'metadata_protection_kind': 'ENCRYPT',
+    'data_protection_kind': 'ENCRYPT',
+}
+"""Rules of the domain and of every topic, those that SROS 2 demands."""
+
+NAMES = {
+    'publish': (('publish', 'rt{}'),),
+    'subscribe': (('subscribe', 'rt{}'),),
+    'reply': (('publish', 'rr{}Reply'), ('subscribe', 'rq{}Request')),
+    'request': (('publish', 'rq{}Request'), ('subscribe', 'rr{}Reply')),
+}
+"""Names in DDS of what a right of ROS needs, by its kind."""
+
+
+def security_files(namespace: str = NAMESPACE, domain: int = 0) -> dict[str, str]:
+    """Write what secures a graph: policy, governance and the permissions of each enclave.
+
+    Parameters
+    ----------
+    namespace
+        Of the nodes, without slashes at its ends.
+    domain
+        ``ROS_DOMAIN_ID`` of the graph.
+
+    Returns
+    -------
+    dict
+        Texts by the path of the file.
+    """
+    files = {'policy.xml': policy(namespace), 'governance.xml': governance(domain)}
+    for name, rights in enclaves().items():
+        files[f'permissions/{name}.xml'] = permissions(name, rights, namespace, domain)
+    return files
+
+
+def governance(domain: int = 0) -> str:
+    """Write what holds for all of a domain: nobody joins without a key, all is encrypted."""
+    root = _root('governance')
+    rule = ElementTree.SubElement(
+        ElementTree.SubElement(root, 'domain_access_rules'), 'domain_rule'
+    )
+    _domains(rule, domain)
+    _fill(rule, DOMAIN_RULE)
+    topics = ElementTree.SubElement(rule, 'topic_access_rules')
+    _fill(ElementTree.SubElement(topics, 'topic_rule'), TOPIC_RULE)
+    return _text(root)
+
+
+def permissions(name: str, rights: Rights, namespace: str = NAMESPACE, domain: int = 0) -> str:
+    """Write the permissions of an enclave: a grant of its rights, all else being denied.
+
+    Parameters
+    ----------
+    name
+        Of the enclave, in the namespace.
+    rights
+        Beyond those of every node.
+    namespace
+        Of the nodes, without slashes at its ends.
+    domain
+        ``ROS_DOMAIN_ID`` of the graph.
+    """
+    path = f'/{namespace}/{name}'
+    topics = {'publish': {GRAPH}, 'subscribe': {GRAPH}}
+    for _, kind, names in granted(rights):
+        for way, form in NAMES[kind]:
+            topics[way] |= {form.format(_full(text, name, namespace)) for text in names}
+    root = _root('permissions')
+    grant = ElementTree.SubElement(
+        ElementTree.SubElement(root, 'permissions'), 'grant', {'name': path}
+    )
+    _fill(grant, {'subject_name': f'CN={path}'})
+    validity = ElementTree.SubElement(grant, 'validity')
+    _fill(validity, {'not_before': NOT_BEFORE, 'not_after': NOT_AFTER})
+    allowed = ElementTree.SubElement(grant, 'allow_rule')
+    _domains(allowed, domain)
+    for way, found in topics.items():
+        listed = ElementTree.SubElement(ElementTree.SubElement(allowed, way), 'topics')
+        for topic in sorted(found):
+            _fill(listed, {'topic': topic})
+    _fill(grant, {'default': 'DENY'})
+    return _text(root)
+
+
+def _full(name: str, enclave: str, namespace: str) -> str:
+    """Full name of a topic or service of the node in an enclave."""
+    if name.startswith('/'):
+        return name
+    return f'/{namespace}/{name.replace("~", node_of(enclave), 1)}'
+
+
+def _root(form: str) -> ElementTree.Element:
+    return ElementTree.Element('dds', {INSTANCE: SCHEMA.format(form)})
+
+
+def _domains(rule: ElementTree.Element, domain: int) -> None:
+    _fill(ElementTree.SubElement(rule, 'domains'), {'id': str(domain)})
+
+
+def _fill(element: ElementTree.Element, values: dict[str, str]) -> None:
+    for name, value in values.items():
+        ElementTree.SubElement(element, name).text = value
+
+
+def _text(root: ElementTree.Element) -> str:
+    ElementTree.register_namespace('xsi', 'http://www.w3.org/2001/XMLSchema-instance')
+    ElementTree.indent(root)
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<!-- Written by `trawl policy`. -->\n'
+        f'{ElementTree.tostring(root, encoding="unicode")}\n'
+    )
