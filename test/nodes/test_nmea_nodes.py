@@ -26,6 +26,7 @@ from trawl_ros.records.samples import (  # noqa: E402
     RangeSample,
     WinchSample,
 )
+from trawl_ros.sentences import tellers  # noqa: E402
 from trawl_ros.sentences.framing import framed  # noqa: E402
 from trawl_ros.sentences.table import COMMANDS, load_table  # noqa: E402
 
@@ -104,8 +105,9 @@ def opened(graph, ship, *links):
         graph.until(lambda text=text: (s := ship.report(f'link {text}')) and s.message == 'open')
 
 
-def say(port, *bodies):
+def say(port, *bodies, host=THIS_MACHINE):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as line:
+        line.bind((host, 0))
         for body in bodies:
             data = body if isinstance(body, bytes) else framed('$', body, checksum=True).encode()
             line.sendto(data, (THIS_MACHINE, port))
@@ -186,6 +188,34 @@ def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, p
     assert ship.report(f'link udp://:{port}').values['lines too long'] == '1'
     (sample,) = ship.samples.values()
     assert sample.distance == pytest.approx(84.5)
+
+
+def test_of_two_senders_with_one_name_the_first_is_believed_until_it_is_silent(
+    graph, ship, port, monkeypatch
+):
+    monkeypatch.setattr(tellers, 'SILENT_NS', 2 * SECOND)
+    heard(graph, links=[f'udp://:{port}'], systems=['marport'])
+    opened(graph, ship, f'udp://:{port}')
+    other = '127.0.0.2'
+    for number in range(3):
+        say(port, f'MPMSD,T,PD,23,XST,m,{84.1 + number}')
+        say(port, f'MPMSD,T,PD,23,XST,m,{20.1 + number}', host=other)
+        graph.until(lambda n=number: len(ship.samples) == n + 1)
+    assert [sample.distance for sample in ship.samples.values()] == pytest.approx(
+        [84.1, 85.1, 86.1]
+    )
+    graph.until(lambda: ship.report('sentences').values.get('not understood') == '3')
+    (told,) = [key for key in ship.report('sentences').values if 'another source' in key]
+    link = f'udp://:{port} from'
+    assert told.startswith(f'not understood: a reading of door/spread by {link} {other}, which')
+    assert f'another source tells: {link} {THIS_MACHINE} marport' in told
+
+    def believed():
+        say(port, 'MPMSD,T,PD,23,XST,m,25.1', host=other)
+        graph.rest(0.2)
+        return 25.1 in [round(sample.distance, 3) for sample in ship.samples.values()]
+
+    graph.until(believed)
 
 
 def test_each_link_goes_by_its_own_clock(graph, ship, port):

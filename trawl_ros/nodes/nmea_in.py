@@ -161,9 +161,9 @@ class NmeaIn(TrawlNode):
 
     def _drain(self) -> None:
         for source in self._line_sources:
-            for line in source.take(LINES_AT_ONCE):
+            for line, sender in source.take(LINES_AT_ONCE):
                 try:
-                    self._hear(line, source.address.text)
+                    self._hear(line, source.address.text, sender)
                 except Foreign:
                     self._tally.foreign += 1
                 except Unreadable as reason:
@@ -175,7 +175,7 @@ class NmeaIn(TrawlNode):
             if not all(map(math.isnan, held)):
                 self.send(*winch_command(self.now(), *held))
 
-    def _hear(self, line: bytes, link: str) -> None:
+    def _hear(self, line: bytes, link: str, sender: str) -> None:
         frame = parse_line(line)
         spoken = self._reader.read(frame)
         row = self._reader.rows[spoken.system, spoken.name]
@@ -190,8 +190,11 @@ class NmeaIn(TrawlNode):
         if not row.topics:
             self._tally.understood += 1
             return
-        if not self._tellers.takes(spoken, link, row.form, time.monotonic_ns()):
-            raise Unreadable(f'a reading of {row.topics[0]}, which another source tells')
+        via = f'{link} from {sender}' if sender else link
+        if rival := self._tellers.rival(spoken, via, row.form, time.monotonic_ns()):
+            raise Unreadable(
+                f'a reading of {row.topics[0]} by {via}, which another source tells: {rival}'
+            )
         if any(topic in COMMANDS for topic in row.topics):
             self._command(spoken)
         else:

@@ -10,20 +10,20 @@ SILENT_NS = 15 * SECOND
 
 
 class Tellers:
-    """Choice of one source for each topic, among links, systems, talkers and forms."""
+    """Choice of one source for each topic, among links, senders, systems, talkers and forms."""
 
     def __init__(self) -> None:
         self._told: dict[str, tuple[tuple[str, str, str], int]] = {}
 
-    def takes(self, spoken: Spoken, link: str, form: str, now: int) -> bool:
-        """Say whether a sentence is of the source that is believed.
+    def rival(self, spoken: Spoken, link: str, form: str, now: int) -> str:
+        """Name the source that is believed instead of that of a sentence; empty if that one is.
 
         Parameters
         ----------
         spoken
             The sentence.
         link
-            Name of the link it came by.
+            Name of the link it came by, with the sender where several can speak on it.
         form
             Form of its row.
         now
@@ -34,10 +34,10 @@ class Tellers:
         for topic in topics:
             owner, heard = self._told.get(topic, (source, now))
             if owner != source and now - heard < SILENT_NS:
-                return False
+                return ' '.join(owner)
         for topic in topics:
             self._told[topic] = (source, now)
-        return True
+        return ''
 
 
 def _topics(spoken: Spoken) -> Iterable[str]:

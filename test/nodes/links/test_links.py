@@ -12,7 +12,7 @@ from trawl_ros.core.errors import SentenceError
 from trawl_ros.core.network import THIS_MACHINE
 from trawl_ros.nodes.links import threads
 from trawl_ros.nodes.links.channels import parse_link
-from trawl_ros.nodes.links.threads import WAITING_LINES, LineSource, SentenceSink
+from trawl_ros.nodes.links.threads import WAITING_LINES, Line, LineSource, SentenceSink
 
 LINE = b'$SCWTP,4.25,T*00'
 
@@ -55,7 +55,7 @@ def arrive(sink, source, count=3):
 
     def come():
         sink.put(LINE + b'\r\n')
-        lines.extend(source.take(100))
+        lines.extend(line.text for line in source.take(100))
         return len(lines) >= count
 
     until(come)
@@ -133,15 +133,36 @@ def test_a_flood_is_given_up_in_part_and_counted(opened):
     port = free_port()
     source = opened(LineSource, f'tcp-listen://:{port}')
     until(lambda: source.state == '')
-    block = (LINE + b'\r\n') * 1000
+    block, blocks = (LINE + b'\r\n') * 10_000, 100
     with socket.create_connection((THIS_MACHINE, port)) as client:
-        for _ in range(100):
+        for _ in range(blocks):
             client.sendall(block)
         client.sendall(b'x' * 5000 + b'\n')
-    until(lambda: source.too_long == 1)
-    assert source.lines == 100_000
-    assert source.lost == 100_000 - WAITING_LINES
-    assert len(source.take(10**6)) == WAITING_LINES
+        until(lambda: source.too_long == 1)
+        assert source.lines == 1_000_000
+        assert source.lost == 1_000_000 - WAITING_LINES
+        assert len(source.take(10**6)) == WAITING_LINES
+        client.sendall(LINE + b'\r\n')
+        until(lambda: source.lines == 1_000_001)
+    assert source.take(10) == [Line(LINE, THIS_MACHINE)]
+
+
+def test_a_flood_of_datagrams_is_outlived(opened):
+    """What a socket's buffer does not hold is lost before it is heard of."""
+    port = free_port()
+    source = opened(LineSource, f'udp://:{port}')
+    until(lambda: source.state == '')
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for _ in range(20_000):
+            sender.sendto((LINE + b'\r\n') * 50, (THIS_MACHINE, port))
+        until(lambda: source.lines > WAITING_LINES)
+        assert len(source.take(10**6)) <= WAITING_LINES
+
+        def heard():
+            sender.sendto(b'$SCWTP,9,T\r\n', (THIS_MACHINE, port))
+            return Line(b'$SCWTP,9,T', THIS_MACHINE) in source.take(10**6)
+
+        until(heard)
 
 
 def test_a_reader_that_stands_still_holds_nobody_up(opened, tmp_path):
@@ -170,7 +191,7 @@ def test_half_lines_of_a_port_are_put_together(opened):
     for piece in (LINE[:5], LINE[5:] + b'\r', b'\n' + LINE[:1], LINE[1:] + b'\r\n'):
         os.write(master, piece)
         time.sleep(0.01)
-    until(lambda: lines.extend(source.take(9)) or len(lines) == 2)
+    until(lambda: lines.extend(line.text for line in source.take(9)) or len(lines) == 2)
     assert lines == [LINE, LINE]
     os.close(master)
     until(lambda: source.state)

@@ -17,6 +17,7 @@ from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import parse_qsl
 
 from trawl_ros.core.errors import SentenceError
@@ -101,14 +102,22 @@ def _baud(text: str, options: dict[str, str]) -> int:
     return int(baud)
 
 
+class Received(NamedTuple):
+    """Bytes of one source of a channel, empty where it ended; sender is the host, where known."""
+
+    source: int
+    data: bytes
+    sender: str = ''
+
+
 class Channel(ABC):
     """Open link: bytes in and out, none of which waits for longer than it is told."""
 
     datagrams = False
 
     @abstractmethod
-    def poll(self, timeout_s: float) -> list[tuple[int, bytes]]:
-        """Wait for bytes; give them with the number of their source, empty for one that ended.
+    def poll(self, timeout_s: float) -> list[Received]:
+        """Wait for bytes, and give them.
 
         Raises
         ------
@@ -157,14 +166,16 @@ class _Udp(Channel):
             raise
         self._socket.setblocking(False)
 
-    def poll(self, timeout_s: float) -> list[tuple[int, bytes]]:
-        found: list[tuple[int, bytes]] = []
+    def poll(self, timeout_s: float) -> list[Received]:
+        found: list[Received] = []
         if select.select([self._socket], [], [], timeout_s)[0]:
             with suppress(BlockingIOError):
-                # Told apart by the line, not by the sender: a datagram is whole.
+                # One source for all senders: a datagram is whole. The host tells who speaks; a
+                # port does not, for some open another for each sentence.
                 while len(found) < 200:
-                    found.append((0, self._socket.recv(READ_BYTES)))
-        return [item for item in found if item[1]]
+                    data, (host, _) = self._socket.recvfrom(READ_BYTES)
+                    found.append(Received(0, data, host))
+        return [item for item in found if item.data]
 
     def send(self, data: bytes) -> bool:
         try:
@@ -186,13 +197,13 @@ class _Stream(Channel):
         self._link = link
         os.set_blocking(number, False)
 
-    def poll(self, timeout_s: float) -> list[tuple[int, bytes]]:
+    def poll(self, timeout_s: float) -> list[Received]:
         if not select.select([self._number], [], [], timeout_s)[0]:
             return []
         data = os.read(self._number, READ_BYTES)
         if not data:
             raise OSError(0, 'closed by the other end')
-        return [(0, data)]
+        return [Received(0, data)]
 
     def send(self, data: bytes) -> bool:
         while data:
@@ -219,7 +230,7 @@ class _Server(Channel):
         self._clients: dict[int, socket.socket] = {}
         self._next = 1
 
-    def poll(self, timeout_s: float) -> list[tuple[int, bytes]]:
+    def poll(self, timeout_s: float) -> list[Received]:
         ready = select.select([self._listener, *self._clients.values()], [], [], timeout_s)[0]
         if self._listener in ready:
             with suppress(OSError):
@@ -234,10 +245,11 @@ class _Server(Channel):
         for number, client in list(self._clients.items()):
             if client in ready:
                 try:
+                    host = client.getpeername()[0]
                     data = client.recv(READ_BYTES)
                 except OSError:
-                    data = b''
-                found.append((number, data))
+                    host, data = '', b''
+                found.append(Received(number, data, host))
                 if not data:
                     self._drop(number)
         return found

@@ -4,6 +4,7 @@ import time
 from abc import ABC, abstractmethod
 from collections import deque
 from threading import Event, Lock, Thread
+from typing import NamedTuple
 
 from trawl_ros.core.foreign import short
 from trawl_ros.nodes.links.channels import Channel, LinkAddress, open_channel
@@ -14,6 +15,13 @@ WAITING_LINES = 5000
 
 POLL_S = 0.1
 RETRY_S = 1.0
+
+
+class Line(NamedTuple):
+    """Line of a link, or a sentence for it; sender is the host it came from, where known."""
+
+    text: bytes
+    sender: str = ''
 
 
 class LinkThread(ABC):
@@ -40,7 +48,7 @@ class LinkThread(ABC):
         self.lines = 0
         self.lost = 0
         self._lock = Lock()
-        self._waiting: deque[bytes] = deque()
+        self._waiting: deque[Line] = deque()
         self._stop = Event()
         self._thread = Thread(target=self._run, name=address.text, daemon=True)
         self._thread.start()
@@ -72,14 +80,14 @@ class LinkThread(ABC):
     def _work(self, channel: Channel) -> None:
         """Use an open link until it is lost or the thread is to end."""
 
-    def _put(self, line: bytes) -> None:
+    def _put(self, line: Line) -> None:
         with self._lock:
             self._waiting.append(line)
             if len(self._waiting) > WAITING_LINES:
                 self._waiting.popleft()
                 self.lost += 1
 
-    def _take(self, most: int) -> list[bytes]:
+    def _take(self, most: int) -> list[Line]:
         with self._lock:
             count = min(most, len(self._waiting))
             return [self._waiting.popleft() for _ in range(count)]
@@ -95,20 +103,20 @@ class LineSource(LinkThread):
         self.too_long = 0
         super().__init__(address)
 
-    def take(self, most: int) -> list[bytes]:
+    def take(self, most: int) -> list[Line]:
         """Take the lines that wait, the oldest first."""
         return self._take(most)
 
     def _work(self, channel: Channel) -> None:
         splitters: dict[int, LineSplitter] = {}
         while not self._stop.is_set():
-            for source, data in channel.poll(POLL_S):
+            for source, data, sender in channel.poll(POLL_S):
                 splitter = splitters.setdefault(source, LineSplitter())
                 before = splitter.too_long
                 feed = splitter.datagram if channel.datagrams else splitter.feed
                 for line in feed(data):
                     self.lines += 1
-                    self._put(line)
+                    self._put(Line(line, sender))
                 self.too_long += splitter.too_long - before
                 if not data:
                     del splitters[source]
@@ -121,14 +129,14 @@ class SentenceSink(LinkThread):
 
     def put(self, text: bytes) -> None:
         """Hand a sentence over, with its end."""
-        self._put(text)
+        self._put(Line(text))
 
     def _work(self, channel: Channel) -> None:
         while not self._stop.is_set():
             # Bytes that come back are thrown away: a pseudo-terminal would fill.
             if not channel.datagrams:
                 channel.poll(0.0)
-            texts = self._take(100)
+            texts = [line.text for line in self._take(100)]
             if not texts:
                 time.sleep(0.01)
             for text in texts:
