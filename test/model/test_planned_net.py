@@ -1,5 +1,6 @@
 """A net from its plan: twine, mirror image, ropes and rigging are those of the plan."""
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +32,9 @@ def loaded(folder: Path, data: dict[str, Any]) -> GearRecord:
     return load_gear(path)
 
 
+@cache
 def cut_to(gear: GearRecord, around: int) -> GearModel:
+    """The gear with a net of so many meshes, which is made once for all claims about it."""
     netting = gear.netting.model_copy(update={'around': around})
     return build_model(gear.model_copy(update={'netting': netting}))
 
@@ -105,14 +108,14 @@ PLANS = {
 }
 
 
-@pytest.fixture(params=PLANS)
-def gear(request: pytest.FixtureRequest, tmp_path: Path) -> GearRecord:
+@pytest.fixture(scope='module', params=PLANS)
+def gear(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> GearRecord:
     data = plan_data()
     if PLANS[request.param] is not None:
         data['netting']['plan']['pieces'] = PLANS[request.param]
         for rope in ('headrope', 'footrope', 'side_rope'):
             data.get(rope, {}).pop('length_m', None)
-    return loaded(tmp_path, data)
+    return loaded(tmp_path_factory.mktemp('plan'), data)
 
 
 @pytest.mark.parametrize('around', AROUND)
