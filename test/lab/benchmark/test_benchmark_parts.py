@@ -11,9 +11,12 @@ from trawl_ros.lab.benchmark.fit_trial import plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.growth import exponent
 from trawl_ros.lab.benchmark.haul import WATCHED, error, haul_of
-from trawl_ros.lab.benchmark.timing import timed
+from trawl_ros.lab.benchmark.shares import shares
+from trawl_ros.lab.running.timing import timed
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver.sensitivity import PARAMETERS
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
 
 
 @pytest.fixture(scope='module')
@@ -42,6 +45,19 @@ def test_the_clock_counts_work_and_no_waiting():
     result, seconds = timed(lambda: sum(range(300_000)))
     assert result == 299_999 * 150_000
     assert seconds > 0.0
+
+
+def test_shares_of_functions_add_up_and_hold_what_those_call(coarse):
+    def twice() -> None:
+        for _ in range(2):
+            find_equilibrium(coarse.model, OperatingPoint(500.0, 500.0, 2.1))
+
+    parts = {'searches': find_equilibrium, 'never called': sensitivities}
+    told = dict(part.rsplit(' ', 2)[:2] for part in shares(twice, parts).split(', '))
+    assert list(told) == ['searches', 'never called', 'the rest']
+    assert sum(map(int, told.values())) == pytest.approx(100, abs=1)
+    assert int(told['searches']) > 90
+    assert told['never called'] == '0'
 
 
 def test_shorter_steps_of_the_haul_come_closer_to_the_converged_run(coarse):

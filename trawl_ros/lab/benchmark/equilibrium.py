@@ -7,19 +7,20 @@ from itertools import cycle
 from statistics import median
 
 from trawl_ros.lab.benchmark.gears import default_gear
-from trawl_ros.lab.benchmark.timing import median_s, timed
+from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed, peer
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.running.timing import median_s, timed
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.factor import Factor, factorised
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
-from trawl_ros.solver.stability import FALLING, SWINGING
+from trawl_ros.solver.stability import FALLING, SWINGING, stability
 
 WARM_MS, SENSITIVITIES_MS = 12.0, 20.0
 COLD_S, STABLE_S = 0.2, 0.25
@@ -31,6 +32,14 @@ CHANGES = ((20.0, 0.0), (-20.0, 0.0), (0.0, 0.05), (0.0, -0.05), (100.0, 0.0), (
 COLD_POINTS = ((300.0, 2.1), (500.0, 1.9), (500.0, 2.1), (700.0, 2.1), (900.0, 2.1))
 
 KERNEL_REPEATS = 21
+
+PARTS: dict[str, Part] = {
+    'factorisations': factorised,
+    'derivatives of the forces': linearised,
+    'forces': forces,
+    'solutions': Factor.solve,
+}
+"""Functions that a search for a root is made of."""
 
 TRAWLKIT_COARSE = 2
 """Divisions per panel of the small version; the default is trawlkit's own."""
@@ -81,7 +90,7 @@ def measure(small: bool) -> Findings:
             's',
             at_most(COLD_S),
             f'from a first guess; median over {len(points)} operating points, slowest '
-            f'{max(cold):.2f} s',
+            f'{max(cold):.2f} s; {_of_cold(model)}',
         ),
         MeasuredValue(
             'the same, cold, with the check of stability',
@@ -91,7 +100,7 @@ def measure(small: bool) -> Findings:
             f'slowest {max(usable):.2f} s; {median(usable) - median(cold):.2f} s for the '
             f'eigenvalues around {len(FALLING) + 1 + len(SWINGING)} points, each a '
             f'factorisation and the solutions of an Arnoldi search, complex ones '
-            f'around {len(SWINGING)} of them',
+            f'around {len(SWINGING)} of them: {_of_stability(model, known)}',
         ),
         MeasuredValue(
             'the same, warm, with the check of stability', 1e3 * near, 'ms', note='+20 m of warp'
@@ -122,6 +131,22 @@ def _kernels(model: GearModel, known: Equilibrium) -> str:
     }
     times = [f'{name} {1e3 * median_s(work, KERNEL_REPEATS):.2f}' for name, work in works.items()]
     return ', '.join(times) + ' ms'
+
+
+def _of_cold(model: GearModel) -> str:
+    """Parts of a cold start in words."""
+    point, found = _point(500.0, 2.1), []
+    taken = shares(lambda: found.append(find_equilibrium(model, point)), PARTS)
+    return (
+        f'at 500 m and 2.1 m/s {found[0].iterations} iterations, on nets of half and a quarter '
+        f'the meshes first, then with twine that bows less and less: {taken}'
+    )
+
+
+def _of_stability(model: GearModel, known: Equilibrium) -> str:
+    """Parts of the check of stability in words."""
+    parts: dict[str, Part] = {'factorisations': factorised, 'solutions': Factor.solve}
+    return shares(lambda: stability(model, known.state, known.tow), parts)
 
 
 def _warm_s(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.nuisance import eliminate_nuisance
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
@@ -17,11 +18,15 @@ from trawl_ros.lab.benchmark.fit_rivals import (
 )
 from trawl_ros.lab.benchmark.fit_trial import LENGTHS, MORE_DRAG, SPEEDS, plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.timing import timed
+from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.running.timing import timed
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.sensitivity import sensitivities
+from trawl_ros.solver.slow_mode import slow_mode
 
 AROUND = 24
 """Meshes around the net of the model: fewer than the default, for the rivals' sake."""
@@ -35,6 +40,15 @@ OPTIONS = EstimatorOptions(iterations_per_window=1, relinearise=2.0)
 """All windows are known beforehand: no estimate is asked for on the way."""
 
 QUICK = EstimatorOptions(iterations_per_window=1, iterations_final=2, relinearise=2.0)
+
+
+PARTS: dict[str, Part] = {
+    'steady states': find_equilibrium,
+    'their derivatives': sensitivities,
+    'their slowest motions': slow_mode,
+    'errors of instruments and tows': eliminate_nuisance,
+}
+"""Functions that a fit is made of."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +69,7 @@ def measure(small: bool) -> Findings:
     windows = trial(plant_of(gear), lengths, speeds)
     options = QUICK if small else OPTIONS
     ours = _fitted(Counting(model), windows, prior, options)
+    of_ours = shares(lambda: _fitted(Counting(model), windows, prior, options), PARTS)
     theirs = _fitted(FiniteDifferencePredictor(model, prior.std), windows, prior, options)
     search = CoordinateSearch(model, windows, prior)
     budget = round((0.02 if small else 1.0) * PATIENCE * OVER_SEARCH * ours.solves)
@@ -77,7 +92,7 @@ def measure(small: bool) -> Findings:
             's',
             at_most(FIT_S),
             f'{1e3 * ours.seconds / ours.solves:.0f} ms for each of these steady states, with its '
-            'derivatives',
+            f'derivatives; of it {of_ours}',
         ),
         MeasuredValue(
             "coordinate search's steady states over ours",

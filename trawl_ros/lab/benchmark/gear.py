@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import CONVERGED_S, FROM, TO, Error, HaulManoeuvre, error, haul_of
-from trawl_ros.lab.benchmark.timing import factor_cost, median_s, timed
 from trawl_ros.lab.benchmark.web import moordyn_web_factor
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
 from trawl_ros.lab.report.measured import MeasuredValue, at_least
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.running.timing import factor_cost, median_s, timed
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.simulation.simulation import Simulation

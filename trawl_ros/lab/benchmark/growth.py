@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.benchmark.haul import START, haul_of
-from trawl_ros.lab.benchmark.timing import factor_cost, median_s
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.running.timing import factor_cost, median_s
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.equilibrium import find_equilibrium

@@ -23,9 +23,9 @@ from trawl_ros.estimation.motion.towing import TowedGear, linearise_tow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial, wrong_predictions
-from trawl_ros.lab.benchmark.timing import timed
 from trawl_ros.lab.report.measured import MeasuredValue, between
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.running.timing import timed
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import MEASURED
 

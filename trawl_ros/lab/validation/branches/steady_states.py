@@ -10,6 +10,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.running.timing import factor_cost
 from trawl_ros.lab.validation.branches.branch_limits import MIDDLE, limit_findings
 from trawl_ros.lab.validation.branches.collapsed_starts import OutcomeTally, collapsed_shapes, tally
 from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
@@ -32,6 +33,9 @@ from trawl_ros.solver.relax import relax
 
 WORKING = 1.9, 2.3
 """Speeds (m/s) between which the gear is towed."""
+
+FACTORISATIONS = 21
+"""Number of factorisations that are timed."""
 
 SHORTEST = 200.0
 """Warp length (m) from which it is; on shorter warps netting hangs slack."""
@@ -88,7 +92,9 @@ def run(small: bool) -> Findings:
         gear = gear.model_copy(update={'netting': coarse})
     model = build_model(gear)
     # Compiling at first use is no time of an answer.
-    require_usable(model, find_equilibrium(model, OperatingPoint(MIDDLE, MIDDLE, SPEED)))
+    middle = find_equilibrium(model, OperatingPoint(MIDDLE, MIDDLE, SPEED))
+    require_usable(model, middle)
+    factor_s, _ = factor_cost(model, middle.state, middle.tow, FACTORISATIONS)
     speeds = speed_lattice(model, size.lengths, size.speeds)
     angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
     collapsed_checks, collapsed_table = _collapsed(model, size)
@@ -104,6 +110,12 @@ def run(small: bool) -> Findings:
             ),
             _working('installed', 'warp lengths and installation angles up to ±5°', angles),
             *branch_checks('speed', [speeds]),
+            MeasuredValue(
+                'the same CPU time in factorisations of this gear, whatever the machine',
+                max(answer.seconds for answer in speeds.answers.values()) / factor_s,
+                note=f'One with its solution takes {1e3 * factor_s:.2f} ms here.',
+                key='speed_slowest_in_factorisations',
+            ),
             *smoothness_checks(speeds),
             *branch_checks('angle', angles),
             *collapsed_checks,
