@@ -17,6 +17,7 @@ TOWS = {
     'harstad_1436': (400.0, 1.5),
     'four_seam': (250.0, 1.5),
     'pair_368': (220.0, 1.0),
+    'flume_83_112': (250.0, 1.2),
 }
 """Length of warp (m) and speed (m/s) at which each begins."""
 

@@ -33,6 +33,9 @@ from trawl_ros.lab.studies.discrepancy.scoring.report import REPORT as DISCREPAN
 from trawl_ros.lab.studies.discrepancy.scoring.report import write_discrepancy
 from trawl_ros.lab.studies.discrepancy.stages import read_classes, run_blind
 from trawl_ros.lab.studies.discrepancy.trials.plan import BlindStudyPlan as DiscrepancyPlan
+from trawl_ros.lab.studies.flume.states import read_states
+from trawl_ros.lab.studies.flume.study import REPORT as FLUME_REPORT
+from trawl_ros.lab.studies.flume.study import run_flume
 from trawl_ros.lab.studies.identification.report import REPORT as IDENTIFICATION_REPORT
 from trawl_ros.lab.studies.identification.report import write_identification
 from trawl_ros.lab.studies.identification.study import EstimationStudyPlan as IdentificationPlan
@@ -237,6 +240,22 @@ def counters(table: Path, out: Path, seed: int, force: bool) -> None:
     with stoppable() as (display, _):
         rows = run_counters(known, out, display, seed)
     print_outcome(rows, out / COUNTERS_REPORT)
+
+
+@command.command('flume')
+@click.option('--table', required=True, type=FILE, help='CSV of states of a net in a flume tank.')
+@REPORT_OPTION
+@FORCE_OPTION
+def flume(table: Path, out: Path, force: bool) -> None:
+    """Set a net that is held in a flume tank beside the model.
+
+    Writes flume.json, .md, .html and .png.
+    """
+    states = read_states(table)
+    made_folder(empty_folder(out, force=force))
+    with stoppable() as (display, _):
+        rows = run_flume(states, out, display)
+    print_outcome(rows, out / FLUME_REPORT)
 
 
 @command.command('hostile')

@@ -1,0 +1,1 @@
+"""The study of a net that is held in a flume tank."""
