@@ -31,7 +31,8 @@ class Target:
     read
         The reader.
     examples
-        How many inputs `make test` gives it. All targets together take a minute at most.
+        How many inputs `make test-slow` gives it, and `make test` a quarter of them. All targets
+        together take a minute at most.
     known
         Inputs that once broke it and are better made than kept, by what they are.
     """

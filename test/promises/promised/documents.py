@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from markdown_it import MarkdownIt
@@ -82,6 +83,7 @@ class Document:
         return promise.names.union(*map(names_in, texts))
 
 
+@cache
 def names_in(text: str) -> set[str]:
     """Words that may be names of files, and the folders that these are in."""
     words = re.split(r'[\s\'"=,()\[\]]+', text)
