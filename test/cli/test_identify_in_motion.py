@@ -15,6 +15,7 @@ from trawl_ros.records.samples import VelocitySample, WinchSample
 from trawl_ros.records.topics import NAMESPACE
 
 SECOND = 1_000_000_000
+NOTHING_HELD_OUT = 'Nothing could be held out: it takes two tows, or two states.'
 
 
 @pytest.fixture
@@ -63,6 +64,10 @@ def test_both_estimates_are_shown_beside_one_another(identify, still_bag, tmp_pa
     assert 'All of the tow beside its steady windows' in (out / 'report.html').read_text()
     assert 'all of the tow' in done.stdout
     assert 'Std over that of the prior, geometric mean' in done.stdout
+    # One tow in one state leaves nothing to learn from when it is left out.
+    assert NOTHING_HELD_OUT in ' '.join(done.stdout.split())
+    assert NOTHING_HELD_OUT in (out / 'report.html').read_text()
+    assert set(found['mnae_held_out'].values()) == {None}
 
 
 def test_without_pay_out_speeds_windows_alone_are_used_and_that_is_told(
@@ -162,3 +167,5 @@ def test_of_several_bags_all_are_learned_from_and_one_that_cannot_be_is_told(
     assert found['tows'] == [str(still_bag), str(second)]
     assert found['not_used'] == [f'{short}: lasts 499 s, expected at least 600 s']
     assert all(np.isfinite(error) for error in found['mnae_held_out'].values())
+    assert 'Tows held out: ' in done.stdout
+    assert NOTHING_HELD_OUT not in ' '.join(done.stdout.split())

@@ -98,8 +98,9 @@ def learn_from_motion(
     fit = fit_motion(towed, tows, prior, options, start, show)
     if not fit.readings:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
+    estimator = identification.estimator
     held_out = hold_out_states(
-        fit, prior, identification.estimator.windows, numbers, identification.estimator.predictions
+        fit, prior, estimator.windows, numbers, estimator.predictions, options
     )
     return MotionOutcome(fit, prior, estimate, tuple(refused), held_out)
 

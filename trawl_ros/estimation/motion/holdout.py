@@ -30,6 +30,7 @@ def hold_out_states(
     windows: Sequence[SteadyWindow],
     tow_of: Sequence[tuple[int, ...]],
     predict: Predict,
+    options: MotionOptions,
     seed: int = 0,
 ) -> FloatArray:
     """Predict each window by a fit without its tow, or its state where there is one tow.
@@ -47,6 +48,8 @@ def hold_out_states(
         Of each tow of the fit, the numbers of its tows among the windows.
     predict
         Predicts windows.
+    options
+        With which the tows were fitted.
     seed
         Of the order in which states are dealt.
     """
@@ -60,7 +63,6 @@ def hold_out_states(
         folds = [set(part.tolist()) for part in parts]
     if len(folds) < 2:
         return predicted
-    options = MotionOptions()
     for fold in folds:
         hidden = {window.tow for window in windows if window.state in fold}
         keep = [
