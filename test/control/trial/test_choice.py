@@ -87,3 +87,6 @@ def test_a_slow_adviser_is_waited_for_and_a_poor_one_not_for_ever():
     assert '10 % are' in waiting_for_advice(poor, settings, 599.0)
     assert waiting_for_advice(poor, settings, 600.0) == ''
     assert waiting_for_advice(Knowledge(4, {}, 4, 0.3), settings, 0.0) == ''
+    # By the newest estimate none can be towed: an earlier one's serve, ranked anew.
+    doubtful = Knowledge(4, {}, 4, 1.0, PROPOSALS, 'by this estimate the gear can be towed in none')
+    assert waiting_for_advice(doubtful, settings, 0.0) == ''

@@ -2,6 +2,7 @@
 
 import asyncio
 from queue import SimpleQueue
+from threading import Event
 from types import SimpleNamespace
 
 import numpy as np
@@ -60,7 +61,7 @@ def test_a_report_that_cannot_be_written_ends_the_wish_and_not_the_thread(coarse
 
 def test_advice_that_fails_is_said_and_sought_again():
     told = SimpleQueue()
-    adviser = SimpleNamespace(advise=broken, look_up=broken)
+    adviser = SimpleNamespace(advise=broken, look_up=broken, trouble='')
     thread = AdvisingThread(adviser, np.zeros(12), 0.1, lambda: True, lambda *what: told.put(what))
     thread.start()
     for _ in range(2):
@@ -68,4 +69,19 @@ def test_advice_that_fails_is_said_and_sought_again():
         advice, trouble = told.get(timeout=PATIENCE_S)
         assert advice is None
         assert said_whole(trouble)
+    thread.stop()
+
+
+def test_a_manoeuvre_that_cannot_be_looked_up_takes_no_advice_away():
+    told, advice = SimpleQueue(), object()
+    rest = Event()
+    adviser = SimpleNamespace(advise=lambda fit: advice, look_up=broken, trouble='none is towed')
+    thread = AdvisingThread(adviser, np.zeros(12), 0.1, rest.is_set, lambda *what: told.put(what))
+    thread.start()
+    thread.fitted(SimpleNamespace(windows=(), coefficients=np.zeros(12)))
+    assert told.get(timeout=PATIENCE_S) == (advice, 'none is towed')
+    rest.set()
+    kept, trouble = told.get(timeout=PATIENCE_S)
+    assert kept is advice
+    assert said_whole(trouble)
     thread.stop()

@@ -1,21 +1,14 @@
 """Next manoeuvre: the most informative one from the present state of a fit."""
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.laws import (
-    LawQuantities,
-    WorkingAngles,
-    law_quantities,
-    law_spans,
-    working_angles,
-)
-from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.planning.advice import Advice, RankedManoeuvre
 from trawl_ros.estimation.planning.duration import Timetable, ability_of, minutes_of
 from trawl_ros.estimation.planning.information import (
@@ -23,6 +16,7 @@ from trawl_ros.estimation.planning.information import (
     information_in,
     information_of,
 )
+from trawl_ros.estimation.planning.law_question import LawQuestion
 from trawl_ros.estimation.planning.search import shortfall
 from trawl_ros.estimation.planning.states import (
     Explorer,
@@ -32,7 +26,7 @@ from trawl_ros.estimation.planning.states import (
     TowableManoeuvre,
     faster,
 )
-from trawl_ros.estimation.planning.windows import imagined_windows
+from trawl_ros.estimation.planning.windows import expected_windows
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.channels import INPUTS
@@ -52,7 +46,9 @@ class Adviser:
     calls `look_up` again and again, for one manoeuvre at a time, and `advise` after each window:
     it chooses among those that are known by then. Those near to where the ship is come first: they
     are solved soonest, and are what she can get to. Slower than where the boards have lost their
-    lift nothing is sought. One thread may look up while another one advises.
+    lift nothing is sought. An estimate by which the gear could not be towed where the ship tows it,
+    or nowhere, is wrong: then those manoeuvres serve that an earlier one found. One thread may look
+    up while another one advises.
 
     Parameters
     ----------
@@ -81,13 +77,34 @@ class Adviser:
         self._explorer: Explorer | None = None
         self._waiting: list[Manoeuvre] = []
         self._solved: set[Manoeuvre] = set()
+        self._refused: Counter[str] = Counter()
+        self._found: set[Manoeuvre] = set()
         # Replaced, never changed: who ranks does not wait for who looks up.
         self._known: _Known = {}
+        self._before: _Known = {}
+        self._doubted: FloatArray | None = None
+        self._doubt = ''
 
     @property
     def known(self) -> Mapping[Manoeuvre, TowableManoeuvre]:
         """Feasible manoeuvres among those solved so far."""
-        return MappingProxyType(dict(self._known))
+        return MappingProxyType(dict(self._serving()))
+
+    @property
+    def trouble(self) -> str:
+        """Sentence on an estimate that could not tow the gear; '' for none."""
+        refused = dict(self._refused)
+        if self._doubt or self._known or not refused:
+            return self._doubt
+        reasons = ', '.join(f'{reason} {number}' for reason, number in refused.items())
+        earlier = f'; the {len(self._before)} of an earlier estimate serve' if self._before else ''
+        return (
+            f'by this estimate the gear can be towed in none of {sum(refused.values())} manoeuvres '
+            f'({reasons}){earlier}'
+        )
+
+    def _serving(self) -> _Known:
+        return self._known or self._before
 
     @property
     def looked_up(self) -> float:
@@ -107,21 +124,46 @@ class Adviser:
         """
         explorer = self._explorer
         if explorer is None or self._moved(explorer.coefficients, coefficients):
-            explorer = Explorer(self._predictor, coefficients, self._limits)
-            self._explorer = explorer
-            self._waiting = list(explorer.manoeuvres)
+            explorer = self._begun(coefficients, near)
+        else:
+            self._doubted, self._doubt = None, ''
         if not self._waiting:
             return False
         here = near or self._middle()
         manoeuvre = min(self._waiting, key=here.distance)
         self._waiting.remove(manoeuvre)
         self._solved.add(manoeuvre)
-        state = explorer.look_up(manoeuvre, list(self._known.values()))
+        state = explorer.look_up(manoeuvre, list(self._serving().values()))
         if isinstance(state, Refused):
-            self._forget({manoeuvre, *self._slower(manoeuvre)})
+            refused = {manoeuvre, *self._slower(manoeuvre)}
+            self._refused[state.reason] += len(refused)
+            self._forget(refused)
         else:
+            self._found.add(manoeuvre)
             self._known = {**self._known, manoeuvre: state}
         return True
+
+    def _begun(self, coefficients: FloatArray, near: Manoeuvre | None) -> Explorer:
+        """Begin anew with an estimate, unless it could not tow the gear as the ship does."""
+        before = self._explorer
+        explorer = Explorer(self._predictor, coefficients, self._limits)
+        if before is not None and near is not None and self._known:
+            if self._doubted is None or not np.array_equal(self._doubted, coefficients):
+                self._doubted, self._doubt = np.array(coefficients), ''
+                here = explorer.look_up(near, list(self._known.values()))
+                if isinstance(here, Refused):
+                    where = f'{near.length:.0f} m at {near.speed:.1f} m/s ({here.reason})'
+                    self._doubt = (
+                        f'by this estimate the gear could not be towed where it is, {where}; the '
+                        f'{len(self._known)} manoeuvres of an earlier estimate serve'
+                    )
+            if self._doubt:
+                return before
+        self._explorer, self._doubted, self._doubt = explorer, None, ''
+        self._waiting = list(explorer.manoeuvres)
+        self._before = self._serving()
+        self._found, self._refused = set(), Counter()
+        return explorer
 
     def _middle(self) -> Manoeuvre:
         limits = self._limits
@@ -129,8 +171,8 @@ class Adviser:
         return Manoeuvre(length, length, speed)
 
     def _slower(self, lost: Manoeuvre) -> set[Manoeuvre]:
-        """Find those slower than a refused manoeuvre that could be towed faster."""
-        if not any(faster(known, lost) for known in self._known):
+        """Find those slower than a refused one that this estimate could tow faster."""
+        if not any(faster(found, lost) for found in self._found):
             return set()
         return {other for other in self._waiting if faster(lost, other)}
 
@@ -144,7 +186,7 @@ class Adviser:
 
         Of all manoeuvres that is chosen which gains most per minute, as a plan counts it.
         """
-        known = self._known
+        known = self._serving()
         ranking = self._rank(fit, known)
         if not ranking:
             return None
@@ -160,12 +202,12 @@ class Adviser:
         fit
             Without a window the ranking is empty.
         """
-        return self._rank(fit, self._known)
+        return self._rank(fit, self._serving())
 
     def _rank(self, fit: Fit, known: _Known) -> tuple[RankedManoeuvre, ...]:
         if not fit.windows or not known:
             return ()
-        question = _Question.of(fit, self._gear)
+        question = LawQuestion.of(fit, self._gear)
         now = covariance_from(informed := information_in(fit), fit.prior)
         before, log_before = shortfall(question.quantities(now)), np.linalg.slogdet(now)[1]
         timetable, here = self._timetable(known), manoeuvre_of(fit)
@@ -207,10 +249,10 @@ class Adviser:
         manoeuvre
             The next manoeuvre.
         """
-        return self._promise(fit, manoeuvre, self._known)
+        return self._promise(fit, manoeuvre, self._serving())
 
     def _promise(self, fit: Fit, manoeuvre: Manoeuvre, known: _Known) -> Advice:
-        question = _Question.of(fit, self._gear)
+        question = LawQuestion.of(fit, self._gear)
         windows = expected_windows(fit, known[manoeuvre], self._windows.max_windows_per_state)
         now = fit.posterior.covariance
         then = replace(fit, windows=(*fit.windows, *windows)).posterior.covariance
@@ -232,36 +274,6 @@ class Adviser:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)
 
 
-def expected_windows(fit: Fit, candidate: TowableManoeuvre, number: int) -> tuple[Linearised, ...]:
-    """Predicted windows of a manoeuvre in a fit's newest tow, at its noise."""
-    newest = fit.windows[-1].window
-    imagined = imagined_windows(
-        candidate,
-        fit.coefficients,
-        state=1 + max(linear.window.state for linear in fit.windows),
-        number=number,
-        tow=newest.tow,
-        noise=_noise_of(fit),
-    )
-    first = 1 + max(linear.window.index for linear in fit.windows)
-    return tuple(
-        replace(linear, window=replace(linear.window, index=first + index))
-        for index, linear in enumerate(imagined)
-    )
-
-
-def _noise_of(fit: Fit) -> Mapping[str, float]:
-    """Median standard error of each channel with readings, over the windows of the newest tow."""
-    tow = fit.windows[-1].window.tow
-    windows = [linear.window for linear in fit.windows if linear.window.tow == tow]
-    heard = {*INPUTS, *(name for linear in fit.windows for name in linear.channels)}
-    return {
-        name: float(np.median([window.noise[name] for window in windows if name in window.noise]))
-        for name in sorted(heard)
-        if 2 * sum(name in window.noise for window in windows) >= len(windows)
-    }
-
-
 def _minutes(timetable: Timetable, fit: Fit, manoeuvre: Manoeuvre) -> float:
     """Time from a fit's newest window, which may lack a reading, until those of a manoeuvre."""
     newest = fit.windows[-1]
@@ -273,28 +285,3 @@ def manoeuvre_of(fit: Fit) -> Manoeuvre:
     """Warp lengths and speed of a fit's newest window."""
     means = fit.windows[-1].window.means
     return Manoeuvre(*(float(means[name]) for name in INPUTS))
-
-
-@dataclass(frozen=True)
-class _Question:
-    """Laws at the angles at which the fit's windows found the boards.
-
-    They are measured by what they were expected to span before any tow: by the span of the
-    estimate, a law that turns out to have no slope could never be known well.
-    """
-
-    coefficients: FloatArray
-    angles: WorkingAngles
-    span: FloatArray
-
-    @classmethod
-    def of(cls, fit: Fit, gear: GearRecord) -> '_Question':
-        observables = [linear.state.observables for linear in fit.windows]
-        return cls(
-            fit.coefficients,
-            working_angles(observables, gear.board.slip_sign),
-            law_spans(fit.prior.start, fit.prior.std),
-        )
-
-    def quantities(self, covariance: FloatArray) -> LawQuantities:
-        return law_quantities(self.coefficients, covariance, self.angles, self.span)

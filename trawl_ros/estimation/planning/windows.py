@@ -4,7 +4,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
+import numpy as np
+
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.planning.states import DEPTHS, PLANNED, TowableManoeuvre
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -74,3 +77,33 @@ def imagined_windows(
         )
         for index in range(number)
     )
+
+
+def expected_windows(fit: Fit, candidate: TowableManoeuvre, number: int) -> tuple[Linearised, ...]:
+    """Predicted windows of a manoeuvre in a fit's newest tow, at its noise."""
+    newest = fit.windows[-1].window
+    imagined = imagined_windows(
+        candidate,
+        fit.coefficients,
+        state=1 + max(linear.window.state for linear in fit.windows),
+        number=number,
+        tow=newest.tow,
+        noise=_noise_of(fit),
+    )
+    first = 1 + max(linear.window.index for linear in fit.windows)
+    return tuple(
+        replace(linear, window=replace(linear.window, index=first + index))
+        for index, linear in enumerate(imagined)
+    )
+
+
+def _noise_of(fit: Fit) -> Mapping[str, float]:
+    """Median standard error of each channel with readings, over the windows of the newest tow."""
+    tow = fit.windows[-1].window.tow
+    windows = [linear.window for linear in fit.windows if linear.window.tow == tow]
+    heard = {*INPUTS, *(name for linear in fit.windows for name in linear.channels)}
+    return {
+        name: float(np.median([window.noise[name] for window in windows if name in window.noise]))
+        for name in sorted(heard)
+        if 2 * sum(name in window.noise for window in windows) >= len(windows)
+    }

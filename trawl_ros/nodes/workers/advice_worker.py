@@ -32,7 +32,7 @@ class AdvisingThread(Thread):
     at_rest
         True if the estimator has nothing to do: it comes first.
     on_advice
-        Called in this thread with the advice, or None where there is none, and with what went
+        Called in these threads with the advice, or None where there is none, and with what went
         wrong, '' for nothing.
     """
 
@@ -52,6 +52,7 @@ class AdvisingThread(Thread):
         self._on_advice = on_advice
         self._asked: SimpleQueue[None] = SimpleQueue()
         self._fit: Fit | None = None
+        self._advice: Advice | None = None
         self._fresh, self._stopped = Event(), Event()
         # A manoeuvre may take seconds to be looked up, for which a fit is not to wait.
         self._looking = Thread(target=self._look, name='looking up', daemon=True)
@@ -90,7 +91,6 @@ class AdvisingThread(Thread):
             self._fresh.clear()
             began = time.thread_time()
             if self._attempt(self._look_up):
-                self._asked.put(None)
                 self._stopped.wait((time.thread_time() - began) * (1.0 / self._share - 1.0))
             else:
                 self._fresh.wait()
@@ -100,16 +100,22 @@ class AdvisingThread(Thread):
             return act()
         except Exception as reason:
             # Without advice the node still estimates, so this ends the thread's work on this fit.
-            self._on_advice(None, sentence_of(reason))
+            self._on_advice(self._advice, sentence_of(reason))
         return False
 
     def _advise(self) -> bool:
         if self._fit is not None:
-            self._on_advice(self._adviser.advise(self._fit), '')
+            # An error in looking up takes no advice away, one in advising does.
+            self._advice = None
+            self._advice = self._adviser.advise(self._fit)
+            self._on_advice(self._advice, self._adviser.trouble)
         return True
 
     def _look_up(self) -> bool:
         fit = self._fit
         if fit is None or not fit.windows:
-            return self._adviser.look_up(self._believed)
-        return self._adviser.look_up(fit.coefficients, manoeuvre_of(fit))
+            more = self._adviser.look_up(self._believed)
+        else:
+            more = self._adviser.look_up(fit.coefficients, manoeuvre_of(fit))
+        self._asked.put(None)
+        return more

@@ -1,0 +1,41 @@
+"""Question about the laws of the boards, as a fit puts it on the way."""
+
+from dataclasses import dataclass
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.fit.fit import Fit
+from trawl_ros.estimation.fit.laws import (
+    LawQuantities,
+    WorkingAngles,
+    law_quantities,
+    law_spans,
+    working_angles,
+)
+from trawl_ros.gear.records import GearRecord
+
+
+@dataclass(frozen=True)
+class LawQuestion:
+    """Question about the laws, at the angles at which the fit's windows found the boards.
+
+    They are measured by what they were expected to span before any tow: by the span of the
+    estimate, a law that turns out to have no slope could never be known well.
+    """
+
+    coefficients: FloatArray
+    angles: WorkingAngles
+    span: FloatArray
+
+    @classmethod
+    def of(cls, fit: Fit, gear: GearRecord) -> 'LawQuestion':
+        """Question of a fit with one window at least."""
+        observables = [linear.state.observables for linear in fit.windows]
+        return cls(
+            fit.coefficients,
+            working_angles(observables, gear.board.slip_sign),
+            law_spans(fit.prior.start, fit.prior.std),
+        )
+
+    def quantities(self, covariance: FloatArray) -> LawQuantities:
+        """Quantities of the laws with a covariance (12, 12) of the coefficients."""
+        return law_quantities(self.coefficients, covariance, self.angles, self.span)
