@@ -88,6 +88,67 @@ def test_without_pay_out_speeds_windows_alone_are_used_and_that_is_told(
     assert "0 readings of the winches' pay-out speed" in found['motion']['refused']
 
 
+@pytest.fixture(scope='module')
+def restless_bag(steady_tow, tmp_path_factory):
+    """Ten minutes in which the ship goes faster and slower all the time."""
+    still = replace(steady_tow, states=(steady_tow.states[0],))
+    path = tmp_path_factory.mktemp('bags') / 'restless'
+    return still.write(path, swaying(still.samples(leg_s=601)))
+
+
+def swaying(samples):
+    for sample in samples:
+        if isinstance(sample, VelocitySample):
+            share = 1.0 + 0.06 * np.sin(2.0 * np.pi * sample.stamp / SECOND / 90.0)
+            sample = replace(sample, velocity=share * sample.velocity)
+        yield sample
+
+
+def test_without_one_steady_window_all_of_the_tow_is_learned_from_and_that_is_told(
+    run, coarse_gear, restless_bag, tmp_path, monkeypatch
+):
+    quick = partial(MotionOptions, iterations=1, attempts=1, estimate_sizes=False)
+    monkeypatch.setattr(bag_motion, 'MotionOptions', quick)
+    out = tmp_path / 'out'
+    done = run('identify', '--gear', coarse_gear, restless_bag, '--out', out)
+    assert done.exit_code == 0, done.output
+    sentence = 'No steady window was found: all of the tow was learned from instead, 5 min of it'
+    assert done.stdout.startswith(sentence)
+    page = (out / 'report.html').read_text()
+    assert sentence in page
+    assert 'Residuals by channel' not in page
+    assert 'Nothing could be held out: it takes steady windows.' in done.stdout
+    found = result_in(out)
+    assert found['windows'] == 0
+    for name, row in found['motion']['coefficients'].items():
+        assert row['windows'] is None
+        assert row['ratio'] is None
+        assert found['coefficients'][name]['value'] == row['value']
+        assert 0.0 < found['coefficients'][name]['std'] <= 1.01 * row['prior_std']
+    assert found['motion']['tows'] == [str(restless_bag)]
+
+
+@pytest.mark.parametrize('option', ['--steady', '--no-prior', '--net'])
+def test_without_one_steady_window_what_cannot_be_had_in_motion_is_refused(
+    run, coarse_gear, restless_bag, tmp_path, option
+):
+    out = tmp_path / 'out'
+    done = run('identify', option, '--gear', coarse_gear, restless_bag, '--out', out)
+    assert done.exit_code == 1
+    assert 'no steady window was found, so nothing is estimated' in done.stderr
+
+
+def test_neither_windows_nor_motion_is_refused_with_both_reasons(
+    run, coarse_gear, steady_tow, tmp_path
+):
+    short = steady_tow.bag(tmp_path / 'short', leg_s=250)
+    done = run('identify', '--gear', coarse_gear, short, '--out', tmp_path / 'out')
+    assert done.exit_code == 1
+    assert 'no steady window was found' in done.stderr
+    assert 'nor in motion: ' in done.stderr
+    assert 'lasts 499 s, expected at least 600 s' in done.stderr
+
+
 def tows_of(gear, bag):
     """Tows in motion of a bag, and the sentences on what cannot be used."""
     tows, numbers, refused = bag_motion.moving_tows(

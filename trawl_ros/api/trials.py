@@ -14,10 +14,12 @@ from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.estimation.bag_motion import learn_from_motion, why_windows_alone
 from trawl_ros.estimation.bag_windows import read_tows
 from trawl_ros.estimation.from_gear import estimator_options, identification_for
+from trawl_ros.estimation.pipeline import NO_WINDOW
 from trawl_ros.estimation.planning.plan import TrialPlan
 from trawl_ros.estimation.planning.plan import plan_for as plan_for
 from trawl_ros.estimation.planning.states import Limits
 from trawl_ros.estimation.planning.writing import write_plan
+from trawl_ros.estimation.report.in_motion import report_in_motion
 from trawl_ros.estimation.report.page import write_report
 from trawl_ros.estimation.report.report import Report, report
 from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
@@ -45,7 +47,7 @@ def identify(
     prior: bool = True,
     net: bool = False,
     namespace: str = NAMESPACE,
-    motion: bool = False,
+    motion: bool | None = None,
     scheduler: str | None = None,
     force: bool = False,
     on_note: OnNote = _silent,
@@ -73,7 +75,8 @@ def identify(
         Of the topics.
     motion
         True if all of the tows is learned from too, hauling and veering included, which takes
-        minutes for each hour of tow; ``out`` has the results of the windows meanwhile.
+        minutes for each hour of tow; ``out`` has the results of the windows meanwhile. None does
+        so where no bag has a steady window, False never.
     scheduler
         Address of a Dask cluster that reads the bags. A scheduler runs code: it must be trusted.
     force
@@ -85,12 +88,14 @@ def identify(
     -------
     Report
         With ``estimate`` (values and covariance, SI), residuals, what was held out; ``motion`` by
-        all of the tows, or ``motion_refused`` with the reason why not.
+        all of the tows, or ``motion_refused`` with the reason why not. Without one steady window
+        ``estimate`` is that by all of the tows.
 
     Raises
     ------
     TrawlError
-        If no bag has a steady window, with the reason, or ``out`` holds files already.
+        If no bag has a steady window, or can be learned from in motion, with the reasons, or
+        ``out`` holds files already.
 
     Notes
     -----
@@ -114,8 +119,21 @@ def identify(
     paths = [Path(bag) for bag in bags]
     recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
     _note(recordings, on_note)
+    why_not = why_windows_alone(record, prior=prior, net=net)
     if len(reasons := _reasons(recordings)) == len(recordings):
-        raise TrawlError('; '.join(reasons))
+        unsettled = [one for one in recordings if (one.why_not or '').startswith(NO_WINDOW)]
+        if motion is False or why_not or not unsettled:
+            raise TrawlError('; '.join(reasons))
+        on_note('No bag has a steady window: all of the tow is learned from.')
+        try:
+            learned = learn_from_motion(record, None, unsettled, namespace, on_progress)
+        except TrawlError as error:
+            raise TrawlError(f'{"; ".join(reasons)}; nor in motion: {error}') from error
+        rejections = [recording.rejections for recording in unsettled]
+        result = report_in_motion(learned, rejections, known)
+        if out is not None:
+            write_report(result, Path(out))
+        return result
     identification = identification_for(record, estimator_options=options)
     names = estimate_tows(identification, recordings, on_progress)
     if reason := identification.why_not():
@@ -124,7 +142,6 @@ def identify(
     if out is not None:
         write_report(result, Path(out))
     if motion:
-        why_not = why_windows_alone(record, prior=prior, net=net)
         try:
             if why_not:
                 raise TrawlError(why_not)

@@ -43,8 +43,9 @@ TABLE_WIDTH = 100
     'the gear file has them.',
 )  # fmt: skip
 @click.option(
-    '--motion/--steady', help='Learn from all of the tow too, hauling and veering included, and '
-    'show both: minutes of work for each hour of tow. Else from steady windows alone.',
+    '--motion/--steady', default=None, help='Learn from all of the tow too, hauling and veering '
+    'included, and show both: minutes of work for each hour of tow. Else from steady windows '
+    'alone; where no bag has any, from all of the tow, unless --steady is given.',
 )  # fmt: skip
 @NAMESPACE_OPTION
 @SCHEDULER_OPTION
@@ -56,7 +57,7 @@ def command(
     truth: Path | None,
     no_prior: bool,
     net: bool,
-    motion: bool,
+    motion: bool | None,
     namespace: str,
     scheduler: str | None,
     force: bool,
@@ -93,10 +94,11 @@ def print_report(report: Report) -> None:
     console.print(opening_line(report), style='bold')
     if not report.paired:
         console.print(coefficient_table(report), width=width)
-    console.print(channel_table(report), width=width)
+    if report.windows:
+        console.print(channel_table(report), width=width)
     for line in closing_lines(report):
         console.print(line)
-    if report.motion is not None:
+    if report.motion is not None and report.windows:
         console.print(motion_table(report), width=width)
     for line in motion_lines(report):
         console.print(line, markup=False)

@@ -7,6 +7,7 @@ from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit import fit_motion
 from trawl_ros.estimation.motion.fit_records import MotionOptions
@@ -48,19 +49,19 @@ def why_windows_alone(gear: GearRecord, *, prior: bool, net: bool) -> str | None
 
 def learn_from_motion(
     gear: GearRecord,
-    identification: Identification,
+    identification: Identification | None,
     recordings: Sequence[FoundWindows],
     namespace: str,
     on_progress: OnProgress,
 ) -> MotionOutcome:
-    """Fit all of the tows, from the estimate of their steady windows on.
+    """Fit all of the tows, from the estimate of their steady windows on, or from the prior.
 
     Parameters
     ----------
     gear
         The gear as the model has it.
     identification
-        At rest, with the windows of all recordings.
+        At rest, with the windows of all recordings; None where no recording has one.
     recordings
         In the order in which the identification took them.
     namespace
@@ -73,18 +74,20 @@ def learn_from_motion(
     TrawlError
         If no bag can be used, with a reason for each, or the model cannot be towed along them.
     """
-    estimate = identification.estimate
-    if estimate is None:
+    estimate = None if identification is None else identification.estimate
+    if identification is not None and estimate is None:
         raise TrawlError(identification.why_not() or 'nothing is estimated')
     tows, numbers, refused = moving_tows(gear, recordings, namespace, on_progress)
     if not tows:
         raise TrawlError('; '.join(refused))
     prior, options, towed = board_prior(gear), MotionOptions(), TowedGear(build_model(gear))
     layouts = [layout_of(tow, towed.motions, options.model) for tow in tows]
-    start = [
-        starting_point(estimate, prior, tow, layout, of_tow)
-        for tow, layout, of_tow in zip(tows, layouts, numbers, strict=True)
-    ]
+    start = None
+    if estimate is not None:
+        start = [
+            starting_point(estimate, prior, tow, layout, of_tow)
+            for tow, layout, of_tow in zip(tows, layouts, numbers, strict=True)
+        ]
     done = 0.0
 
     def show(iteration: int, tow: int, stretch: int) -> None:
@@ -98,6 +101,8 @@ def learn_from_motion(
     fit = fit_motion(towed, tows, prior, options, start, show)
     if not fit.readings:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
+    if identification is None:
+        return MotionOutcome(fit, prior, None, tuple(refused), stack(()))
     estimator = identification.estimator
     held_out = hold_out_states(
         fit, prior, estimator.windows, numbers, estimator.predictions, options

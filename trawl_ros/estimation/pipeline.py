@@ -25,6 +25,9 @@ from trawl_ros.records.samples import Sample
 ONE_CLOCK_S = 3600.0
 """Channels whose newest stamps lie further apart than this (s) are on different clocks."""
 
+NO_WINDOW = 'no steady window was found'
+"""Beginning of the reason for which sound readings give no estimate."""
+
 
 @dataclass(frozen=True)
 class WindowUsed:
@@ -129,7 +132,7 @@ class Identification:
         counts = ', '.join(f'{reason} {count}' for reason, count in self.rejected.items())
         options = self.window_options
         return (
-            f'no steady window was found, so nothing is estimated: one needs warp lengths, speed '
+            f'{NO_WINDOW}, so nothing is estimated: one needs warp lengths, speed '
             f'and heading held for up to {self.finder.settle_s:.0f} s here '
             f'({options.settle_passages:g} gear lengths towed) and then for {options.window_s:g} s '
             f'of steady readings (rejected: {counts or "none"})'

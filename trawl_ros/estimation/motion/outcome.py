@@ -39,7 +39,7 @@ class MotionOutcome:
     fit
         The fit.
     prior, windows
-        The prior, and the estimate of the steady windows.
+        The prior, and the estimate of the steady windows; None where there is no window.
     refused
         A sentence for each bag, or part of one, that is not in the fit.
     held_out : (n, 4) array
@@ -49,7 +49,7 @@ class MotionOutcome:
 
     fit: MotionFit
     prior: ParameterVector
-    windows: Estimate
+    windows: Estimate | None
     refused: tuple[str, ...]
     held_out: FloatArray
 
@@ -70,16 +70,17 @@ class MotionOutcome:
 
     @property
     def ratio(self) -> FloatArray:
-        """Std by all of the tow over that by its windows (12,)."""
-        return np.asarray(self.std / self.windows.std, np.float64)
+        """Std by all of the tow over that by its windows, or of the prior without any (12,)."""
+        before = self.prior.std if self.windows is None else self.windows.std
+        return np.asarray(self.std / before, np.float64)
 
     @property
     def geometric_means(self) -> dict[str, float]:
         """Geometric means over the coefficients of posterior over prior std of the ``windows`` and
-        the ``whole``, and their ``ratio``.
+        the ``whole``, and their ``ratio``; 1 for no windows.
         """
         return {
-            'windows': _mean(self.windows.std / self.prior.std),
+            'windows': 1.0 if self.windows is None else _mean(self.windows.std / self.prior.std),
             'whole': _mean(self.std / self.prior.std),
             'ratio': _mean(self.ratio),
         }

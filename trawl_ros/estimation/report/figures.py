@@ -20,6 +20,8 @@ COURSE = 'How it got there'
 
 def drawings(report: Report) -> list[Drawing]:
     """Return all figures for which the report has the numbers."""
+    if not report.windows:
+        return _known(report)
     if report.paired:
         return [*_fit(report), _objective(report)]
     course = [_objective(report), _convergence(report)]

@@ -14,6 +14,7 @@ def motion_figure(motion: MotionOutcome, truth: FloatArray | None) -> Figure:
     figure = Figure(figsize=(10.0, 6.0), layout='constrained')
     estimates, shares = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     place, prior = np.arange(len(COEFFICIENTS)), motion.prior
+    assert motion.windows is not None
     both = (
         ('steady windows', motion.windows.values, motion.windows.std, SECOND, -0.15),
         ('all of the tow', motion.fit.values, motion.std, MEASURED, 0.15),

@@ -26,13 +26,13 @@ def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[di
         row: dict[str, object] = {
             'name': name,
             'prior_std': float(motion.prior.std[i]),
-            'windows': float(windows.values[i]),
-            'windows_std': float(windows.std[i]),
+            'windows': None if windows is None else float(windows.values[i]),
+            'windows_std': None if windows is None else float(windows.std[i]),
             'value': float(motion.fit.values[i]),
             'std': float(motion.std[i]),
             'low': float(motion.low[i]),
             'high': float(motion.high[i]),
-            'ratio': float(motion.ratio[i]),
+            'ratio': None if windows is None else float(motion.ratio[i]),
         }
         if truth is not None:
             row['truth'] = float(truth[i])
@@ -73,9 +73,11 @@ def motion_lines(report: Report) -> list[str]:
         why = report.motion_refused
         return [f'Steady windows alone were used: {why}.'] if why else []
     means, fit = motion.geometric_means, motion.fit
+    both = f', a ratio of {means["ratio"]:.2f}' if report.windows else ''
+    windows = f'{means["windows"]:.3f} by the windows, ' if report.windows else ''
     lines = [
-        f'Std over that of the prior, geometric mean: {means["windows"]:.3f} by the windows, '
-        f'{means["whole"]:.3f} by all of the tow, a ratio of {means["ratio"]:.2f}.',
+        f'Std over that of the prior, geometric mean: {windows}{means["whole"]:.3f} by all of the '
+        f'tow{both}.',
         f'{_held_out(report, motion)}',
         f'{"At rest" if fit.converged else "NOT at rest"}: {fit.reason}. Whitened residuals have '
         f'{fit.misfit:.2f} of their std.',
@@ -92,6 +94,8 @@ def motion_lines(report: Report) -> list[str]:
 
 
 def _held_out(report: Report, motion: MotionOutcome) -> str:
+    if not report.windows:
+        return 'Nothing could be held out: it takes steady windows.'
     if np.isnan(motion.held_out).all():
         return 'Nothing could be held out: it takes two tows, or two states.'
     by = 'Tows' if report.held_out.by == 'tow' else 'States'
@@ -114,7 +118,9 @@ def motion_result(report: Report) -> dict[str, object]:
     return {
         'coefficients': {row.pop('name'): row for row in coefficient_rows(motion, report.truth)},
         'covariance': fit.covariance.tolist(),
-        'geometric_means': motion.geometric_means,
+        'geometric_means': motion.geometric_means
+        if report.windows
+        else {'whole': motion.geometric_means['whole']},
         'mnae_held_out': {
             channel.name: finite(error)
             for channel, error in zip(PAPER_CHANNELS, whole, strict=True)

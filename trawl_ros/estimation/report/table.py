@@ -13,7 +13,8 @@ def coefficient_table(report: Report) -> Table:
     """Start, value, 95 % interval, truth where known, and whether the data determine it."""
     tows = len(set(report.tow_of.tolist()))
     of = '' if tows == 1 else f' of {tows} tows'
-    table = Table(title=f'Board coefficients from {report.estimate.windows} steady windows{of}')
+    source = f'{report.estimate.windows} steady windows{of}' if tows else 'all of the tow'
+    table = Table(title=f'Board coefficients from {source}')
     table.add_column('', style='bold')
     headings = ['start', 'value', 'low', 'high']
     if report.truth is not None:
@@ -63,12 +64,13 @@ def closing_lines(report: Report) -> list[str]:
     estimate, objectives = report.estimate, report.objectives
     truth = f', {objectives["truth"]:.4f} at the truth' if 'truth' in objectives else ''
     judged = verdict(report)
-    lines = [
-        f'Objective of eq. 35: {objectives["start"]:.4f} at the start, '
-        f'{objectives["end"]:.4f} at the end{truth}.',
-        *judged.knowledge,
-        *judged.concerns,
-    ]
+    lines = [*judged.knowledge, *judged.concerns]
+    if report.windows:
+        lines.insert(
+            0,
+            f'Objective of eq. 35: {objectives["start"]:.4f} at the start, '
+            f'{objectives["end"]:.4f} at the end{truth}.',
+        )
     if estimate.converged:
         lines.append(f'Converged: {estimate.reason}.')
     if report.rejected:

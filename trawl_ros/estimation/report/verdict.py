@@ -61,6 +61,11 @@ def verdict(report: Report) -> Verdict:
 
 def _fit(report: Report, held: FloatArray, paper: FloatArray) -> str:
     out = report.held_out
+    if not report.windows and report.motion is not None:
+        return (
+            'No steady window was found: all of the tow was learned from instead, '
+            f"{report.motion.duration_s / 60.0:.0f} min of it, from the gear file's prior on."
+        )
     if not np.all(np.isfinite(held)):
         return (
             f'Nothing could be left out and predicted from the rest ({_count(out.groups, out.by)} '
