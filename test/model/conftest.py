@@ -60,9 +60,15 @@ def random_case(rich_water: Water) -> RandomCase:
             board_velocities=state.board_velocities + random.normal(0.0, 0.5, (2, 3)),
             board_rates=random.normal(0.0, 0.5, (2, 3)),
         )
-        ends = points_of(model, state, tow).positions[model.ends]
+        points = points_of(model, state, tow)
+        vector, stretching = (
+            own[model.ends[:, 1]] - own[model.ends[:, 0]]
+            for own in (points.positions, points.velocities)
+        )
+        span = np.linalg.norm(vector, axis=1)
+        # The damping counts as strain; what warps are paid out by is left out of it.
+        damping = model.bars.damping_time * (vector * stretching).sum(axis=1) / span
         strain = random.choice([-0.05, 3e-5, 0.01], len(model.ends))
-        rest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / (1.0 + strain)
-        return replace(model, rest=rest), state, tow
+        return replace(model, rest=(span + damping) / (1.0 + strain)), state, tow
 
     return build

@@ -50,10 +50,28 @@ def test_a_taut_bar_pulls_in_proportion_to_its_strain(strain: float) -> None:
     np.testing.assert_allclose(along[0], AHEAD)
 
 
-@pytest.mark.parametrize('stretching', [-1.0, 0.0, 1.0])
-def test_a_slack_bar_neither_pulls_nor_pushes(stretching: float) -> None:
-    force, _ = line.tension(BAR, motion(strain=-1.01 * SLACK_WIDTH, stretching=stretching))
+@pytest.mark.parametrize('stretching', [-1.0, 0.0, 0.9])
+def test_a_bar_that_stays_slack_neither_pulls_nor_pushes(stretching: float) -> None:
+    # One that stretches pulls as soon as it will be taut within its damping time.
+    slack = -SLACK_WIDTH - 0.05 * 1.0 / REST
+    force, _ = line.tension(BAR, motion(strain=slack, stretching=stretching))
     assert force[0] == 0.0
+
+
+@pytest.mark.parametrize('bow', [0.0, 1e-9])
+def test_no_bar_pushes_and_tension_rises_with_strain_and_with_its_rate(bow: float) -> None:
+    strain = np.linspace(-20, 20, 81)[:, None] * SLACK_WIDTH
+    stretching = np.linspace(-1.0, 1.0, 81)[None] * 100 * SLACK_WIDTH * REST
+    bar = replace(BAR, bow=np.array([bow]))
+    pull = np.array(
+        [
+            [line.tension(bar, motion(strain=e, stretching=v))[0][0] for v in stretching[0]]
+            for e in strain[:, 0]
+        ]
+    )
+    assert pull.min() >= 0.0
+    for axis in (0, 1):
+        assert np.diff(pull, axis=axis).min() >= -1e-9 * pull.max()
 
 
 def test_the_corner_between_slack_and_taut_is_rounded_within_its_width() -> None:

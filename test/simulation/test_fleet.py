@@ -8,7 +8,6 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.equilibrium import steady_state
-from trawl_ros.solver.stepper import StepFailed
 
 TOWS = {
     'kaifuha': (500.0, 2.1),
@@ -27,16 +26,8 @@ TURN_RATE = np.radians(0.1)
 STEP = 0.1
 
 
-NOT_HAULED = pytest.mark.xfail(
-    raises=StepFailed, strict=True, reason='after 50 m of the haul the time step does not converge'
-)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    'name',
-    [pytest.param(name, marks=NOT_HAULED if name == 'flume_83_112' else ()) for name in TOWS],
-)
+@pytest.mark.parametrize('name', TOWS)
 def test_it_is_found_turned_and_hauled(name: str) -> None:
     warp, speed = TOWS[name]
     model = build_model(load_gear(name).refined(net=0.4))

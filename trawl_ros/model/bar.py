@@ -82,14 +82,18 @@ def tension_at(
     rest_rate: float,
     along: FloatArray,
 ) -> float:
-    """Tension of a bar (eq. 20, 21); ``along`` gets its unit vector."""
+    """Tension of a bar (eq. 20, 21); ``along`` gets its unit vector.
+
+    The damping is added to the strain before slack is told from taut: so tension rises with strain
+    and with its rate everywhere, and no bar pushes, however quickly it shortens.
+    """
     span: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     closing = -rest_rate * span / rest
     for i in range(3):
         along[i] = vector[i] / span
         closing += along[i] * stretching[i]
-    value, slope, _ = taut_at(span / rest - 1.0, bow.real)
-    return stiffness * (value + damping_time * slope * closing / rest)
+    value, _, _ = taut_at(span / rest - 1.0 + damping_time * closing / rest, bow.real)
+    return stiffness * value
 
 
 @inner
@@ -144,8 +148,8 @@ def pull_slopes_at(
     for i in range(3):
         closing += along[i] * stretching[i]
     rate = (closing - rest_rate * span / rest) / rest
-    _, slope, curve = taut_at(span / rest - 1.0, bow.real)
-    elastic = (slope + damping_time * curve * rate) / rest
+    _, slope, _ = taut_at(span / rest - 1.0 + damping_time * rate, bow.real)
+    elastic = slope / rest
     viscous = stiffness * damping_time * slope / rest
     for j in range(3):
         # Change of force as the far end moves along axis j.

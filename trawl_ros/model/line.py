@@ -86,8 +86,8 @@ def _taut(
 def tension(bars: BarProperties, motion: BarMotion) -> tuple[FloatArray, FloatArray]:
     """Tension (n,) in N, positive in pull, and unit vector (n, 3) along the bar (eq. 20, 21).
 
-    The damping of eq. 21 acts on the rate of strain, so that paying out does not brake, and
-    fades with the elastic force, so that a slack rope does not push.
+    The damping of eq. 21 acts on the rate of strain, so that paying out does not brake. A rope is
+    slack where strain and damping together are below zero, so that it never pushes.
     """
     given = alike(
         bars.stiffness,

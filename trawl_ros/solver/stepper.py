@@ -32,6 +32,9 @@ KEEP_RATE = 0.35
 
 ITERATIONS = 12
 
+PATIENCE = 36
+"""Iterations with a matrix for each of them, when those with a kept one have not come to rest."""
+
 HALVINGS = 6
 """Number of halvings of a time step that fails before the tow is given up."""
 
@@ -197,7 +200,9 @@ class Stepper:
         new = motion.averaged.copy()
         inertia = None
         last, patch, enough = np.inf, NO_PATCH, TOLERANCE * h**3
-        for iteration in range(ITERATIONS):
+        # With a matrix for every iteration corrections may grow before they shrink.
+        patient = keep_rate == 0.0
+        for iteration in range(PATIENCE if patient else ITERATIONS):
             state = step.state(new)
             if inertia is None:
                 # Added mass turns with the ropes; taking it at the predicted place keeps
@@ -218,12 +223,12 @@ class Stepper:
                 force = forces(model, state, tow)
             correction = self._factor.solve(force - model.pattern.times(inertia, new))
             size = float(np.abs(correction).max())
-            if not np.isfinite(size) or (iteration > 2 and size > 10 * last):
+            if not np.isfinite(size) or (iteration > 2 and size > 10 * last and not patient):
                 raise StepFailed('the time step did not converge')
             new = new + correction * (min(1.0, LIMIT / max(size, LIMIT)) / by_position)
             if self._is_done(size, last, enough):
                 return SolvedStep(step, new, inertia)
-            slow = size > keep_rate * last
+            slow = patient or size > keep_rate * last
             if slow or len(patch) or size > FLUNG:
                 grown = grown_patch(model, patch, correction, enough)
                 if slow and len(grown) in (0, len(patch)):

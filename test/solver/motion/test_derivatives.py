@@ -276,7 +276,8 @@ def test_a_step_that_fails_leaves_the_tow_where_it_was(model: GearModel) -> None
     tow.step(STEP_S)
     before = tow.time, tow.motion, tow.slopes, tow.course
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stepper_module, 'ITERATIONS', 1)
+        for number in ('ITERATIONS', 'PATIENCE'):
+            patch.setattr(stepper_module, number, 1)
         with pytest.raises(StepFailed):
             tow.advance(STEP_S)
     assert all(a is b for a, b in zip(before, (tow.time, tow.motion, tow.slopes, tow.course)))
