@@ -67,7 +67,7 @@ def test_larger_boards_make_a_name_doubtful_and_are_told_with_their_size(exchang
 
 def test_without_a_name_it_is_told_as_what_would_explain_more(exchanged):
     unknown = replace(exchanged, verdict='UNKNOWN')
-    (told,) = [line for line in sentences(unknown) if 'would explain more' in line]
+    (told,) = [line for line in sentences(unknown) if 'What would explain more' in line]
     assert 'larger boards' in told
 
 

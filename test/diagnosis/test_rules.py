@@ -52,18 +52,27 @@ def test_each_ground_is_needed(change, verdict, why):
 
 
 def test_a_change_of_the_gear_file_that_explains_as_much_makes_a_name_doubtful():
-    mimics = ['larger boards, by about 11 %', 'thicker warps, by about 25 %']
+    mimics = {'larger boards, by about 11 %': -1.0, 'thicker warps, by about 25 %': -5.0}
     verdict, reason = judge_beside(*judge(SOUND), mimics)
     assert verdict == 'AMBIGUOUS'
     assert 'larger boards, by about 11 %; or thicker warps' in reason
     assert 'it alone' not in reason
-    assert judge_beside(*judge(SOUND), []) == judge(SOUND)
+    assert judge_beside(*judge(SOUND), {}) == judge(SOUND)
 
 
 def test_it_is_told_too_where_a_name_is_doubtful_already():
     doubtful = judge(replace(SOUND, rivals=('heave',)))
-    verdict, reason = judge_beside(*doubtful, ['thicker warps, by about 25 %'])
+    verdict, reason = judge_beside(*doubtful, {'thicker warps, by about 25 %': 9.0})
     assert verdict == 'AMBIGUOUS'
     assert reason.startswith('heave would explain it')
     assert 'and it may as well be' in reason
-    assert judge_beside(*doubtful, []) == doubtful
+    assert judge_beside(*doubtful, {}) == doubtful
+
+
+def test_what_explains_it_far_better_and_is_in_no_catalogue_leaves_no_name():
+    mimics = {'readings of door spread that drift by about 3 m per h': 30.0, 'larger boards': 2.0}
+    verdict, reason = judge_beside(*judge(SOUND), mimics)
+    assert verdict == 'UNKNOWN'
+    assert reason.endswith(
+        'explains it better: readings of door spread that drift by about 3 m per h'
+    )

@@ -10,6 +10,8 @@ from trawl_ros.core.errors import GearError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures
 from trawl_ros.diagnosis.evidence import evidence
+from trawl_ros.diagnosis.mimics.change import Change
+from trawl_ros.diagnosis.mimics.drift import drifts
 from trawl_ros.diagnosis.mimics.gear_file_change import GearFileChange, changes_of
 from trawl_ros.diagnosis.naming import REFITTING, refitted
 from trawl_ros.diagnosis.refit import Refit
@@ -31,22 +33,25 @@ from trawl_ros.solver.predict import Predictor
 
 @dataclass(frozen=True)
 class Mimic:
-    """Mimic: a change of the gear file that explains what was seen as well as an effect does.
+    """Mimic: a change of gear file or instrument that explains what was seen as an effect does.
 
     Attributes
     ----------
     change
-        Of the gear file.
+        Of the gear file, or of an instrument.
     refit
         Of boards and change together, all windows solved anew.
     delta_chi2, delta_bic
         By how much it lowers both against the boards alone, with the noise beside the effect.
+    over
+        By how much more than the effect it lowers the second, uncommon sizes counted against both.
     """
 
-    change: GearFileChange
+    change: Change
     refit: Refit
     delta_chi2: float
     delta_bic: float
+    over: float
 
     @property
     def interval(self) -> tuple[float, float, float]:
@@ -57,7 +62,7 @@ class Mimic:
         return float(value), float(low), float(high)
 
     def __str__(self) -> str:
-        return self.change.record.words(self.interval[0])
+        return self.change.words(self.interval[0])
 
 
 def mimics_of(
@@ -69,7 +74,7 @@ def mimics_of(
     better: bool = False,
     on_progress: OnProgress = ignore,
 ) -> tuple[Mimic, ...]:
-    """Changes of the gear file that explain as much as the best effect, the likeliest first.
+    """Changes of gear file or instruments that explain as much as an effect, the likeliest first.
 
     Changes that are the same thing as the effect are none, unless `better` ones are looked for.
     Uncommon sizes count against either, as the squares of their standard deviations.
@@ -89,15 +94,17 @@ def mimics_of(
     on_progress
         Called before each refit.
     """
-    changes = [
+    changes: list[Change] = [
         change
-        for change in changes_of(predictor.model.gear)
-        if better or not set(best.refit.names) & set(change.record.same_as)
+        for change in (*changes_of(predictor.model.gear), *drifts())
+        if better or not set(best.refit.names) & set(change.same_as)
     ]
-    if not changes:
-        return ()
-    # A change builds the whole gear, on which all effects of the gear file act.
-    neutral = tuple(ActiveEffect(change, change.neutral) for change in changes)
+    # A change of the gear file builds the whole gear, on which all effects of the gear file act.
+    neutral = tuple(
+        ActiveEffect(change, change.neutral)
+        for change in changes
+        if isinstance(change, GearFileChange)
+    )
     fixed = EffectSet((*neutral, *predictor.fixed.effects))
     predictor = replace(predictor, fixed=fixed)
     terms = _screened(predictor, base, test, changes)
@@ -106,7 +113,7 @@ def mimics_of(
     before = base.cost(scales)
     explained = _sparing(test, best, 2.0 * (before - best.refit.cost(scales)))
     explained -= _uncommon(best.refit)
-    least = explained + LEAST_BIC if better else explained - RIVAL
+    least = LEAST_BIC if better else -RIVAL
     found: list[Mimic] = []
     for candidate in _likeliest(test, terms, best, better=better):
         on_progress(WorkProgress('diagnosing', detail=f'refitting with {candidate.name}'))
@@ -118,19 +125,18 @@ def mimics_of(
         if fitted is None or fitted.at_bound():
             continue
         delta = 2.0 * (before - fitted.cost(scales))
-        if (
-            delta - penalty - _uncommon(fitted) > least
-            and not left_over(base, test, fitted).too_much
-        ):
+        criterion = delta - fitted.number * penalty
+        over = criterion - _uncommon(fitted) - explained
+        if over > least and not left_over(base, test, fitted).too_much:
             change = next(own for own in changes if own.name == candidate.name)
-            found.append(Mimic(change, fitted, delta, delta - penalty))
+            found.append(Mimic(change, fitted, delta, criterion, over))
         if len(found) == MIMICS_NAMED:
             break
     return tuple(sorted(found, key=lambda mimic: -mimic.delta_bic))
 
 
 def _screened(
-    predictor: Predictor, base: Refit, test: ScoreTest, changes: Sequence[GearFileChange]
+    predictor: Predictor, base: Refit, test: ScoreTest, changes: Sequence[Change]
 ) -> ScoreTest:
     """Score test with the changes in place of the catalogue."""
     depths = np.array([linear.window.means['net_depth'] for linear in base.fit.windows])
@@ -151,16 +157,20 @@ def _likeliest(
     far = first if better else SCREEN_SHARE * first
     chosen = []
     for candidate in terms.wanted:
-        (parameter,) = candidate.effect.parameters
-        size = float(candidate.scale[0] * terms.evidence.values(terms.block(candidate))[0])
+        sizes = candidate.scale * terms.evidence.values(terms.block(candidate))
         # First order may be wrong by half.
-        if 1.5 * parameter.low <= size <= 1.5 * parameter.high:
+        if all(
+            1.5 * parameter.low <= size <= 1.5 * parameter.high
+            for parameter, size in zip(candidate.effect.parameters, sizes, strict=True)
+        ):
             chosen.append((terms.penalised(candidate), candidate))
     ranked = sorted(chosen, key=lambda own: own[0], reverse=True)
+    # A slack rope is far from first order, an instrument is not.
+    tried = [own for _, own in ranked if isinstance(own.effect, GearFileChange)][:MIMICS_TRIED]
     return tuple(
         candidate
-        for place, (likely, candidate) in enumerate(ranked[:MIMICS_SOLVED])
-        if likely > (far if place < MIMICS_TRIED else near)
+        for likely, candidate in ranked[:MIMICS_SOLVED]
+        if likely > (far if candidate in tried else near)
     )
 
 

@@ -17,7 +17,7 @@ from trawl_ros.diagnosis.mimicry import Mimic, mimics_of
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
-from trawl_ros.diagnosis.rules import FEWEST_STATES, NEAR, NOWHERE_NEAR, judge_beside
+from trawl_ros.diagnosis.rules import FEWEST_STATES, LEAST_BIC, NEAR, NOWHERE_NEAR, judge_beside
 from trawl_ros.diagnosis.score_test import ScoreTest, score_test
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
@@ -112,8 +112,8 @@ def diagnose_windows(
         if term is not None:
             placebo, best = best, term.weighed.refit
         noise, left = (float(np.median(refit.fit.scales)) for refit in (base, best or base))
-        nolocatednear = noise > NOWHERE_NEAR and left > NEAR
-        if nolocatednear and not was_in_order(predictor, prior, deciding, baseline):
+        nowhere_near = noise > NOWHERE_NEAR and left > NEAR
+        if nowhere_near and not was_in_order(predictor, prior, deciding, baseline):
             return replace(
                 known,
                 reason=wrong_unit(predictor, prior, deciding)
@@ -145,14 +145,17 @@ def _beside_mimics(
     """Hold a name against the library of mimics; without a name, look for what explains more."""
     if not named.weighed:
         return named, ()
-    on_progress(_step('holding it against changes of the gear file'))
+    on_progress(_step('holding it against other causes'))
     unknown = named.verdict == 'UNKNOWN'
     mimics = mimics_of(
         predictor, base, test, named.weighed[0], better=unknown, on_progress=on_progress
     )
     if unknown:
         return named, mimics
-    verdict, reason = judge_beside(named.verdict, named.reason, [str(mimic) for mimic in mimics])
+    words = {str(mimic): mimic.over for mimic in mimics}
+    verdict, reason = judge_beside(named.verdict, named.reason, words)
+    if verdict == 'UNKNOWN':
+        mimics = tuple(mimic for mimic in mimics if mimic.over > LEAST_BIC)
     return replace(named, verdict=verdict, reason=reason), mimics
 
 

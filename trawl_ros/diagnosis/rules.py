@@ -5,7 +5,7 @@ it, if it predicts tows it was not fitted to, if no other effect does nearly as 
 then left over looks like errors.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -80,8 +80,8 @@ SCREEN, SCREEN_SHARE = 16.0, 0.5
 does, and still be the best in a refit."""
 
 MIMICS_SOLVED, MIMIC_SCREEN_SHARE = 10, 0.95
-"""So many changes of the gear file are solved in full, the likeliest to first order of those that
-explain at least this part of what the effect does, or less by `SCREEN`."""
+"""So many changes of gear file or instruments are solved in full, the likeliest to first order of
+those that explain at least this part of what the effect does, or less by `SCREEN`."""
 
 MIMICS_TRIED = 2
 """And so many in any case of those that explain `SCREEN_SHARE`: a slack rope is far from first
@@ -171,7 +171,7 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
     return 'NAMED', 'it alone explains what was seen, and predicts what was left out'
 
 
-def judge_beside(verdict: Verdict, reason: str, mimics: Sequence[str]) -> tuple[Verdict, str]:
+def judge_beside(verdict: Verdict, reason: str, mimics: Mapping[str, float]) -> tuple[Verdict, str]:
     """Judge an effect that the other rules let be named, or not excluded, beside its mimics.
 
     Parameters
@@ -179,9 +179,13 @@ def judge_beside(verdict: Verdict, reason: str, mimics: Sequence[str]) -> tuple[
     verdict, reason
         By the other rules.
     mimics
-        Changes of the gear file that explain as much and are another thing, in words.
+        Changes of gear file or instruments that explain as much and are another thing, in words,
+        with the BIC by which they explain more than the effect.
     """
+    better = [words for words, over in mimics.items() if over > LEAST_BIC]
+    if better:
+        return 'UNKNOWN', f'what is in no catalogue explains it better: {"; or ".join(better)}'
     if not mimics:
         return verdict, reason
-    beside = f'it may as well be another gear than the file has: {"; or ".join(mimics)}'
+    beside = f'it may as well be something else: {"; or ".join(mimics)}'
     return 'AMBIGUOUS', beside if verdict == 'NAMED' else f'{reason}; and {beside}'

@@ -1,1 +1,1 @@
-"""Library of mimics: changes of a gear file that an effect may be taken for."""
+"""Library of mimics: changes of gear file or instruments that an effect may be taken for."""

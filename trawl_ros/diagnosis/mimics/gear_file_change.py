@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from pydantic import BaseModel
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.diagnosis.mimics.change import Change
 from trawl_ros.diagnosis.mimics.table import MimicRecord, mimic_table
-from trawl_ros.effects.base.effect import Effect, Parameter, Situation
+from trawl_ros.effects.base.effect import Parameter, Situation
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 
@@ -20,8 +21,8 @@ Path = Sequence[str | int | None]
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearFileChange(Effect):
-    """Change of a gear file by one size, 0 where nothing is changed.
+class GearFileChange(Change):
+    """Change of a gear file by one size.
 
     It builds the whole gear, so that it must be the first effect of those that act.
 
@@ -36,6 +37,10 @@ class GearFileChange(Effect):
     record: MimicRecord
     believed: GearRecord
     _built: dict[float, GearModel] = field(default_factory=dict, repr=False, compare=False)
+
+    def words(self, size: float) -> str:
+        """The change of a size in words."""
+        return self.record.words(size)
 
     def gear(self, values: FloatArray, model: GearModel, at: Situation) -> GearModel:
         """Gear model of the changed file, with the coefficients of this one."""
@@ -67,6 +72,9 @@ def changes_of(gear: GearRecord) -> tuple[GearFileChange, ...]:
             ),
             excited_by='any tow, beside a baseline',
             direct=f'Hold {", ".join(record.keys)} of the gear file against what is on deck.',
+            same_as=record.same_as,
+            keys=record.keys,
+            relative=record.relative,
             record=record,
             believed=gear,
         )

@@ -89,20 +89,20 @@ def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
 
 
 def _mimics(diagnosis: Diagnosis) -> list[dict[str, object]]:
-    """Changes of the gear file that may be taken for what is named, or explain more."""
+    """Changes of gear file or instruments that may be taken for what is named, or explain more."""
     listed = []
     for mimic in diagnosis.mimics:
         value, low, high = mimic.interval
         listed.append(
             {
                 'name': mimic.change.name,
-                'keys': list(mimic.change.record.keys),
+                'keys': list(mimic.change.keys),
                 'words': str(mimic),
-                'relative': mimic.change.record.relative,
+                'relative': mimic.change.relative,
                 'value': value,
                 'low': low,
                 'high': high,
-                'unit': mimic.change.record.unit,
+                'unit': mimic.change.unit,
                 'delta_chi2': _number(mimic.delta_chi2),
                 'delta_bic': _number(mimic.delta_bic),
             }

@@ -58,7 +58,7 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.mimics and diagnosis.verdict == 'UNKNOWN':
         listed = '; or '.join(str(mimic) for mimic in diagnosis.mimics)
         lines.append(
-            f'A gear file with {listed}, would explain more than any effect: it lowers χ² by '
+            f'What would explain more than any effect: {listed}. The first lowers χ² by '
             f'{diagnosis.mimics[0].delta_chi2:.0f}.'
         )
     if diagnosis.empirical is not None:

@@ -39,7 +39,7 @@ def sensor_terms() -> Iterator[EmpiricalTerm]:
     """Yield all sensor terms: three of each channel."""
     for name in MEASURED:
         channel = CHANNELS[name]
-        usual = 0.05 if channel.unit == 'rad' else 0.02 * _typical(name)
+        usual = usual_error(name)
         words = name.replace('_', ' ')
         for by, reading in READINGS.items():
             unit, std = ('', 0.05) if by == 'scale' else (channel.unit, usual)
@@ -52,6 +52,11 @@ def sensor_terms() -> Iterator[EmpiricalTerm]:
                 channel=name,
                 by=by,
             )
+
+
+def usual_error(name: str) -> float:
+    """Common error of a channel, a standard deviation, SI; assumed."""
+    return 0.05 if CHANNELS[name].unit == 'rad' else 0.02 * _typical(name)
 
 
 def _typical(name: str) -> float:
