@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis.instruments import frozen, over_ground
+from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, without
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import sentences
+from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 
 
@@ -64,6 +65,30 @@ def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):
         else window
         for window in windows
     ]
-    (said,) = frozen(stuck, ['first', 'second'])
-    assert said.startswith('second: net depth (sonar/pressure) stays at 120 m from 302 to 803')
+    (found,) = frozen(stuck, ['first', 'second'])
+    assert found.sentence.startswith(
+        'second: net depth (sonar/pressure) stays at 120 m from 302 to 803'
+    )
+    left = without(stuck, [found])
+    assert [window.tow for window in left if 'net_depth' in window.means] == [0] * 5
+    assert without(stuck, []) == tuple(stuck)
+    said = diagnose_windows(coarse, stuck, ['first', 'second'], frozenset({0}))
+    assert said.verdict == 'NO_DISCREPANCY'
+    assert 'the other readings' in said.reason
+    assert said.remarks == (found.sentence,)
     assert frozen(stuck[:6], ['first', 'second']) == ()
+
+
+def test_what_the_echo_sounder_rules_out_is_not_looked_for(coarse, hide):
+    windows = hide.trial(coarse, hide.nothing, 7, tows=1)
+    assert possible(catalogue(), windows) == (catalogue(), ())
+    over = [replace(window, seabed=400.0) for window in windows]
+    there, (said,) = possible(catalogue(), over)
+    assert set(catalogue()) - set(there) == {'bottom_contact'}
+    assert said.startswith(
+        'Bottom contact is not looked for: the echo sounder shows 400 m at least'
+    )
+    # One tow in which she was near the bottom is enough for it to be asked.
+    lowest = max(window.means['net_depth'] for window in windows)
+    near = [replace(window, seabed=lowest + 50.0) for window in windows]
+    assert possible(catalogue(), near)[1] == ()

@@ -19,6 +19,8 @@ PROMISED = {
     'board_damage', 'port_board_damage', 'starboard_board_damage', 'bridle_length',
     'port_bridle_length', 'starboard_bridle_length', 'floats', 'kite', 'port_clump',
     'starboard_clump', 'swapped_doors', 'swapped_cells', 'attitude_mount', 'leeway',
+    'current_along_track', 'current_in_time', 'other_wire', 'port_net_damage',
+    'starboard_net_damage',
 }  # fmt: skip
 
 FOREIGN = Effect(

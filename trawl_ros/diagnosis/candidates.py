@@ -16,6 +16,8 @@ from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
+SIDES = ('port', 'starboard')
+
 WIDE = 5.0
 """So many times further than is common an effect is taken to go where it is estimated."""
 
@@ -76,6 +78,16 @@ def candidates(
             starts = (present.values,)
         wanted += [Candidate(effect, start, place) for place, start in enumerate(starts)]
     return tuple(wanted)
+
+
+def net_depths(linearised: Sequence[Linearised]) -> FloatArray:
+    """Depths (n,), m, of the net, or of the doors in windows in which its sensor says nothing."""
+    means = [linear.window.means for linear in linearised]
+    doors = [[own.get(f'{side}_door_depth', np.nan) for side in SIDES] for own in means]
+    depths = np.array([own.get('net_depth', np.nan) for own in means])
+    depths = np.where(np.isfinite(depths), depths, np.mean(doors, axis=1))
+    known: FloatArray = depths[np.isfinite(depths)]
+    return known if len(known) else np.zeros(1)
 
 
 def values_vector(wanted: Sequence[Candidate]) -> ParameterVector:

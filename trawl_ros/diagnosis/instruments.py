@@ -1,9 +1,11 @@
 """Faults of instruments told without any effect: units, a log over ground, frozen sensors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.effects.base.effect import Effect
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.screening import Screening
 from trawl_ros.estimation.windows.over_ground import OverGround
@@ -43,13 +45,22 @@ def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[s
     return tuple(sentences.values())
 
 
-def frozen(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, ...]:
-    """Sentences on sensors that show the same value whatever the warps.
+@dataclass(frozen=True)
+class FrozenSensor:
+    """Frozen sensor: the tow and the channel in which it shows one value, and a sentence on it."""
+
+    tow: int
+    channel: str
+    sentence: str
+
+
+def frozen(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[FrozenSensor, ...]:
+    """Sensors that show the same value whatever the warps.
 
     Depths, spread and tension all change with the length of the warps; readings that scatter
     around one value pass for those of a working sensor in each state alone.
     """
-    sentences = []
+    found = []
     for tow in sorted({window.tow for window in windows}):
         own = [window for window in windows if window.tow == tow]
         for name in (name for name, channel in CHANNELS.items() if channel.settles):
@@ -61,9 +72,58 @@ def frozen(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[str, .
             noise = float(np.median([window.noise[name] for window in shown]))
             same = float(np.ptp(values)) < FROZEN_NOISE * noise
             if same and max(lengths) > FROZEN_LENGTHS * min(lengths):
-                sentences.append(
+                sentence = (
                     f'{tows[tow]}: {name.replace("_", " ")} ({CHANNELS[name].topic}) stays at '
                     f'{np.mean(values):.4g} {CHANNELS[name].unit} from {min(lengths):.0f} to '
-                    f'{max(lengths):.0f} m of warp: the sensor seems to be frozen.'
+                    f'{max(lengths):.0f} m of warp: the sensor seems to be frozen, and its '
+                    'readings of this tow are left out. Look at its port, cable and battery.'
                 )
-    return tuple(sentences)
+                found.append(FrozenSensor(tow, name, sentence))
+    return tuple(found)
+
+
+def without(
+    windows: Sequence[SteadyWindow], sensors: Sequence[FrozenSensor]
+) -> tuple[SteadyWindow, ...]:
+    """Windows without the readings of frozen sensors, which say nothing of the gear."""
+
+    def kept(window: SteadyWindow) -> SteadyWindow:
+        lost = {sensor.channel for sensor in sensors if sensor.tow == window.tow}
+
+        def rest(own: Mapping[str, float]) -> dict[str, float]:
+            return {name: value for name, value in own.items() if name not in lost}
+
+        return replace(
+            window,
+            means=rest(window.means),
+            noise=rest(window.noise),
+            bias=rest(window.bias),
+            to_come=rest(window.to_come),
+        )
+
+    return tuple(kept(window) for window in windows) if sensors else tuple(windows)
+
+
+def possible(
+    effects: Mapping[str, Effect], windows: Sequence[SteadyWindow]
+) -> tuple[Mapping[str, Effect], tuple[str, ...]]:
+    """Effects that the depth of the water does not rule out, with a sentence on each."""
+    lowest, seabed = np.array(
+        [
+            (
+                window.means.get('net_depth', np.nan)
+                + window.means.get('vertical_opening', np.nan),
+                np.nan if window.seabed is None else window.seabed,
+            )
+            for window in windows
+        ]
+    ).T
+    there = {name: own for name, own in effects.items() if own.is_possible(lowest, seabed)}
+    sentences = tuple(
+        f'{name.replace("_", " ").capitalize()} is not looked for: the echo sounder shows '
+        f'{np.nanmin(seabed):.0f} m at least, and the lower edge of the net was at '
+        f'{np.nanmax(lowest):.0f} m at most.'
+        for name in effects
+        if name not in there
+    )
+    return there, sentences

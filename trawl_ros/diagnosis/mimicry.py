@@ -8,7 +8,7 @@ import numpy as np
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
-from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures
+from trawl_ros.diagnosis.candidates import Candidate, candidates, net_depths, signatures
 from trawl_ros.diagnosis.evidence import evidence
 from trawl_ros.diagnosis.mimics.change import Change
 from trawl_ros.diagnosis.mimics.drift import drifts
@@ -99,14 +99,7 @@ def mimics_of(
         for change in (*changes_of(predictor.model.gear), *drifts())
         if better or not set(best.refit.names) & set(change.same_as)
     ]
-    # A change of the gear file builds the whole gear, on which all effects of the gear file act.
-    neutral = tuple(
-        ActiveEffect(change, change.neutral)
-        for change in changes
-        if isinstance(change, GearFileChange)
-    )
-    fixed = EffectSet((*neutral, *predictor.fixed.effects))
-    predictor = replace(predictor, fixed=fixed)
+    predictor = _ready_for(predictor, changes)
     terms = _screened(predictor, base, test, changes)
     scales = best.refit.fit.scales
     penalty = float(np.log(test.readings))
@@ -135,11 +128,35 @@ def mimics_of(
     return tuple(sorted(found, key=lambda mimic: -mimic.delta_bic))
 
 
+def with_mimics(
+    predictor: Predictor, test: ScoreTest, mimics: Sequence[Mimic]
+) -> tuple[Predictor, ScoreTest]:
+    """Gear and score test with mimics behind the effects of the catalogue."""
+    predictor = _ready_for(predictor, [mimic.change for mimic in mimics])
+    wanted = tuple(mimic.refit.wanted[0] for mimic in mimics)
+    more = signatures(predictor, test.fit.windows, wanted)
+    columns = tuple(np.hstack(pair) for pair in zip(test.columns, more, strict=True))
+    both = replace(test, wanted=(*test.wanted, *wanted), columns=columns)
+    return predictor, replace(both, evidence=evidence(both.fit, columns, both.units))
+
+
+def _ready_for(predictor: Predictor, changes: Sequence[Change]) -> Predictor:
+    """Gear that can be changed: a change of the gear file builds the whole gear, on which all
+    effects of the gear file act.
+    """
+    neutral = tuple(
+        ActiveEffect(change, change.neutral)
+        for change in changes
+        if isinstance(change, GearFileChange)
+    )
+    return replace(predictor, fixed=EffectSet((*neutral, *predictor.fixed.effects)))
+
+
 def _screened(
     predictor: Predictor, base: Refit, test: ScoreTest, changes: Sequence[Change]
 ) -> ScoreTest:
     """Score test with the changes in place of the catalogue."""
-    depths = np.array([linear.window.means['net_depth'] for linear in base.fit.windows])
+    depths = net_depths(base.fit.windows)
     wanted = candidates({change.name: change for change in changes}, predictor, depths)
     columns = tuple(signatures(predictor, base.fit.windows, wanted))
     units = np.concatenate([candidate.scale for candidate in wanted])

@@ -32,8 +32,8 @@ from trawl_ros.solver.predict import Predictor
 REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)
 """Options of a refit, which starts near to where it comes to rest."""
 
-PAIR = 2
-"""Effects at once, at most."""
+PAIR, THREE = 2, 3
+"""Effects at once; more than three are not looked for."""
 
 SECONDS = 2
 """So many are tried beside the best where there are effects like it."""
@@ -48,7 +48,7 @@ class Named:
     verdict, reason
         And why.
     weighed
-        Those that were refitted, best first; of two effects at once the pair stands first.
+        Those that were refitted, best first; two or three effects at once stand first.
     alike
         Effects that no such data can part from the best.
     rivals
@@ -116,7 +116,7 @@ def name(
     if seconds := _seconds(test, weighed, left):
         weighed, left = _with_second(predictor, base, test, refits, weighed, seconds, on_progress)
         best = weighed[0]
-    alike = twins(test, best.refit)
+    alike = _not_told_apart(test, weighed)
     rivals = _rivals(test, weighed)
     grounds = Grounds(
         delta_bic=best.doubted_bic,
@@ -152,7 +152,7 @@ def _possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
 def _rivals(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
     """Effects that are not excluded and not of the class of the best."""
     best = weighed[0]
-    taken = {*best.refit.names, *twins(test, best.refit)}
+    taken = {*best.refit.names, *_not_told_apart(test, weighed)}
     return tuple(
         other.refit.names[0]
         for other in weighed[1:]
@@ -160,6 +160,19 @@ def _rivals(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
         and other.refit.names[0] not in taken
         and not other.refit.at_bound()
     )
+
+
+def _not_told_apart(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
+    """Effects of the best one's class; none that was refitted and explains much less, for what is
+    alike to first order may need a size that is not possible.
+    """
+    best = weighed[0]
+    told = {
+        other.refit.names[0]
+        for other in weighed[1:]
+        if best.delta_bic - other.delta_bic > _to_be_there(best)
+    }
+    return tuple(name for name in twins(test, best.refit) if name not in told)
 
 
 def _near(test: ScoreTest, weighed: Sequence[Weighed]) -> frozenset[str]:
@@ -192,8 +205,8 @@ def _seconds(test: ScoreTest, weighed: Sequence[Weighed], left: LeftOver) -> tup
     near, own = _near(test, weighed), _of_one_instrument(test, best)
     # Residuals of the best in the direction of its like are seen badly to first order.
     chosen = _once(candidate for candidate in others if candidate.name in near)[:SECONDS]
-    if not chosen:
-        chosen = tuple(
+    if left.too_much or not chosen:
+        chosen += tuple(
             candidate
             for candidate in others[:1]
             if left.too_much or test.penalised(candidate, rest) > _to_be_there(best)
@@ -282,7 +295,9 @@ def _with_second(
     seconds: Sequence[Candidate],
     on_progress: OnProgress,
 ) -> tuple[tuple[Weighed, ...], LeftOver]:
-    """Weigh the best effect together with a second, and that one alone; with their residuals."""
+    """Weigh the best effect together with a second, and perhaps a third, and those alone; with
+    the residuals of what then stands first.
+    """
     (first,) = weighed[0].refit.wanted
     more = []
     for second in seconds:
@@ -291,18 +306,85 @@ def _with_second(
             more.append(refitted(predictor, base, test, (second,)))
         on_progress(_refitting(f'{first.name} and {second.name}'))
         more.append(refitted(predictor, base, test, (first, second)))
-    reweighed = _possible_first(
-        weigh(base, test, [*refits, *(fitted for fitted in more if fitted is not None)])
-    )
-    pair = next((entry for entry in reweighed if len(entry.refit.wanted) == PAIR), None)
-    alone = tuple(entry for entry in reweighed if len(entry.refit.wanted) < PAIR)
-    if pair is not None:
+    tried = [*refits, *(fitted for fitted in more if fitted is not None)]
+    reweighed = _possible_first(weigh(base, test, tried))
+    pair, alone = _of_number(reweighed, PAIR), _alone(reweighed)
+    if pair is not None and pair.delta_bic > _least(test, weighed[0], pair, alone[0]):
+        tried += _exchanged(predictor, base, test, pair.refit)
+        pair = _of_number(weigh(base, test, tried), PAIR)
+        assert pair is not None
         with_both = left_over(base, test, pair.refit)
-        alike = {
-            *twins(test, weighed[0].refit, NEARLY_ALIKE),
-            *_of_one_instrument(test, weighed[0]),
-        }
-        least = LEAST_BIC if pair.refit.names[1] in alike else _to_be_there(alone[0])
-        if not with_both.too_much and pair.delta_bic > least + alone[0].delta_bic:
+        if third := _third(test, pair, with_both):
+            on_progress(_refitting(' and '.join((*pair.refit.names, third.name))))
+            fitted = refitted(predictor, base, test, (*pair.refit.wanted, third))
+            if found := _with_third(predictor, base, test, tried, pair, fitted):
+                return found
+        if not with_both.too_much:
             return (pair, *alone), with_both
     return alone, left_over(base, test, alone[0].refit)
+
+
+def _exchanged(predictor: Predictor, base: Refit, test: ScoreTest, several: Refit) -> list[Refit]:
+    """Refit with one of several effects exchanged, where to first order another explains more.
+
+    The first effect alone may have been what two that are there look like together.
+    """
+    gains = []
+    for own in several.wanted:
+        others = [other for other in several.wanted if other is not own]
+        rest = test.evidence.without([place for other in others for place in test.block(other)])
+        rivals = [rival for rival in test.wanted if rival.name not in several.names]
+        rival = max(rivals, key=lambda candidate: test.penalised(candidate, rest))
+        gain = test.penalised(rival, rest) - test.penalised(own, rest)
+        gains.append((gain, (*others, rival)))
+    gain, wanted = max(gains, key=lambda entry: entry[0])
+    fitted = refitted(predictor, base, test, wanted) if gain > 0.0 else None
+    return [] if fitted is None else [fitted]
+
+
+def _least(test: ScoreTest, first: Weighed, pair: Weighed, alone: Weighed) -> float:
+    """Criterion that a pair must exceed."""
+    alike = {*twins(test, first.refit, NEARLY_ALIKE), *_of_one_instrument(test, first)}
+    more = LEAST_BIC if pair.refit.names[1] in alike else _to_be_there(alone)
+    return more + alone.delta_bic
+
+
+def _third(test: ScoreTest, pair: Weighed, left: LeftOver) -> Candidate | None:
+    """Candidate for a third effect: what explains most of what two leave over, if that is much."""
+    rest = test.evidence.without([p for own in pair.refit.wanted for p in test.block(own)])
+    others = [candidate for candidate in test.wanted if candidate.name not in pair.refit.names]
+    best = max(others, key=lambda candidate: test.penalised(candidate, rest))
+    enough = left.too_much or test.penalised(best, rest) > _to_be_there(pair)
+    return best if enough else None
+
+
+def _with_third(
+    predictor: Predictor,
+    base: Refit,
+    test: ScoreTest,
+    tried: Sequence[Refit],
+    pair: Weighed,
+    fitted: Refit | None,
+) -> tuple[tuple[Weighed, ...], LeftOver] | None:
+    """Three effects at once before each alone, with their residuals; None if two are enough."""
+    if fitted is None:
+        return None
+    exchanged = _exchanged(predictor, base, test, fitted)
+    reweighed = weigh(base, test, [*tried, fitted, *exchanged])
+    three = _of_number(reweighed, THREE)
+    (two,) = [entry for entry in reweighed if entry.refit is pair.refit]
+    assert three is not None
+    left = left_over(base, test, three.refit)
+    if left.too_much or three.delta_bic <= two.delta_bic + _to_be_there(two):
+        return None
+    return (three, *_alone(_possible_first(reweighed))), left
+
+
+def _of_number(weighed: Sequence[Weighed], number: int) -> Weighed | None:
+    """Best of those that are so many effects at once."""
+    return next((entry for entry in weighed if len(entry.refit.wanted) == number), None)
+
+
+def _alone(weighed: Sequence[Weighed]) -> tuple[Weighed, ...]:
+    """Effects that were refitted alone."""
+    return tuple(entry for entry in weighed if len(entry.refit.wanted) < PAIR)

@@ -11,9 +11,9 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.empirical import empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
 from trawl_ros.diagnosis.holdout import holdout_comparison, split
-from trawl_ros.diagnosis.instruments import frozen, over_ground, wrong_unit
+from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, without, wrong_unit
 from trawl_ros.diagnosis.locating import telling
-from trawl_ros.diagnosis.mimicry import Mimic, mimics_of
+from trawl_ros.diagnosis.mimicry import Mimic, mimics_of, with_mimics
 from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
@@ -58,13 +58,15 @@ def diagnose_windows(
     GearError
         If the gear file switches on an effect that there is not.
     """
+    stuck = frozen(windows, tows)
+    windows = without(windows, stuck)
     halves = split(windows, baseline)
     deciding, kept_back = halves.deciding, halves.kept_back
     model = build_model(gear)
     # Effects found by an earlier diagnosis are those that the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
     predictor = Predictor(model, effects_of(gear), without=baseline, new=new)
-    remarks = (*over_ground(windows, tows), *frozen(windows, tows))
+    remarks = (*over_ground(windows, tows), *(sensor.sentence for sensor in stuck))
     known = Diagnosis('NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=remarks)
     examined = {window.state for window in windows if window.tow not in baseline}
     if len(examined) < FEWEST_STATES:
@@ -85,14 +87,19 @@ def diagnose_windows(
             'from how it was towed',
         )
     on_progress(_step('looking for effects'))
-    test = score_test(predictor, base.fit, catalogue())
+    effects, ruled_out = possible(
+        catalogue(), [window for window in windows if window.tow not in baseline]
+    )
+    known = replace(known, remarks=(*remarks, *ruled_out))
+    test = score_test(predictor, base.fit, effects)
     where = sorted((*telling(test), *changes(test)), key=lambda located: -abs(located.z))
     known = replace(known, base=base, score_test=test, where=tuple(where))
     if not test.detected:
         return replace(
             known,
             verdict='NO_DISCREPANCY',
-            reason='nothing in the readings is beyond what boards and errors explain',
+            reason=f'nothing in the {"other " if stuck else ""}readings is beyond what boards '
+            'and errors explain',
             holdout=holdout_comparison(predictor, base, None, None, kept_back),
         )
     named = name(predictor, base, test, kept_back, on_progress)
@@ -100,7 +107,7 @@ def diagnose_windows(
         on_progress(_step('leaving out what has no steady state with the best effect'))
         remaining = tuple(window for window in deciding if window.index not in named.lost)
         if (again := fit(predictor, prior, remaining)) is not None:
-            base, test = again, score_test(predictor, again.fit, catalogue())
+            base, test = again, score_test(predictor, again.fit, effects)
             known = replace(known, base=base, score_test=test)
             named = name(predictor, base, test, kept_back, on_progress)
     named, mimics = _beside_mimics(predictor, base, test, named, on_progress)
@@ -125,7 +132,7 @@ def diagnose_windows(
         placebo = _placebo(predictor, base, test, named)
     comparison = holdout_comparison(predictor, base, best, placebo, kept_back)
     on_progress(_step('looking for the next tow'))
-    checks, proposals = _advice(predictor, test, named)
+    checks, proposals = _advice(predictor, test, named, mimics)
     return replace(
         known,
         verdict=named.verdict,
@@ -164,14 +171,20 @@ def _step(detail: str) -> WorkProgress:
 
 
 def _advice(
-    predictor: Predictor, test: ScoreTest, named: Named
+    predictor: Predictor, test: ScoreTest, named: Named, mimics: Sequence[Mimic]
 ) -> tuple[tuple[str, ...], tuple[Proposal, ...]]:
-    """Direct checks and tows that separate the best effect from those not excluded."""
+    """Direct checks and tows that separate the best effect from those not excluded, and from
+    changes of gear file or instruments that explain as much.
+    """
     others = {*named.rivals, *named.alike}
-    if not named.weighed or not others:
+    beside = mimics if named.verdict == 'AMBIGUOUS' else ()
+    if not named.weighed or not (others or beside):
         return (), ()
     best = named.weighed[0].refit
     rivals = [candidate for candidate in test.wanted if candidate.name in others]
+    if beside:
+        predictor, test = with_mimics(predictor, test, beside)
+        rivals += [mimic.refit.wanted[0] for mimic in beside]
     candidate = best.wanted[0]
     values = best.values[: len(candidate.start)]
     proposals = propose(predictor, test, candidate, values, rivals)

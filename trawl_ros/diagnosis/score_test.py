@@ -11,6 +11,7 @@ from trawl_ros.diagnosis.candidates import (
     Candidate,
     candidates,
     extended,
+    net_depths,
     signatures,
     values_vector,
 )
@@ -140,7 +141,7 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
     effects
         The catalogue.
     """
-    depths = np.array([linear.window.means['net_depth'] for linear in base.windows])
+    depths = net_depths(base.windows)
     wanted = candidates(effects, predictor, depths)
     columns = signatures(predictor, base.windows, wanted)
     shapes, of_shapes = patterns(base.windows)

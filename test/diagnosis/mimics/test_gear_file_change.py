@@ -72,6 +72,23 @@ def test_what_a_gear_does_not_have_is_passed_over():
     assert 'upper_backstrop' in {own.name for own in changes_of(swept)}
 
 
+def test_ropes_change_on_one_side_alone_and_say_so():
+    gear = load_gear('kaifuha').refined(net=0.25)
+    by_name = {own.name: own for own in changes_of(gear)}
+    assert {'port_warp_weight', 'starboard_bridle_diameter'} <= set(by_name)
+    assert 'port_board_area' not in by_name
+    change, model = by_name['starboard_bridle_diameter'], build_model(gear)
+    there = change.gear(np.array([0.5]), model, Situation((500.0, 500.0, 2.0)))
+    thicker = np.flatnonzero(there.bars.normal_area != model.bars.normal_area)
+    own = [
+        bars
+        for name, _, bars in model.layout.lines
+        if name.startswith('starboard') and name.endswith('bridle')
+    ]
+    np.testing.assert_array_equal(thicker, np.sort(np.concatenate(own)))
+    assert change.words(0.5) == 'thicker bridles on the starboard side, by about 50 %'
+
+
 def test_only_the_numbers_at_the_keys_change():
     gear = load_gear('kaifuha')
     thicker = changed(gear, record('front_twine'), 0.5)

@@ -1,9 +1,10 @@
 """Effect that changes numbers at keys of a gear file and builds the gear anew."""
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
+import numpy as np
 from pydantic import BaseModel
 
 from trawl_ros.core.arrays import FloatArray
@@ -12,9 +13,12 @@ from trawl_ros.diagnosis.mimics.table import MimicRecord, mimic_table
 from trawl_ros.effects.base.effect import Parameter, Situation
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.line import BarProperties
 
 KEPT = 4
 """So many sizes are kept built: a derivative takes two, at all windows."""
+
+SIDES = ('port', 'starboard')
 
 Path = Sequence[str | int | None]
 """Names of keys and places in lists, None for all of a list."""
@@ -32,15 +36,20 @@ class GearFileChange(Change):
         The change.
     believed
         Gear file that is changed.
+    side
+        0 for ropes of the port side alone, 1 for those of starboard; None for both.
     """
 
     record: MimicRecord
     believed: GearRecord
+    side: int | None = None
     _built: dict[float, GearModel] = field(default_factory=dict, repr=False, compare=False)
 
     def words(self, size: float) -> str:
         """The change of a size in words."""
-        return self.record.words(size)
+        return self.record.words(
+            size, '' if self.side is None else f' on the {SIDES[self.side]} side'
+        )
 
     def gear(self, values: FloatArray, model: GearModel, at: Situation) -> GearModel:
         """Gear model of the changed file, with the coefficients of this one."""
@@ -50,36 +59,55 @@ class GearFileChange(Change):
         if size not in self._built:
             while len(self._built) >= KEPT:
                 self._built.pop(next(iter(self._built)))
-            self._built[size] = build_model(changed(self.believed, self.record, size))
+            built = build_model(changed(self.believed, self.record, size))
+            if self.side is not None:
+                built = _on_side(self.side, built, build_model(self.believed))
+            self._built[size] = built
         return self._built[size].with_coefficients(model.coefficients)
 
 
+def _on_side(side: int, changed_gear: GearModel, believed: GearModel) -> GearModel:
+    """Gear with the ropes of one side from a changed one, all else as it is believed."""
+    on = np.zeros(len(believed.ends), dtype=bool)
+    for name, _, bars in believed.layout.lines:
+        on[bars] |= name.startswith(f'{SIDES[side]}_')
+    columns = zip(changed_gear.bars.columns, believed.bars.columns, strict=True)
+    return replace(
+        believed,
+        bars=BarProperties(*(np.where(on, new, old) for new, old in columns)),
+        rest=np.where(on, changed_gear.rest, believed.rest),
+    )
+
+
 def changes_of(gear: GearRecord) -> tuple[GearFileChange, ...]:
-    """All changes of the table that change anything in this gear file."""
-    return tuple(
-        GearFileChange(
-            name=record.name,
-            sentence=f'{record.larger.capitalize()} than the gear file has.',
-            parameters=(
-                Parameter(
-                    'change',
-                    record.unit,
-                    0.0,
-                    record.low,
-                    record.high,
-                    record.usual,
-                ),
-            ),
-            excited_by='any tow, beside a baseline',
-            direct=f'Hold {", ".join(record.keys)} of the gear file against what is on deck.',
-            same_as=record.same_as,
-            keys=record.keys,
-            relative=record.relative,
-            record=record,
-            believed=gear,
-        )
-        for record in mimic_table()
-        if changed(gear, record, 0.5 * (record.high or record.low)) != gear
+    """All changes of the table that change anything in this gear file, some on each side too."""
+    return tuple(_changes(gear))
+
+
+def _changes(gear: GearRecord) -> Iterator[GearFileChange]:
+    for record in mimic_table():
+        if changed(gear, record, 0.5 * (record.high or record.low)) == gear:
+            continue
+        yield _change(gear, record, None)
+        if record.one_sided:
+            yield from (_change(gear, record, side) for side in range(len(SIDES)))
+
+
+def _change(gear: GearRecord, record: MimicRecord, side: int | None) -> GearFileChange:
+    one = '' if side is None else f'{SIDES[side]}_'
+    where = '' if side is None else f', on the {SIDES[side]} side'
+    return GearFileChange(
+        name=f'{one}{record.name}',
+        sentence=f'{record.larger.capitalize()} than the gear file has{where}.',
+        parameters=(Parameter('change', record.unit, 0.0, record.low, record.high, record.usual),),
+        excited_by='any tow, beside a baseline',
+        direct=f'Hold {", ".join(record.keys)} of the gear file against what is on deck{where}.',
+        same_as=tuple(f'{one}{name}' for name in record.same_as),
+        keys=record.keys,
+        relative=record.relative,
+        record=record,
+        believed=gear,
+        side=side,
     )
 
 

@@ -38,6 +38,8 @@ class MimicRecord(Record):
         The change in words, to either side.
     same_as
         Effects of the catalogue that are the same thing.
+    one_sided
+        True where it happens to ropes of one side alone too.
     """
 
     name: Name
@@ -50,6 +52,7 @@ class MimicRecord(Record):
     larger: str
     smaller: str
     same_as: Annotated[tuple[Name, ...], Field(max_length=10)] = ()
+    one_sided: bool = False
 
     @model_validator(mode='after')
     def _sized(self) -> 'MimicRecord':
@@ -62,12 +65,12 @@ class MimicRecord(Record):
             )
         return self
 
-    def words(self, size: float) -> str:
-        """The change of a size in words."""
+    def words(self, size: float, where: str = '') -> str:
+        """The change of a size in words, and where it is."""
         # Two digits, and no power of ten for what is more than the whole.
         shown = float(f'{abs(size) * (100.0 if self.relative else 1.0):.2g}')
         told = f'{shown:g} {"%" if self.relative else self.unit}'
-        return f'{self.larger if size > 0.0 else self.smaller}, by about {told}'
+        return f'{self.larger if size > 0.0 else self.smaller}{where}, by about {told}'
 
 
 class MimicTableRecord(Record):

@@ -155,6 +155,17 @@ class Effect:
         """
         return (self.neutral,)
 
+    def is_possible(self, lowest: FloatArray, seabed: FloatArray) -> bool:
+        """True unless what is known of the place rules it out.
+
+        Parameters
+        ----------
+        lowest, seabed
+            Depths (n,), m, of the lower edge of the net's mouth and of the water in the tows at
+            hand, NaN where no instrument tells them.
+        """
+        return True
+
     def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
         return inputs

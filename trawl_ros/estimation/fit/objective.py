@@ -35,8 +35,10 @@ PAPER_CHANNELS = (
 
 
 def paper_values(values: Mapping[str, float]) -> FloatArray:
-    """Quantities (4,) of eq. 35 from observables or means by name."""
-    return np.array([np.mean([values[name] for name in row.observables]) for row in PAPER_CHANNELS])
+    """Quantities (4,) of eq. 35 from observables or means by name, NaN where one is missing."""
+    return np.array(
+        [np.mean([values.get(name, np.nan) for name in row.observables]) for row in PAPER_CHANNELS]
+    )
 
 
 def mnae(predicted: FloatArray, measured: FloatArray) -> FloatArray:

@@ -23,6 +23,7 @@ from trawl_ros.estimation.windows.records import (
     SteadyWindow,
     WindowOptions,
 )
+from trawl_ros.estimation.windows.sounder import Sounder
 from trawl_ros.estimation.windows.statistics import circular_median
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import NANO, Watermark
@@ -85,6 +86,7 @@ class SteadyWindowFinder:
             for name, channel in CHANNELS.items()
         }
         self._operation = Operation(self._options)
+        self._sounder = Sounder()
         self._next_block: int | None = None
         self._last_winch: int | None = None
 
@@ -108,6 +110,7 @@ class SteadyWindowFinder:
 
     def feed(self, sample: Sample) -> list[SteadyWindow | RejectedWindow]:
         """Take one sample; return what could be decided with it, in order of time."""
+        self._sounder.add(sample)
         for reading in readings(sample, self._pressure_to_depth):
             # Most ships have no yaw rate on the log: NaN there is no fault to be counted.
             if reading.channel == 'yaw_rate' and not math.isfinite(reading.value):
@@ -298,4 +301,5 @@ class SteadyWindowFinder:
                     for name in ('speed', 'ground_east', 'ground_north', 'heading')
                 )
             ),
+            seabed=self._sounder.depth(start_ns, end_ns),
         )

@@ -128,7 +128,8 @@ class SteadyWindow:
     each of which the errors of calibration stay the same. ``track`` compares log and GPS, None
     where one of them or the compass is silent. ``to_come`` is how far channels that still drift may
     be from where they will rest. ``hours`` is the time from the beginning of the tow to the middle
-    of the window.
+    of the window. ``seabed`` is the depth (m) of the water under the ship, None where no
+    echo sounder tells it.
     """
 
     index: int
@@ -141,6 +142,7 @@ class SteadyWindow:
     counts: Mapping[str, int]
     tow: int = 0
     track: GroundTrack | None = None
+    seabed: float | None = None
     to_come: Mapping[str, float] = field(default_factory=dict)
     hours: float = 0.0
 

@@ -305,9 +305,12 @@ def hostile(out: Path, force: bool, messages: int, seed: int) -> None:
 @click.option('--deck', default=DiscrepancyPlan.deck, show_default=True,
               type=click.IntRange(0, 1000), help='Trials of each cause on deck and '
               'strength.')  # fmt: skip
+@click.option('--triples', default=DiscrepancyPlan.triples, show_default=True,
+              type=click.IntRange(0, 1000), help='Trials of each three effects at '
+              'once.')  # fmt: skip
 @click.option('--dynamic', default=DiscrepancyPlan.dynamic, show_default=True,
-              type=click.IntRange(0, 100), help='Trials, of all, that are towed in time '
-              'too.')  # fmt: skip
+              type=click.IntRange(0, 100), help='Trials of a day at sea, in windows and '
+              'towed in time.')  # fmt: skip
 @click.option('--around', default=DiscrepancyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
 @click.option('--sample', default=DiscrepancyPlan.sample, show_default=True,
@@ -325,6 +328,7 @@ def discrepancy(
     pairs: int,
     poor: int,
     deck: int,
+    triples: int,
     dynamic: int,
     around: int,
     sample: int,
@@ -338,7 +342,7 @@ def discrepancy(
     """
     load_gear(gear)
     plan = DiscrepancyPlan(
-        gear, seed, clean, inside, outside, pairs, poor, dynamic, deck, around, sample
+        gear, seed, clean, inside, outside, pairs, poor, dynamic, deck, triples, around, sample
     )
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         trials = run_blind(plan, out, display, scheduler=scheduler, force=force)

@@ -18,7 +18,7 @@ from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.recording import record_tows
 from trawl_ros.lab.studies.discrepancy.trials.towing import hidden_effect_set, towed_in_time
-from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, POOR, PlannedTow
+from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, POOR, SEA, PlannedTow
 from trawl_ros.lab.studies.discrepancy.trials.trial import Spec
 from trawl_ros.lab.studies.identification.readings import AS_STATED
 from trawl_ros.records.channels import MEASURED
@@ -157,15 +157,20 @@ def test_classes_come_from_the_plan_alone():
     assert 'counter_scale' in alike['counter_offset']
 
 
-def test_of_fewer_trials_than_asked_for_each_is_towed_in_time():
-    few = BlindStudyPlan(clean=2, inside=0, outside=0, pairs=0, poor=0, deck=0).specs()
-    assert [spec.like for spec in few if spec.form == 'dynamic'] == [0, 1]
-    assert (
-        sum(spec.form == 'dynamic' for spec in BlindStudyPlan().specs()) == BlindStudyPlan().dynamic
-    )
+def test_trials_of_a_day_are_made_as_windows_and_towed_in_time():
+    specs = BlindStudyPlan(dynamic=16).specs()
+    windows = {spec.number: spec for spec in specs if spec.form == 'windows'}
+    in_time = [spec for spec in specs if spec.form == 'dynamic']
+    assert len(in_time) == 16
+    assert {spec.plan for spec in in_time} == set(SEA)
+    clean = [spec for spec in in_time if not spec.effects]
+    assert len(clean) == 4
+    assert len({spec.plan for spec in clean}) == 4
+    assert all(windows[spec.like].series == 'sea' for spec in in_time)
+    assert BlindStudyPlan(dynamic=3).specs()[-1].plan == in_time[2].plan
 
 
-def test_one_in_twenty_is_made_as_bags_and_some_are_towed_in_time():
+def test_one_in_twenty_is_made_as_bags():
     specs = BlindStudyPlan(dynamic=3).specs()
     windows = {spec.number: spec for spec in specs if spec.form == 'windows'}
     bags = [spec for spec in specs if spec.form == 'bags']
@@ -174,8 +179,7 @@ def test_one_in_twenty_is_made_as_bags_and_some_are_towed_in_time():
     full = [spec for spec in windows.values() if spec.plan == 'full']
     assert len(bags) == pytest.approx(len(full) / 20, abs=1.0)
     assert len(in_time) == 3
-    assert {spec.like for spec in in_time} <= set(windows)
-    assert {spec.series for spec in in_time} >= {'clean', 'inside'}
+    assert {spec.like for spec in (*bags, *in_time)} <= set(windows)
     for spec in (*bags, *in_time):
         own = windows[spec.like]
         assert replace(spec, number=own.number, form='windows', like=None) == own

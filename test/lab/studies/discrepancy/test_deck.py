@@ -10,7 +10,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.trials.plan import DECK_STRENGTHS, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 
-DECK = BlindStudyPlan(clean=0, inside=0, outside=0, pairs=0, poor=0, dynamic=0)
+DECK = BlindStudyPlan(clean=0, inside=0, outside=0, pairs=0, poor=0, dynamic=0, triples=0)
 
 
 def said(

@@ -45,4 +45,7 @@ EFFECT = BoardStall(
     sentence='The boards stall: above 15° of attack lift stays behind its straight line.',
     parameters=(Parameter('loss', '1/rad²', 0.0, -4.0, 12.0, 2.0),),
     excited_by='high angles of attack: low speed, long warps',
+    direct='Hold the angle of the boards against the rigging sheet, and look at their edges.',
+    causes='boards set at a large attack, a worn or bent leading edge, too little weight in the '
+    'shoes.',
 )

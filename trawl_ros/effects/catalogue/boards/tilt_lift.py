@@ -40,4 +40,6 @@ EFFECT = TiltLift(
     parameters=(Parameter('slope', '1/rad', 0.0, -2.0, 2.0, 0.5),),
     excited_by='what makes the boards lean: warp length and speed',
     confused_with=('warp_strumming',),
+    direct='Compare the roll of both doors with the marks of wear on their shoes.',
+    causes='boards that lean in or out with long or short warps, bridles of unequal length.',
 )

@@ -32,4 +32,6 @@ EFFECT = CatchBuildUp(
     parameters=(Parameter('drag_area', 'm² per h', 0.0, 0.0, 20.0, 3.0),),
     excited_by='time in the tow; the same warp length and speed early and late',
     confused_with=('net_drag', 'depth_sensor'),
+    direct='Weigh what comes up, and read the catch sensors.',
+    causes='fish, jellyfish or mud in the codend.',
 )

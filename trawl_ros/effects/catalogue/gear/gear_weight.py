@@ -32,4 +32,8 @@ EFFECT = GearWeight(
     ),
     excited_by='low speed',
     confused_with=('depth_sensor',),
+    direct='Weigh the clumps, and compare the boards with their drawing: shoes, plates, water in '
+    'hollow parts.',
+    causes='clumps or chains of another weight, weights bolted to the boards or lost, flooded '
+    'hollow boards.',
 )

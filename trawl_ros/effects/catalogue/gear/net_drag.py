@@ -33,4 +33,6 @@ EFFECT = NetDrag(
     ),
     excited_by='any tow; the exponent by speed',
     confused_with=('speed_log', 'spread_sensor', 'catch_build_up'),
+    direct='Look over the netting on deck: slime, weed, torn panels, another twine than drawn.',
+    causes='slime or weed, meshed fish, torn panels, netting that was replaced by another twine.',
 )

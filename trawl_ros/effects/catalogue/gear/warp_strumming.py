@@ -28,4 +28,7 @@ EFFECT = WarpStrumming(
     parameters=(Parameter('factor', '', 1.0, 0.7, 2.5, 0.3),),
     excited_by='warp length',
     confused_with=('counter_scale', 'counter_offset', 'current_shear'),
+    direct='Lay a hand on the warps at the blocks: strumming is felt; look for weed and grease as '
+    'they come in.',
+    causes='warps that strum, weed or jellyfish on them, broken strands.',
 )

@@ -23,4 +23,5 @@ EFFECT = CounterOffset(
     confused_with=('counter_scale', 'warp_strumming'),
     direct='Pay out warp to a mark of known distance and read the counters.',
     instrument='counters',
+    causes='counters zeroed at another mark, warp that was cut back and not told to the counter.',
 )

@@ -28,4 +28,5 @@ EFFECT = CounterScale(
     confused_with=('warp_strumming', 'counter_offset'),
     direct='Pay out warp past marks of known distance and read the counters.',
     instrument='counters',
+    causes='a worn or other counting sheave, another wire diameter, layers miscounted on the drum.',
 )

@@ -33,4 +33,6 @@ EFFECT = DepthSensor(
     confused_with=('gear_weight',),
     direct='Read the depth sensors with doors and sonar at the surface: what '
     'they show then is their offset.',
+    causes='a sensor that has aged, mud in its port, air pressure not subtracted, another density '
+    'of the water.',
 )

@@ -25,4 +25,7 @@ EFFECT = SpeedLogError(
     ),
     excited_by='speed',
     confused_with=('net_drag', 'heave'),
+    direct='Run a measured mile in slack water, or compare with speed over ground on reciprocal '
+    'tracks.',
+    causes='growth on the log, a log that was calibrated for another ship or speed.',
 )

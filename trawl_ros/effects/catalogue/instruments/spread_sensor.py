@@ -25,4 +25,6 @@ EFFECT = SpreadSensor(
     excited_by='spread: warp length and speed',
     confused_with=('net_drag',),
     direct='Hold the doors a measured distance apart at the stern and read their sensor.',
+    causes='another speed of sound than set, sensors askew in their pockets, an echo from the '
+    'bottom.',
 )

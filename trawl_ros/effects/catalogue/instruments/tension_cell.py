@@ -25,4 +25,6 @@ EFFECT = TensionCell(
     excited_by='tension; a slack winch shows the offset',
     confused_with=('net_drag',),
     direct='Read the tension cells with slack warps: what they show then is their offset.',
+    causes='a cell that has aged, a lead angle at the block other than when it was calibrated, '
+    'friction of sheaves.',
 )

@@ -22,4 +22,5 @@ EFFECT = WarpAsymmetry(
     excited_by='any tow, short warps most',
     confused_with=('cross_current',),
     direct='Pay out both warps to marks of the same distance and compare the counters.',
+    causes='warps that stretched unequally, one that was cut back, marks set wrongly.',
 )

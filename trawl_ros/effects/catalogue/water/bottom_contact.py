@@ -18,6 +18,9 @@ SOFT = 4.0
 SLOW = 0.1
 """Friction has its full size beyond this speed, m/s."""
 
+NEAR, NEAR_SHARE = 15.0, 0.05
+"""The bottom may lie higher under the gear than under the ship by so much (m), and this part."""
+
 
 @dataclass(frozen=True)
 class Ground:
@@ -45,6 +48,11 @@ class BottomContact(Effect):
         """Start values: the ground may lie anywhere between the net's depths."""
         return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, (0.5, 0.75, 0.9)))
 
+    def is_possible(self, lowest: FloatArray, seabed: FloatArray) -> bool:
+        """False if the echo sounder shows water under the net in all tows."""
+        above = seabed * (1.0 - NEAR_SHARE) - NEAR
+        return not bool(np.all(lowest < above))
+
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with ground under the wing tips."""
         friction, depth = map(float, values)
@@ -61,4 +69,8 @@ EFFECT = BottomContact(
         Parameter('depth', 'm', 0.0, 0.0, 2000.0, 50.0),
     ),
     excited_by='depth near the bottom',
+    confused_with=('net_drag', 'gear_weight'),
+    direct='Look at the footrope and the clumps for mud and bright chain, and at the echo sounder '
+    'for the depth where she towed.',
+    causes='a net that was lowered too far, a bank or a slope, a wreck.',
 )

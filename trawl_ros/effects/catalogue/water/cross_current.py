@@ -33,4 +33,6 @@ EFFECT = CrossCurrent(
     parameters=(Parameter('across', 'm/s', 0.0, -0.5, 0.5, 0.1),),
     excited_by='any tow; reciprocal tracks reverse it',
     confused_with=('warp_asymmetry',),
+    direct='Look at a current profiler, or at a forecast of currents by depth.',
+    causes='a current across the track below the surface layer.',
 )

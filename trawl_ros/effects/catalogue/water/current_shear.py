@@ -36,4 +36,6 @@ EFFECT = CurrentShear(
     parameters=(Parameter('along', 'm/s per 100 m', 0.0, -0.2, 0.2, 0.03),),
     excited_by='warp length and speed; reciprocal tracks reverse it',
     confused_with=('warp_strumming', 'counter_scale'),
+    direct='Look at a current profiler, or at a forecast of currents by depth.',
+    causes='a current that differs with depth, as below a thermocline or over a slope.',
 )

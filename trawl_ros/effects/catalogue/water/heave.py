@@ -21,4 +21,6 @@ EFFECT = HeaveEffect(
     parameters=(Parameter('variance', 'm²/s²', 0.0, 0.0, 1.5, 0.2),),
     excited_by='a sea; low speed shows it most',
     confused_with=('speed_log',),
+    direct="Look up the sea state of the day, or the record of the ship's motion.",
+    causes='a swell, a ship that surges on her warps.',
 )

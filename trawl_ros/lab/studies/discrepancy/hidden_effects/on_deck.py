@@ -285,7 +285,7 @@ RIGHT: Mapping[str, tuple[str, ...]] = {
     'floats_gone': ('floats',),
     'clumps': ('gear_weight',),
     'kite_gone': ('kite',),
-    'thicker_warps': ('warp_strumming',),
+    'thicker_warps': ('warp_strumming', 'other_wire'),
     'thicker_twine': ('net_drag',),
     'port_board_turned': ('port_board_rigging',),
     'port_board_lift': ('port_board_damage',),

@@ -6,6 +6,10 @@ from collections.abc import Mapping
 
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import Draw
+from trawl_ros.lab.studies.discrepancy.hidden_effects.net_and_currents import (
+    NET_AND_CURRENTS,
+    NET_AND_CURRENTS_RIGHT,
+)
 from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import (
     ON_DECK,
     RIGHT,
@@ -39,11 +43,16 @@ OTHER_KEYS = (
 )  # fmt: skip
 """The causes."""
 
-CAUSES: Mapping[str, Draw] = {**ON_DECK, **{cause.name: cause for cause in OTHER_KEYS}}
+CAUSES: Mapping[str, Draw] = {
+    **ON_DECK,
+    **{cause.name: cause for cause in OTHER_KEYS},
+    **NET_AND_CURRENTS,
+}
 """All causes on deck; those of the catalogue first."""
 
 RIGHT_NAMES: Mapping[str, tuple[str, ...]] = {
     **RIGHT,
+    **NET_AND_CURRENTS_RIGHT,
     'other_boards': ('board_damage',),
     'footrope_chain': (),
     'stretched_headrope': (),

@@ -7,8 +7,8 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
-from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import CABLES, Draw
+from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings
+from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import CABLES, USUAL_LENGTH, Draw
 from trawl_ros.model.gear_model import GearModel
 
 AHEAD, LIFT, UP = 0, 1, 2
@@ -73,16 +73,15 @@ def bridle_weed(chance: np.random.Generator) -> Hidden:
     return Hidden('bridle_weed', '', 1.0, (0.0, 20.0), gear=gear)
 
 
-def tide(chance: np.random.Generator) -> Hidden:
-    """A current along the track that sets in during the tow, at all depths below the log."""
-    depths = np.array([0.0, 5.0, 30.0, 600.0])
+def block_angle(chance: np.random.Generator) -> Hidden:
+    """Tension cells in blocks that hang otherwise with short warps than when calibrated."""
+    power = chance.uniform(0.7, 1.3)
 
-    def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        profile = np.array([0.0, 0.0, 1.0, 1.0]) * (at.hours - 1.4)
-        currents = size * profile[:, None] * ahead(at)
-        return replace(model, water=model.water.with_more_current(depths, currents))
+    def shown(size: float, readings: Readings, at: Situation) -> Readings:
+        steeper = (USUAL_LENGTH / at.inputs[0]) ** power - 1.0
+        return readings | {name: readings[name] * (1.0 + size * steeper) for name in CABLES}
 
-    return Hidden('tide', 'm/s per h', 0.05, (0.6, 0.6), gear=gear)
+    return Hidden('block_angle', '', 0.1, (0.5, 0.5), shown=shown)
 
 
 def counter_drift(chance: np.random.Generator) -> Hidden:
@@ -147,9 +146,8 @@ def spread_by_hours(chance: np.random.Generator) -> Hidden:
 OUTSIDE: Mapping[str, Draw] = {
     draw.__name__: draw
     for draw in (
-        bridle_weed, counter_drift, jet, net_weight, opening_by_depth, pitch_mount,
+        block_angle, bridle_weed, counter_drift, jet, net_weight, opening_by_depth, pitch_mount,
         port_depth_sensor, spread_by_hours, starboard_cell,
-        tide,
     )
 }  # fmt: skip
-"""Thirteen kinds."""
+"""Ten kinds."""

@@ -2,8 +2,11 @@
 
 from collections.abc import Sequence
 
-from trawl_ros.lab.report.measured import MeasuredValue
+import numpy as np
+
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.rates import rate
+from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import RIGHT_NAMES
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     chosen,
@@ -12,6 +15,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     names_of,
     reported,
     right,
+    set_size,
     verdict_word,
 )
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
@@ -23,31 +27,54 @@ FEW = 3
 def deck_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Verdicts on causes on deck, by the names that were to count as right."""
     rows = []
-    for strength in (3.0, 6.0):
+    for strength, least in ((3.0, 85.0), (6.0, 95.0)):
         own = chosen(trials, 'deck', strength)
+        known = [trial for trial in own if RIGHT_NAMES.get(hidden_names(trial)[0])]
         rows += [
             rate(
                 f'causes detected at {strength:g} times',
                 [verdict_word(trial) != 'NO_DISCREPANCY' for trial in own],
             ),
             rate(
-                f'right single name or class at {strength:g} times',
-                [named_right(trial, classes) for trial in own],
-            ),
-            rate(
                 f'right, or in a set of at most {FEW}, or UNKNOWN, at {strength:g} times',
                 [is_fair(trial, classes) for trial in own],
+                least=95.0,
             ),
             rate(
                 f'wrong confident name at {strength:g} times',
                 [_is_wrong(trial, classes) for trial in own],
+                most=3.0,
+            ),
+            rate(
+                f'right single name or class at {strength:g} times',
+                [named_right(trial, classes) for trial in known],
+                least=least,
+                note='of causes that the catalogue has',
             ),
             rate(
                 f'causes UNKNOWN at {strength:g} times',
-                [verdict_word(trial) == 'UNKNOWN' for trial in own],
+                [verdict_word(trial) == 'UNKNOWN' for trial in known],
+                most=10.0,
+                note='of causes that the catalogue has',
             ),
         ]
-    return rows
+    return [*rows, _set_sizes(trials, classes)]
+
+
+def _set_sizes(trials: Sequence[Scored], classes: Classes) -> MeasuredValue:
+    """Mean size of the set of causes of the catalogue at 3 times."""
+    sizes = [
+        set_size(trial, classes)
+        for trial in chosen(trials, 'deck', 3.0)
+        if RIGHT_NAMES.get(hidden_names(trial)[0]) and verdict_word(trial) in ('NAMED', 'AMBIGUOUS')
+    ]
+    return MeasuredValue(
+        'mean size of the set of causes at 3 times',
+        float(np.mean(sizes)) if sizes else np.nan,
+        target=at_most(1.5),
+        note=f'{len(sizes)} trials NAMED or AMBIGUOUS, of causes that the catalogue has; effects '
+        'and changes of the gear file',
+    )
 
 
 def cause_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:

@@ -45,6 +45,7 @@ BARS = (
     ('outside', 6.0, 'outside, 6 ×'),
     ('outside', 10.0, 'outside, 10 ×'),
     ('pair', 3.0, 'two at once, 3 ×'),
+    ('triple', 3.0, 'three at once, 3 ×'),
     ('deck', 3.0, 'on deck, 3 ×'),
     ('deck', 6.0, 'on deck, 6 ×'),
     ('poor', 2.0, 'a poor trial, 2 ×'),

@@ -10,11 +10,13 @@ import numpy as np
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.report.rates import rate
-from trawl_ros.lab.studies.discrepancy.scoring.deck import cause_rows, deck_rows
+from trawl_ros.lab.studies.discrepancy.scoring.deck import FEW, cause_rows, deck_rows, is_fair
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
     both_named,
+    checked,
     chosen,
+    found_of_three,
     hidden_names,
     named_right,
     names_of,
@@ -23,7 +25,9 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     reported,
     right,
     same_said,
+    set_size,
     verdict_word,
+    wrong_named,
 )
 from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
@@ -36,9 +40,9 @@ def all_sections(trials: Sequence[Scored], classes: Classes) -> list[Section]:
         Section('Effects of the catalogue', inside_rows(trials, classes)),
         Section('Effects outside the catalogue', outside_rows(trials)),
         Section('Causes on deck', deck_rows(trials, classes)),
-        Section('Two effects at once', pair_rows(trials, classes)),
+        Section('Two and three effects at once', pair_rows(trials, classes)),
         Section('Trials that cannot tell', poor_rows(trials, classes)),
-        Section('Full bags', bag_rows(trials)),
+        Section('Full bags', bag_rows(trials, classes)),
         Section('The repair', repair_rows(trials, classes)),
         Section('Each effect', effect_rows(trials, classes)),
         Section('Each cause on deck', cause_rows(trials, classes)),
@@ -63,12 +67,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
     decided = [trial for trial in inside if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')]
     third = chosen(trials, 'inside', 3.0)
     sizes = [
-        1
-        + len(
-            reported(trial) - {name for own in names_of(trial) for name in classes.get(own, (own,))}
-        )
-        for trial in third
-        if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')
+        set_size(trial, classes) for trial in third if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')
     ]
     testable = {hidden_names(trial)[0] for trial in third}
     rows = [
@@ -101,7 +100,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
                 [named_right(t, classes) for t in chosen(trials, 'inside', strength)],
                 least=least,
             )
-            for strength, least in ((1.5, None), (3.0, 90.0), (6.0, 97.0))
+            for strength, least in ((1.5, None), (3.0, 93.0), (6.0, 97.0))
         ),
         MeasuredValue(
             'mean size of the set at 3 times',
@@ -112,7 +111,7 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         rate(
             'wrong single name',
             [verdict_word(t) == 'NAMED' and not right(t, names_of(t), classes) for t in inside],
-            most=2.0,
+            most=1.0,
         ),
         *(
             rate(
@@ -123,10 +122,6 @@ def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         ),
     ]
     return rows
-
-
-def _one_class(names: set[str], classes: Classes) -> set[str]:
-    return names | {other for name in names for other in classes.get(name, ())}
 
 
 def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
@@ -146,16 +141,16 @@ def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
                 [verdict_word(t) == 'UNKNOWN' for t in chosen(trials, 'outside', strength)],
                 least=least,
             )
-            for strength, least in ((6.0, 80.0), (10.0, 95.0))
+            for strength, least in ((6.0, 85.0), (10.0, 95.0))
         ),
-        rate('wrong name', [verdict_word(t) == 'NAMED' for t in outside], most=10.0),
+        rate('wrong name', [verdict_word(t) == 'NAMED' for t in outside], most=5.0),
         rate('several names', [verdict_word(t) == 'AMBIGUOUS' for t in outside]),
     ]
 
 
 def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Verdicts on two effects at once."""
-    pairs = chosen(trials, 'pair')
+    """Verdicts on two and on three effects at once."""
+    pairs, triples = chosen(trials, 'pair'), chosen(trials, 'triple')
     return [
         rate(
             'both of two effects at 3 times',
@@ -163,6 +158,15 @@ def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]
             least=50.0,
         ),
         rate('one of two effects named alone', [one_named(trial, classes) for trial in pairs]),
+        rate(
+            'two of three effects at least, and no other, at 3 times',
+            [found_of_three(trial, classes) for trial in triples],
+            least=60.0,
+        ),
+        rate(
+            'anything else named where three are hidden',
+            [wrong_named(trial, classes) for trial in triples],
+        ),
     ]
 
 
@@ -179,11 +183,14 @@ def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]
         rate('too poor a trial: truth within the set that is reported',
              [right(trial, reported(trial), classes) for trial in decided]),
         rate('the proposed tow parts what could not be told apart', [parted(t) for t in followed],
-             least=80.0, note='of poor trials with several names, or a class, and a proposal'),
+             note='of poor trials with several names, or a class, and a proposal'),
+        rate('the proposed tow, or a check on deck, parts what could not be told apart',
+             [parted(t) or checked(t, classes) for t in followed], least=85.0,
+             note='the right name is among those left, and all of these but one have a check'),
     ]  # fmt: skip
 
 
-def bag_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
+def bag_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Agreement of verdicts from full bags with those from simulated windows."""
     by_number: Mapping[int, Scored] = {
         trial.key['spec']['number']: trial
@@ -207,6 +214,8 @@ def bag_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
             if not same_said(trial, other)
         )
         note = f'; others: {listed}' if listed else ''
+        if form == 'dynamic':
+            rows += _right_rows(own, classes)
         rows.append(
             rate(
                 f'full bags, {words}: verdict and name as of its windows',
@@ -215,6 +224,28 @@ def bag_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
             )
         )
     return rows
+
+
+def _right_rows(own: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
+    """Verdicts on trials of a day that were towed in time."""
+    listed = '; '.join(
+        f'{trial.key["spec"]["plan"]}, {"+".join(hidden_names(trial)) or "nothing"} '
+        f'{trial.key["spec"]["strength"]:g} ×: {verdict_word(trial)} '
+        f'{" or ".join(sorted(reported(trial)))}'.strip()
+        for trial in own
+    )
+    return [
+        rate('towed in time: verdict right', [_right_at_sea(trial, classes) for trial in own],
+             least=92.0, note='nothing where nothing is hidden; else the right name or class, or '
+             f'it in a set of at most {FEW}: {listed}'),
+        rate('towed in time: a wrong name', [wrong_named(trial, classes) for trial in own]),
+    ]  # fmt: skip
+
+
+def _right_at_sea(trial: Scored, classes: Classes) -> bool:
+    if not hidden_names(trial):
+        return verdict_word(trial) == 'NO_DISCREPANCY'
+    return verdict_word(trial) != 'UNKNOWN' and is_fair(trial, classes)
 
 
 def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:

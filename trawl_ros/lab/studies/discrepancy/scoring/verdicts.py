@@ -10,9 +10,13 @@ import numpy as np
 
 from trawl_ros.diagnosis.candidates import values_vector
 from trawl_ros.diagnosis.rules import ALIKE
+from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import RIGHT_CHANGES, RIGHT_NAMES
 from trawl_ros.lab.studies.discrepancy.trials.strength import Likelihood
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
+
+MOST_OF_THREE = 2
+"""So many of three effects at once are to be found."""
 
 Classes = Mapping[str, tuple[str, ...]]
 """Names as good as each effect's own, fixed before any trial is made."""
@@ -96,6 +100,27 @@ def one_named(trial: Scored, classes: Classes) -> bool:
     )
 
 
+def found_of_three(trial: Scored, classes: Classes) -> bool:
+    """True if at least two of three hidden effects are named, and none that is not there."""
+    names = names_of(trial)
+    hidden = hidden_names(trial)
+    found = [name for name in hidden if names & right_names(name, classes)]
+    there = {own for name in hidden for own in right_names(name, classes)}
+    return verdict_word(trial) == 'NAMED' and len(found) >= MOST_OF_THREE and names <= there
+
+
+def wrong_named(trial: Scored, classes: Classes) -> bool:
+    """True if anything is named that is not there."""
+    there = {own for name in hidden_names(trial) for own in right_names(name, classes)}
+    return verdict_word(trial) == 'NAMED' and not names_of(trial) <= there
+
+
+def set_size(trial: Scored, classes: Classes) -> int:
+    """Number of classes that are not excluded, and of changes of the gear file."""
+    own = {name for one in names_of(trial) for name in classes.get(one, (one,))}
+    return 1 + len(reported(trial) - own)
+
+
 def said_of(trial: Scored) -> dict[str, Any]:
     """Diagnosis of the trial."""
     assert trial.diagnosis is not None
@@ -110,6 +135,15 @@ def same_said(trial: Scored, other: Scored) -> bool:
 def parted(trial: Scored) -> bool:
     """True if one effect alone is left, and the right one."""
     return verdict_word(trial) == 'NAMED' and reported(trial) == set(hidden_names(trial))
+
+
+def checked(trial: Scored, classes: Classes) -> bool:
+    """True if the right effect is among those left, and all of these but one have a check that
+    needs no tow.
+    """
+    left = reported(trial) & set(catalogue())
+    unchecked = [name for name in left if not catalogue()[name].direct]
+    return right(trial, left, classes) and len(unchecked) <= 1
 
 
 def classes(likely: Likelihood) -> Mapping[str, tuple[str, ...]]:

@@ -17,6 +17,12 @@ from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 from trawl_ros.records.coefficients import COEFFICIENTS
 
+BENT = 3.0
+"""Standard deviations by which leaving an effect out bends a coefficient that counts."""
+
+WORSE_BY = 0.5
+"""Part of the error that instruments explain, by which a repair is not to be worse."""
+
 
 def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Gain by the named effect on held-out tows."""
@@ -25,11 +31,17 @@ def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         for trial in chosen(trials, 'inside')
         if trial.key['spec']['strength'] >= 3.0 and named_right(trial, classes)
     ]
+    repaired = [
+        trial
+        for trial in trials
+        if trial.diagnosis is not None and trial.diagnosis['verdict'] == 'NAMED'
+    ]
     removed, placebo = (
         [100.0 * part for trial in named if (part := _removed(trial, by)) is not None]
         for by in ('after', 'placebo')
     )
-    truth = [_coefficient_ratio(trial, _truth(trial)) for trial in named]
+    bent = [trial for trial in named if _bent(trial) >= BENT]
+    truth = [_coefficient_ratio(trial, _truth(trial)) for trial in bent]
     quiet = [trial for trial in named if trial.quiet is not None]
     nearest = [_coefficient_ratio(trial, _quiet(trial)['coefficients']) for trial in quiet]
     hidden = [_hidden_covered(trial) for trial in named]
@@ -39,8 +51,11 @@ def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
                least=80.0),
         median('held-out excess error removed by the best wrong effect', placebo, '%',
                most=20.0),
-        median('error of the coefficients with the effect named over that without',
-               _known(truth), '', most=1.0 / 3.0),
+        rate('repairs that make a channel worse on what was kept back',
+             [_worse(trial) for trial in repaired], most=2.0,
+             note=f'of all that were named; by {WORSE_BY:.0%} of what instruments explain or more'),
+        median(f'error of the coefficients with the effect named over that without, where leaving '
+               f'it out bends one by {BENT:g} std or more', _known(truth), '', most=0.4),
         median('the same from what readings without errors are best fitted with',
                _known(nearest), ''),
         rate('amplitude intervals that cover the best fit to readings without errors', best,
@@ -114,6 +129,29 @@ def _coefficient_ratio(trial: Scored, truth: Mapping[str, float]) -> float | Non
         for when in sums:
             sums[when] += ((own[when]['value'] - value) / own['after']['std']) ** 2
     return float(np.sqrt(sums['after'] / sums['before']))
+
+
+def _bent(trial: Scored) -> float:
+    """Standard deviations by which the coefficient that is bent most changes with the effect."""
+    found = said_of(trial)['coefficients'].values()
+    return max(
+        (
+            abs(own['before']['value'] - own['after']['value']) / own['after']['std']
+            for own in found
+            if own['after'] is not None
+        ),
+        default=0.0,
+    )
+
+
+def _worse(trial: Scored) -> bool:
+    """True if a channel's error is larger with the repair, beyond what instruments explain."""
+    return any(
+        own['after'] is not None
+        and own['after'] > own['expected']
+        and own['after'] - own['before'] > WORSE_BY * own['expected']
+        for own in said_of(trial)['channels'].values()
+    )
 
 
 def _best_covered(trial: Scored) -> list[bool]:

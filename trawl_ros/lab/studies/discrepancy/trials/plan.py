@@ -9,6 +9,7 @@ import numpy as np
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
 from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
 from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import OUTSIDE
+from trawl_ros.lab.studies.discrepancy.trials.tows import SEA
 from trawl_ros.lab.studies.discrepancy.trials.trial import Form, Spec
 from trawl_ros.lab.studies.identification.plant import Cut
 
@@ -24,6 +25,9 @@ OUTSIDE_STRENGTHS = (6.0, 10.0)
 PAIR_STRENGTH = 3.0
 DECK_STRENGTHS = (3.0, 6.0)
 POOR_STRENGTH = 2.0
+SEA_STRENGTHS = (3.0, 6.0)
+CLEAN_AT_SEA = 4
+"""One in so many trials of a day has nothing hidden."""
 
 PAIRS = (
     ('current_shear', 'tension_cell'),
@@ -34,6 +38,15 @@ PAIRS = (
     ('counter_scale', 'tension_cell'),
 )
 
+TRIPLES = (
+    ('current_shear', 'tension_cell', 'spread_sensor'),
+    ('net_drag', 'warp_asymmetry', 'depth_sensor'),
+    ('catch_build_up', 'counter_offset', 'spread_sensor'),
+    ('speed_log', 'gear_weight', 'depth_sensor'),
+    ('heave', 'counter_scale', 'tension_cell'),
+    ('bottom_contact', 'spread_sensor', 'tension_cell'),
+)
+"""Three at once, each as strong as effects of a pair."""
 
 ALIKE_WHERE_POOR = (
     'counter_offset', 'counter_scale', 'cross_current', 'current_shear', 'depth_sensor',
@@ -66,10 +79,12 @@ class BlindStudyPlan:
     poor
         Trials, with a poor plan, of each of `ALIKE_WHERE_POOR`.
     dynamic
-        So many trials, or all if these are fewer, are towed in time too. Some of them will not be
-        possible; 20 of the default are to be left.
+        Trials of a day at sea (`SEA`), one in four with nothing hidden, in windows and towed in
+        time.
     deck
         Trials of each cause on deck and strength, to both sides in turn.
+    triples
+        Trials of each of `TRIPLES`.
     around
         Meshes around the mouth of the model's net.
     sample
@@ -85,6 +100,7 @@ class BlindStudyPlan:
     poor: int = 2
     dynamic: int = 23
     deck: int = 1
+    triples: int = 1
     around: int = FINER.around
     sample: int = 0
 
@@ -103,14 +119,27 @@ class BlindStudyPlan:
         numbers = count(len(alone))
         full = [one for one in alone if one.plan == 'full']
         again = full[IN_BAGS // 2 :: IN_BAGS]
-        apart = max(1, len(full) // max(1, self.dynamic))
-        in_time = full[apart // 2 :: apart][: self.dynamic]
 
         def same(one: Spec, form: Form) -> Spec:
             return replace(one, number=next(numbers), form=form, like=one.number)
 
         bags = [same(one, 'bags') for one in again]
-        return (*alone, *bags, *(same(one, 'dynamic') for one in in_time))
+        at_sea = [replace(one, number=next(numbers)) for one in self._at_sea()]
+        return (*alone, *bags, *at_sea, *(same(one, 'dynamic') for one in at_sea))
+
+    def _at_sea(self) -> Iterator[Spec]:
+        """Trials of a day: what is hidden is drawn from all that may be."""
+        chance = np.random.default_rng([self.seed, *b'sea'])
+        for number in range(self.dynamic):
+            plan, plant = list(SEA)[number % len(SEA)], int(chance.integers(PLANTS))
+            name = str(chance.choice([*INSIDE, *CAUSES]))
+            strength = float(chance.choice(SEA_STRENGTHS))
+            sign = float(chance.choice({**INSIDE, **CAUSES}[name](np.random.default_rng(0)).signs))
+            # The plans take turns with what is hidden: each has trials without anything.
+            if (number + number // len(SEA)) % CLEAN_AT_SEA == CLEAN_AT_SEA - 1:
+                yield Spec('sea', number, (), 0.0, (), plant, plan)
+            else:
+                yield Spec('sea', number, (name,), strength, (sign,), plant, plan)
 
     def _in_windows(self) -> Iterator[Spec]:
         chance = np.random.default_rng([self.seed, *b'plan'])
@@ -141,13 +170,15 @@ class BlindStudyPlan:
                     # To both sides in turn, whichever comes first.
                     side = signs[(first + turn) % len(signs)]
                     yield spec(kind, (name,), strength, (side,), plan)
+
+        def sides_of(names: tuple[str, ...]) -> tuple[float, ...]:
+            return tuple(
+                float(chance.choice(INSIDE[name](np.random.default_rng(0)).signs)) for name in names
+            )
+
         for names in PAIRS:
             for _ in range(self.pairs):
-                sides = tuple(
-                    float(chance.choice(INSIDE[name](np.random.default_rng(0)).signs))
-                    for name in names
-                )
-                yield spec('pair', names, PAIR_STRENGTH, sides)
+                yield spec('pair', names, PAIR_STRENGTH, sides_of(names))
         # Last, so that the draws of all others stay what they were.
         for name, strength in product(CAUSES, DECK_STRENGTHS):
             signs = CAUSES[name](np.random.default_rng(0)).signs
@@ -155,3 +186,6 @@ class BlindStudyPlan:
             for turn in range(self.deck):
                 side = signs[(first + turn) % len(signs)]
                 yield spec('deck', (name,), strength, (side,))
+        for three in TRIPLES:
+            for _ in range(self.triples):
+                yield spec('triple', three, PAIR_STRENGTH, sides_of(three))

@@ -65,7 +65,31 @@ POOR = BlindTrialPlan(
 """With the suspect gear nobody turned round or changed the length of the warps, so that there is
 much that such tows cannot tell apart."""
 
-PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL, 'poor': POOR}
+_FISHING: tuple[State, ...] = ((450.0, 2.2), (650.0, 2.4), (650.0, 2.0))
+_DEEPER: tuple[State, ...] = ((550.0, 2.4), (800.0, 2.2), (450.0, 2.0))
+_LONGER: tuple[State, ...] = ((300.0, 2.2), (550.0, 2.2), (900.0, 2.2), (650.0, 2.2))
+
+SEA: Mapping[str, BlindTrialPlan] = {
+    'three tows': BlindTrialPlan(
+        (PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
+        baseline=1,
+    ),
+    'two tows': BlindTrialPlan((PlannedTow(_LONGER, True), PlannedTow(_LONGER, False)), baseline=1),
+    'no baseline': BlindTrialPlan(
+        (PlannedTow(_LONGER, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
+        baseline=0,
+    ),
+    'four tows': BlindTrialPlan(
+        (
+            PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
+            PlannedTow(_LONGER, True), PlannedTow(_DEEPER, False),
+        ),
+        baseline=1,
+    ),
+}  # fmt: skip
+"""Trials of a day as skippers tow: some hours, few states, with a baseline or without."""
+
+PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL, 'poor': POOR, **SEA}
 
 STATES = tuple(
     sorted({state for plan in PLANS.values() for tow in plan.tows for state in tow.states})

@@ -16,8 +16,8 @@ class Spec:
     Attributes
     ----------
     series
-        'clean', 'inside', 'outside', 'pair', 'poor' or 'deck', and 'followed' of one that was
-        towed on.
+        'clean', 'inside', 'outside', 'pair', 'triple', 'poor', 'deck' or 'sea', and 'followed' of
+        one that was towed on.
     number
         Within the study.
     effects
