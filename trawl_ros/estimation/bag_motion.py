@@ -5,7 +5,7 @@ from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import board_prior
@@ -74,12 +74,37 @@ def learn_from_motion(
     TrawlError
         If no bag can be used, with a reason for each, or the model cannot be towed along them.
     """
-    estimate = None if identification is None else identification.estimate
-    if identification is not None and estimate is None:
+    if identification is not None and identification.estimate is None:
         raise TrawlError(identification.why_not() or 'nothing is estimated')
     tows, numbers, refused = moving_tows(gear, recordings, namespace, on_progress)
     if not tows:
         raise TrawlError('; '.join(refused))
+    return fit_tows(gear, identification, tows, numbers, refused, on_progress)
+
+
+def fit_tows(
+    gear: GearRecord,
+    identification: Identification | None,
+    tows: Sequence[MovingTow],
+    numbers: Sequence[tuple[int, ...]],
+    refused: Sequence[str],
+    on_progress: OnProgress = ignore,
+) -> MotionOutcome:
+    """Fit tows in motion.
+
+    Parameters
+    ----------
+    gear, identification, on_progress
+        As of `learn_from_motion`.
+    tows, numbers, refused
+        As `moving_tows` gives them.
+
+    Raises
+    ------
+    TrawlError
+        If the model cannot be towed along any stretch.
+    """
+    estimate = None if identification is None else identification.estimate
     prior, options, towed = board_prior(gear), MotionOptions(), TowedGear(build_model(gear))
     layouts = [layout_of(tow, towed.motions, options.model) for tow in tows]
     start = None

@@ -27,7 +27,7 @@ from trawl_ros.estimation.motion.weights import robust_factors
 NEAR = 0.1
 """Part of every std from which a fit is at rest where no step lowers its cost."""
 
-COOLER = 0.4
+COOLER = 0.25
 """Factor from step to step on the errors of the data while these are taken for too large."""
 
 DAMPING, STIFFER, LOOSER = 1.0, 8.0, 0.2
@@ -40,8 +40,11 @@ LEAST_DAMPING = 0.1
 LOST = 0.1
 """Part of the stretches that a step may lose, where the motion of the model cannot be computed."""
 
-FINDINGS = 6
-"""Steps in which weights and sizes of the errors are found, before they stay."""
+FINDINGS = 3
+"""Towings after which weights and sizes of the errors are found, before they stay."""
+
+ROUNDS, STAYS = 4, 0.1
+"""Rounds of finding both after a towing; logarithm by which no size changes any more."""
 
 OnTow = Callable[[int, int, int], None]
 
@@ -72,12 +75,29 @@ class _Search:
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
         return linear_data(linear, self.layouts, at, self.prior, self.options, self.noise)
 
-    def weigh(self, sizes: ErrorSizes) -> None:
-        """Weigh the means by their residuals."""
+    def find(self, sizes: ErrorSizes) -> ErrorSizes:
+        """Find weights of the means and sizes of the errors where the step will lead to.
+
+        Nothing is towed for it, so both are found until they stay before the next towing.
+        """
+        for _ in range(ROUNDS):
+            data, last = self.data(self.linear, self.here), sizes
+            there = step(data, self.here, self.prior, sizes, self.options.largest_step)
+            self.weigh(there, sizes)
+            if not self.options.estimate_sizes:
+                break
+            data = self.data(self.linear, self.here)
+            sizes = estimated_sizes(data, self.options.sizes, sizes)
+            if sizes.away_from(last) < STAYS:
+                break
+        return sizes
+
+    def weigh(self, at: Place, sizes: ErrorSizes) -> None:
+        """Weigh the means by their residuals at a place."""
         if not np.isfinite(self.options.huber):
             return
         data, found = self.data(self.linear, self.here), []
-        parts = zip(self.tows, data.tows, self.here, self.noise, strict=True)
+        parts = zip(self.tows, data.tows, at, self.noise, strict=True)
         for tow, groups, z, weighted in parts:
             noise = weighted.copy()
             for number, group in enumerate(groups):
@@ -156,10 +176,8 @@ def fit_motion(
         finding = temper == 1.0 and found < FINDINGS
         found += finding
         if finding:
-            search.weigh(sizes)
+            sizes = search.find(sizes)
         data = search.data(search.linear, search.here)
-        if options.estimate_sizes and finding:
-            sizes = estimated_sizes(data, options.sizes, sizes)
         # Data much sharper than what is known before would lead a full step to where boards fold.
         temper = max(1.0, min(COOLER * temper, misfit(data, search.here, sizes)))
         now = sizes.tempered(temper)

@@ -42,7 +42,7 @@ class MotionOptions:
     nuisances: bool = True
     model: float = 1.0
     largest_step: float = 1.0
-    tolerance: float = 0.05
+    tolerance: float = 0.1
     iterations: int = 20
     attempts: int = 4
     huber: float = 2.5

@@ -88,6 +88,15 @@ class ErrorSizes:
             state=more(self.state),
         )  # fmt: skip
 
+    def away_from(self, other: 'ErrorSizes') -> float:
+        """Largest logarithm of a size over that of another record; 0 where both are 0."""
+        pairs = zip(self._all, other._all, strict=True)
+        return float(max(abs(np.log(one / two)) for one, two in pairs if one > 0.0 and two > 0.0))
+
+    @property
+    def _all(self) -> tuple[float, ...]:
+        return (*self.noise, *self.drift, *self.model, *self.state, self.log)
+
     def of_group(self, group: int) -> FloatArray:
         """Factors (4,) on noise, drift, model's error and what changes with states of a group."""
         return np.array(

@@ -220,7 +220,7 @@ def linearise_tow(
             if motion is None:
                 motion = _begin(gear, tow, point, begin, stretch > 0)
                 seen = [_observed(motion.towed, rows)]
-            taken = list(_towed_on(motion, tow, rows))
+            taken = list(_towed_on(motion, tow, stretch, rows))
         except (NoSteadyState, StepFailed) as error:
             leave_out(stretch, f'the model cannot be towed: {error}')
             motion, again = None, begin + AGAIN_S
@@ -253,9 +253,12 @@ def _begin(gear: TowedGear, tow: MovingTow, point: TowedPoint, begin: float, ane
     return _Motion(towed, inputs, begin + SETTLING_S if anew else 0.0)
 
 
-def _towed_on(motion: _Motion, tow: MovingTow, rows: list[int]) -> Iterator[MotionPrediction]:
-    for _ in range(tow.steps):
-        motion.advance(tow.step_s)
+def _towed_on(
+    motion: _Motion, tow: MovingTow, stretch: int, rows: list[int]
+) -> Iterator[MotionPrediction]:
+    every = tow.every(stretch)
+    for _ in range(0, tow.steps, every):
+        motion.advance(every * tow.step_s)
         yield _observed(motion.towed, rows)
 
 
@@ -268,7 +271,7 @@ def _average(
     result: LinearisedTow, stretch: int, motion: _Motion, instants: list[MotionPrediction]
 ) -> None:
     """Fill in a stretch from its instants."""
-    weights, towed = result.tow.weights[stretch], motion.towed
+    weights, towed = result.tow.weights_of(stretch), motion.towed
     values = np.array([instant.values for instant in instants])
     slopes = np.array([instant.slopes for instant in instants])
     for column in motion.begun_since(stretch * result.tow.stretch_s):

@@ -154,29 +154,33 @@ def test_noise_is_as_much_larger_than_stated_as_asked():
 
 def test_trials_are_kept_and_a_line_without_its_end_is_made_again(tmp_path):
     asked = {'seed': 1, 'around': 12}
-    kept = KeptTrials(tmp_path, asked)
+    kept = KeptTrials(tmp_path, asked, EstimationTrial)
     kept.add(trial(0))
     kept.add(trial(1))
     path = tmp_path / FILE
     path.write_text(path.read_text() + '{"series": "finer", "num')
-    again = KeptTrials(tmp_path, asked)
+    again = KeptTrials(tmp_path, asked, EstimationTrial)
     assert again.series('finer') == (trial(0), trial(1))
     again.add(trial(2))
-    assert [one.number for one in KeptTrials(tmp_path, asked).series('finer')] == [0, 1, 2]
-    assert not KeptTrials(tmp_path, asked, force=True).has('finer', 0)
+    assert [one.number for one in KeptTrials(tmp_path, asked, EstimationTrial).series('finer')] == [
+        0,
+        1,
+        2,
+    ]
+    assert not KeptTrials(tmp_path, asked, EstimationTrial, force=True).has('finer', 0)
 
 
 def test_trials_of_other_settings_are_refused(tmp_path):
-    KeptTrials(tmp_path, {'seed': 1, 'around': 12})
+    KeptTrials(tmp_path, {'seed': 1, 'around': 12}, EstimationTrial)
     with pytest.raises(TrawlError, match=r'seed 1.*expected seed 2.*--force'):
-        KeptTrials(tmp_path, {'seed': 2, 'around': 12})
+        KeptTrials(tmp_path, {'seed': 2, 'around': 12}, EstimationTrial)
     (tmp_path / FILE).unlink()
     (tmp_path / REPORT).write_text('of somebody else')
     with pytest.raises(TrawlError, match='holds files already'):
-        KeptTrials(tmp_path, {'seed': 1, 'around': 12})
+        KeptTrials(tmp_path, {'seed': 1, 'around': 12}, EstimationTrial)
     (tmp_path / FILE).write_text('notes\n')
     with pytest.raises(TrawlError, match='not a file of trials'):
-        KeptTrials(tmp_path, {'seed': 1, 'around': 12})
+        KeptTrials(tmp_path, {'seed': 1, 'around': 12}, EstimationTrial)
 
 
 def test_costs_are_held_against_what_is_asked():
@@ -204,6 +208,8 @@ def test_the_command_makes_a_report_and_goes_on_where_it_was(tmp_path):
     again = CliRunner().invoke(trawl, [*few, '1'])
     assert again.exit_code == 0, again.output
     assert (out / FILE).read_text() == made
-    one = KeptTrials(out, json.loads(made.split('\n')[0])['asked']).series('finer')[0]
+    one = KeptTrials(out, json.loads(made.split('\n')[0])['asked'], EstimationTrial).series(
+        'finer'
+    )[0]
     task = Task('finer', 0, 1, 'kaifuha', Cut(12, lines=2, unjoined=True), tows=1, stated=False)
     assert run_trial(task) == one, 'the same in this process as in a worker'

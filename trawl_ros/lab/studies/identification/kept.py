@@ -4,16 +4,34 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import appending, empty_folder, write_json, write_text
-from trawl_ros.lab.studies.identification.trial import EstimationTrial
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    class KeptTrial(DataclassInstance, Protocol):
+        """Record of a trial, of plain values."""
+
+        @property
+        def series(self) -> str:
+            """Series that it belongs to."""
+            ...
+
+        @property
+        def number(self) -> int:
+            """Number within the series."""
+            ...
+
+
+TrialT = TypeVar('TrialT', bound='KeptTrial')
 
 FILE = 'trials.jsonl'
 
 
-class KeptTrials:
+class KeptTrials(Generic[TrialT]):
     """File with a line per trial, and the common settings of all of them in its first line.
 
     Parameters
@@ -22,6 +40,8 @@ class KeptTrials:
         Folder of the file.
     asked
         Settings on which each trial depends; plain values.
+    kind
+        Record of a trial.
     force
         True if a file of other settings is written over, and one of the same begun anew.
 
@@ -32,10 +52,12 @@ class KeptTrials:
         other files.
     """
 
-    def __init__(self, folder: Path, asked: Mapping[str, Any], *, force: bool = False) -> None:
-        self._path = folder / FILE
+    def __init__(
+        self, folder: Path, asked: Mapping[str, object], kind: type[TrialT], *, force: bool = False
+    ) -> None:
+        self._path, self._kind = folder / FILE, kind
         self._asked = json.loads(json.dumps(asked))
-        self._trials: dict[tuple[str, int], EstimationTrial] = {}
+        self._trials: dict[tuple[str, int], TrialT] = {}
         if force or not self._path.is_file():
             empty_folder(folder, force=force)
             folder.mkdir(parents=True, exist_ok=True)
@@ -59,7 +81,7 @@ class KeptTrials:
         whole = [line for line in lines[:-1] if line]
         for number, line in enumerate(whole, 2):
             try:
-                trial = EstimationTrial(**json.loads(line))
+                trial = self._kind(**json.loads(line))
             except (ValueError, TypeError) as reason:
                 raise TrawlError(
                     f'{self._path}: line {number} is not a trial, expected one, or --force'
@@ -70,7 +92,7 @@ class KeptTrials:
             kept = '\n'.join((first, *whole)) + '\n'
             write_text(self._path, kept)
 
-    def add(self, trial: EstimationTrial) -> None:
+    def add(self, trial: TrialT) -> None:
         """Append a trial."""
         with appending(self._path) as file:
             file.write(json.dumps(asdict(trial), allow_nan=False) + '\n')
@@ -80,7 +102,7 @@ class KeptTrials:
         """True if a trial is there already."""
         return (series, number) in self._trials
 
-    def series(self, series: str) -> tuple[EstimationTrial, ...]:
+    def series(self, series: str) -> tuple[TrialT, ...]:
         """Trials of a series in the order of their numbers."""
         found = sorted(key for key in self._trials if key[0] == series)
         return tuple(self._trials[key] for key in found)

@@ -43,7 +43,7 @@ def coverage_rows(
     target = between(*COVERAGE) if asked else None
     truth, low, high = (_array(trials, name) for name in ('truth', 'low', 'high'))
     inside = (low <= truth) & (truth <= high)
-    low_all, high_all = _interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
+    low_all, high_all = interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
     rows = [
         MeasuredValue(
             f'{series}: 95 % intervals that cover the truth',
@@ -103,7 +103,7 @@ def spread_rows(trials: Sequence[EstimationTrial], prior: ParameterVector) -> li
         return np.array([*np.sqrt(over_all), *each])
 
     values = figures(np.arange(len(trials)))
-    ends = _interval(figures, len(trials))
+    ends = interval(figures, len(trials))
     texts = [
         (
             'spread of estimates over its bound',
@@ -165,7 +165,7 @@ def held_out_rows(trials: Sequence[EstimationTrial]) -> list[MeasuredValue]:
 
     errors, beyond = figures(np.arange(len(trials)))
     floors = errors / beyond
-    low, high = _interval(figures, len(trials))
+    low, high = interval(figures, len(trials))
     rows = []
     for column, channel in enumerate(PAPER_CHANNELS):
         name = channel.name.replace('_', ' ')
@@ -219,10 +219,10 @@ def _array(trials: Sequence[EstimationTrial], name: str) -> FloatArray:
     return np.array([getattr(trial, name) for trial in trials], dtype=float)
 
 
-def _interval(
+def interval(
     figures: Callable[[IntArray], FloatArray], number: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Bootstrap 95 % intervals of figures (n,) over trials."""
+    """Bootstrap 95 % interval of figures (n,) over so many trials: lower and upper ends."""
     if number < 2:
         nothing = np.full(figures(np.arange(number)).shape, np.nan)
         return nothing, nothing

@@ -164,7 +164,7 @@ def run_trials(
     scheduler: str | None = None,
     workers: int | None = None,
     force: bool = False,
-) -> KeptTrials:
+) -> KeptTrials[EstimationTrial]:
     """Run the trials that are missing.
 
     Parameters
@@ -188,7 +188,7 @@ def run_trials(
     # Dask takes a second to import, for which other commands need not wait.
     from trawl_ros.core.parallel import run_tasks
 
-    kept = KeptTrials(folder, plan.asked(), force=force)
+    kept = KeptTrials(folder, plan.asked(), EstimationTrial, force=force)
     tasks = {task.name: task for task in _tasks(plan) if not kept.has(task.series, task.number)}
     done = step_counter('trials', len(tasks), on_progress)
     for _, trial in run_tasks(run_trial, tasks, scheduler=scheduler, workers=workers):
@@ -198,7 +198,7 @@ def run_trials(
 
 
 def trials_of(
-    plan: EstimationStudyPlan, kept: KeptTrials, series: TrialSeries
+    plan: EstimationStudyPlan, kept: KeptTrials[EstimationTrial], series: TrialSeries
 ) -> tuple[EstimationTrial, ...]:
     """Trials of a series in a plan; more may be on file."""
     return kept.series(series.name)[: plan.numbers()[series.name]]

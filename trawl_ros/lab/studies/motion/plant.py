@@ -1,0 +1,117 @@
+"""Plants of the trials: random boards towed in time, and read by instruments as they come."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.motion.nuisances import ADDED_MASS_STD
+from trawl_ros.estimation.motion.towing import TowedGear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.instruments.errors.instrument import SeedPlan
+from trawl_ros.instruments.parameters import load_instruments
+from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.lab.studies.identification.plant import Look, State, draw_board
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.samples import Sample
+from trawl_ros.scenario.scenario import Scenario
+from trawl_ros.scenario.sea import build_surroundings
+from trawl_ros.simulation.simulation import Simulation
+from trawl_ros.solver.stepper import StepFailed
+
+COURSE = 'demo'
+"""Scenario whose commands are towed: five states in 52 minutes."""
+
+HELD_OUT: tuple[State, ...] = ((380.0, 2.25), (330.0, 2.15), (280.0, 2.0), (225.0, 1.9))
+"""Steady states that are predicted and not towed, between those of the course."""
+
+PERIOD_S = 0.5
+"""Of the simulation, whose solver steps twice as far; as often as any instrument looks."""
+
+MOST_DRAWS = 20
+"""Boards that can be towed at rest, drawn for one trial at most until one can be towed in time."""
+
+
+@dataclass(frozen=True)
+class PlantTow:
+    """Tow of a drawn board.
+
+    Attributes
+    ----------
+    coefficients : (12,) array
+        Of its boards.
+    added_mass
+        As a part of the cylinder of water around a board.
+    samples
+        Of its instruments.
+    held_out
+        Observables of the plant in `HELD_OUT`.
+    rejected
+        Boards drawn before that cannot be towed, by reason.
+    """
+
+    coefficients: FloatArray
+    added_mass: float
+    samples: tuple[Sample, ...]
+    held_out: tuple[Look, ...]
+    rejected: Counter[str]
+
+
+def draw_tow(
+    record: GearRecord, prior: ParameterVector, course: Scenario, chance: np.random.Generator
+) -> PlantTow:
+    """Draw boards and their added mass until they can be towed, at rest and in time.
+
+    Parameters
+    ----------
+    record
+        The plant.
+    prior
+        Of its boards: normal, cut at its bounds.
+    course
+        Scenario whose commands are towed.
+    chance
+        Generator of random numbers.
+
+    Raises
+    ------
+    TrawlError
+        If none of `MOST_DRAWS` boards that have their steady states tows the course.
+    """
+    states = tuple((command.port_length, command.speed) for _, command in course.commands)
+    rejected: Counter[str] = Counter()
+    for _ in range(MOST_DRAWS):
+        board = draw_board(record, prior, (states, HELD_OUT), chance)
+        rejected += board.rejected
+        added_mass = ADDED_MASS_STD * abs(chance.standard_normal())
+        seed = int(chance.integers(2**31))
+        try:
+            samples = _towed(record, board.coefficients, added_mass, course, seed)
+        except (NoSteadyState, StepFailed):
+            rejected['in time'] += 1
+            continue
+        return PlantTow(board.coefficients, added_mass, samples, board.tows[1], rejected)
+    raise TrawlError(f'none of {MOST_DRAWS} boards that can be towed at rest tows the course')
+
+
+def _towed(
+    record: GearRecord, coefficients: FloatArray, added_mass: float, course: Scenario, seed: int
+) -> tuple[Sample, ...]:
+    gear = TowedGear(build_model(record).with_coefficients(coefficients))
+    simulation = Simulation(
+        gear.model, course.start, period=PERIOD_S, effect_set=gear.with_added_mass(added_mass)
+    )
+    suite = InstrumentSuite(
+        load_instruments(),
+        surroundings=build_surroundings(record),
+        draws=SeedPlan(seed, course.state_changes_s),
+    )
+    samples = list(suite.observe(simulation.truth()))
+    for number in range(round(course.duration_s / PERIOD_S)):
+        simulation.command = course.commands_at(PERIOD_S * number)
+        simulation.advance()
+        samples += suite.observe(simulation.truth())
+    return tuple(samples)

@@ -1,0 +1,173 @@
+"""Trial: a random board towed in time, fitted by its windows and by all of its tow."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.bag_motion import STRETCHES, fit_tows
+from trawl_ros.estimation.fit.objective import paper_values, stack
+from trawl_ros.estimation.from_gear import board_prior, identification_for
+from trawl_ros.estimation.motion.series import tow_readings
+from trawl_ros.estimation.motion.stretches import moving_tow
+from trawl_ros.lab.studies.identification.plant import Cut
+from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
+from trawl_ros.lab.studies.motion.plant import COURSE, draw_tow
+from trawl_ros.model.water import build_water
+from trawl_ros.scenario.scenario import load_scenario
+
+KINDS = ('noise', 'drift', 'model', 'state')
+"""Kinds of errors whose sizes a fit in motion finds for each quantity."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """Task of one trial.
+
+    Attributes
+    ----------
+    series
+        The series it belongs to, which is part of the seed.
+    number
+        Within the series.
+    seed
+        Of the study.
+    gear
+        File or name.
+    cut
+        Meshes of model and plant.
+    """
+
+    series: str
+    number: int
+    seed: int
+    gear: str
+    cut: Cut
+
+    @property
+    def name(self) -> str:
+        """Name in files and sentences."""
+        return f'{self.series} {self.number}'
+
+    def chance(self) -> np.random.Generator:
+        """Random generator of this trial alone, wherever and whenever it is made."""
+        return np.random.default_rng([self.seed, self.number, *self.series.encode()])
+
+
+@dataclass(frozen=True)
+class MotionTrial:
+    """Result of a trial; of pairs, the first is of the steady windows, the second of all of the
+    tow.
+
+    Attributes
+    ----------
+    truth : 12 numbers
+        Coefficients that made the data.
+    values, std, low, high : 2 × 12 numbers
+        Estimates, their standard deviations and intervals.
+    squared : 2 numbers
+        Squared errors of the twelve in the metric of the posterior, 12 in the mean.
+    converged, reason, iterations
+        Of the fit in motion.
+    windows
+        Number of steady windows.
+    left_out_s, duration_s
+        Time of stretches that do not count, and of those that do.
+    rejected
+        Boards drawn before that cannot be towed, by reason.
+    measured : n × 4 numbers
+        The channels of eq. 35 in the states that were not towed.
+    predicted : 3 × n × 4 numbers
+        By the model with both estimates, and with the true coefficients; None where it has none.
+    sizes
+        Sizes of the errors that were found, by kind.
+    cpu_s
+        Processor time of the fit in motion.
+    """
+
+    series: str
+    number: int
+    truth: list[float]
+    values: list[list[float]]
+    std: list[list[float]]
+    low: list[list[float]]
+    high: list[list[float]]
+    squared: list[float]
+    converged: bool
+    reason: str
+    iterations: int
+    windows: int
+    left_out_s: float
+    duration_s: float
+    rejected: dict[str, int]
+    measured: list[list[float]]
+    predicted: list[list[list[float | None]]]
+    sizes: dict[str, list[float]]
+    cpu_s: float
+
+
+def run_motion_trial(task: Task) -> MotionTrial:
+    """Run a trial.
+
+    Raises
+    ------
+    TrawlError
+        If no board drawn can be towed, or nothing can be fitted.
+    """
+    chance, gear = task.chance(), task.cut.model(task.gear)
+    course = load_scenario(COURSE)
+    prior = board_prior(gear)
+    plant = draw_tow(task.cut.plant(task.gear), prior, course, chance)
+    identification = identification_for(gear)
+    for sample in plant.samples:
+        identification.feed(sample)
+    identification.finish()
+    estimate = identification.estimate
+    if estimate is None:
+        raise TrawlError(f'{task.name}: {identification.why_not()}')
+    read = tow_readings(plant.samples, build_water(gear).depth, task.name)
+    tow = moving_tow(read, task.name, STRETCHES)
+    begun = time.process_time()
+    learned = fit_tows(gear, identification, [tow], [(0,)], ())
+    cpu_s = time.process_time() - begun
+    unseen = steady_windows([plant.held_out], AS_STATED, chance, first_tow=1)
+    both = (estimate.values, learned.fit.values)
+    predictions = [
+        identification.estimator.predictions(values, unseen)
+        for values in (*both, plant.coefficients)
+    ]
+    fit = learned.fit
+    covariances = estimate.covariance, fit.covariance
+    return MotionTrial(
+        series=task.series,
+        number=task.number,
+        truth=plant.coefficients.tolist(),
+        values=[values.tolist() for values in both],
+        std=[estimate.std.tolist(), learned.std.tolist()],
+        low=[estimate.low.tolist(), learned.low.tolist()],
+        high=[estimate.high.tolist(), learned.high.tolist()],
+        squared=[
+            _squared(values - plant.coefficients, covariance)
+            for values, covariance in zip(both, covariances, strict=True)
+        ],
+        converged=fit.converged,
+        reason=fit.reason,
+        iterations=fit.iterations,
+        windows=estimate.windows,
+        left_out_s=float(sum(part.end - part.begin for _, part in learned.left_out)),
+        duration_s=learned.duration_s,
+        rejected=dict(plant.rejected),
+        measured=stack([paper_values(window.means) for window in unseen]).tolist(),
+        predicted=[
+            [[None if np.isnan(value) else value for value in row] for row in rows.tolist()]
+            for rows in predictions
+        ],
+        sizes={**{kind: list(getattr(fit.sizes, kind)) for kind in KINDS}, 'log': [fit.sizes.log]},
+        cpu_s=cpu_s,
+    )
+
+
+def _squared(away: FloatArray, covariance: FloatArray) -> float:
+    return float(away @ np.linalg.solve(covariance, away))
