@@ -1,15 +1,18 @@
 """The default gear, whole and cut coarsely, and bags of steady tows made without towing."""
 
 import signal
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 import yaml
 
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.files import write_figure
 from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -26,7 +29,11 @@ from trawl_ros.records.samples import (
     WinchSample,
 )
 from trawl_ros.records.topics import absolute
+from trawl_ros.report import pictures
 from trawl_ros.solver.equilibrium import steady_state
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SECOND = 1_000_000_000
 LEGS = ((200.0, 2.3), (220.0, 2.3))
@@ -40,6 +47,33 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Files with slow tests come first: one that begins last would leave a worker idle."""
     slow = {item.path for item in items if item.get_closest_marker('slow')}
     items.sort(key=lambda item: item.path not in slow)
+
+
+@contextmanager
+def roughly_drawn() -> Iterator[None]:
+    """Draw the pictures of reports small and without a layout, in less than half of the time."""
+
+    def rough(path: Path, figure: 'Figure', dpi: float) -> None:
+        figure.set_layout_engine('none')
+        write_figure(path, figure, dpi / 4.0)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, 'write_figure', rough)
+        yield
+
+
+@pytest.fixture
+def rough_pictures() -> Iterator[None]:
+    """A report of whose pictures nothing is claimed but that there are some."""
+    with roughly_drawn():
+        yield
+
+
+@pytest.fixture(scope='module')
+def rough_pictures_of_all() -> Iterator[None]:
+    """The same for all tests of a file."""
+    with roughly_drawn():
+        yield
 
 
 @pytest.fixture(scope='session')

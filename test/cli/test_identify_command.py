@@ -59,6 +59,7 @@ def test_writes_the_result_and_figures_and_prints_tables(identify, bag, trial, t
     assert 'Objective of eq. 35' in done.stdout
 
 
+@pytest.mark.usefixtures('rough_pictures')
 def test_of_several_bags_each_is_left_out_and_what_is_readable_of_a_damaged_one_is_used(
     identify, steady_tow, bag, tmp_path
 ):
@@ -99,6 +100,7 @@ def test_bags_read_at_once_and_in_turn_hold_the_same(steady_tow, bag, coarse_gea
         assert one.readings == other.readings
 
 
+@pytest.mark.usefixtures('rough_pictures')
 def test_a_bag_without_windows_is_named_and_without_the_prior_all_is_less_known(
     identify, steady_tow, bag, tmp_path
 ):

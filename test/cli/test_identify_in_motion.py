@@ -14,6 +14,8 @@ from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import VelocitySample, WinchSample
 from trawl_ros.records.topics import NAMESPACE
 
+pytestmark = pytest.mark.usefixtures('rough_pictures')
+
 SECOND = 1_000_000_000
 NOTHING_HELD_OUT = 'Nothing could be held out: it takes two tows, or two states.'
 

@@ -89,6 +89,7 @@ def test_the_gap_shrinks_on_a_tow_that_decided_nothing(caught):
     assert after.rms['door_spread'] < before.rms['door_spread']
 
 
+@pytest.mark.usefixtures('rough_pictures')
 def test_the_repaired_gear_leaves_no_discrepancy(caught, with_catch, hide, tmp_path):
     write_diagnosis(caught, [], tmp_path)
     gear = load_gear(tmp_path / 'model.yaml')

@@ -136,6 +136,11 @@ def no_viewer() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope='module', autouse=True)
+def pictures(rough_pictures_of_all: None) -> None:
+    """Draw reports of nodes roughly: what is in them has tests of its own."""
+
+
 @pytest.fixture(scope='session')
 def open_graph():
     """Give the context manager that makes a graph in a domain."""

@@ -137,9 +137,13 @@ def finite(value: float) -> float | None:
 
 
 def write_figure(path: Path, figure: 'Figure', dpi: float) -> None:
-    """Write a figure as `written` does."""
+    """Write a figure as PNG as `written` does."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure.dpi = dpi
     with written(path) as draft:
-        figure.savefig(draft, dpi=dpi)
+        # `savefig` draws all of it once more beforehand, for its layout, which a canvas does too.
+        FigureCanvasAgg(figure).print_png(draft)  # type: ignore[no-untyped-call]
 
 
 def appending(path: Path) -> TextIO:

@@ -169,7 +169,8 @@ class BagPlayer(TrawlNode):
         if not self._began or self._paused:
             return
         if self._ended:
-            self._end_if_done()
+            if self.exit_code is None:
+                self._end_if_done()
             return
         end = monotonic() + BURST_S
         while (message := self._excerpt.upcoming) and self._may_go_on(message.log_time):

@@ -231,6 +231,7 @@ def test_nothing_left_out_leaves_the_fit_unknown(sea, model, prior, windows):
     assert not judged.holds
 
 
+@pytest.mark.usefixtures('rough_pictures')
 def test_the_page_needs_nothing_beside_it_and_begins_with_the_verdict(sea, tows, tmp_path):
     tows.finder.rejected['outlier'] = 7
     found = report(tows, truth=sea.TRUTH)
