@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -74,3 +75,24 @@ def test_the_load_on_twine_is_that_of_one_bar_from_knot_to_knot(
     front = gear.netting.body[0]
     share = 0.5  # of a column, on a wing's edge
     assert load == pytest.approx(share * 100.0 * front.twine_diameter_m * first.rest)
+
+
+def test_a_net_that_lies_nearly_flat_is_found_with_a_harder_load() -> None:
+    # As in a flume tank at 1.8 m/s: with the first load alone 3 kN are left.
+    tank = load_gear('flume_83_112')
+    assert tank.pair is not None
+    front = {'weight_in_water_n_m': 0.0, 'normal_drag': 0.0, 'tangential_drag': 0.0, 'segments': 2}
+    flat = tank.model_copy(
+        update={
+            'pair': tank.pair.model_copy(update={'distance_m': 60.83}),
+            'warp': tank.warp.model_copy(update=front),
+            'footrope': tank.footrope.model_copy(update={'weight_in_water_n_m': 5.0}),
+            'bridles': tuple(
+                bridle.model_copy(update={'length_m': 55.51 if bridle.at_net == 'lower' else 54.9})
+                for bridle in tank.bridles
+            ),
+        }
+    )
+    model = build_model(flat)
+    _, _, residual = cold_start(model, 0.0, steady_tow(model, OperatingPoint(0.5, 0.5, 1.8)))
+    assert residual < TOLERANCE

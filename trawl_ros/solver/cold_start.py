@@ -25,6 +25,10 @@ PRESSURE = 1000.0
 """Load across a bar per area (Pa) with which a shape is sought: about three times that of the
 water on netting that is towed at 2 m/s at 20° to its bars."""
 
+HARDER = 1.0, 4.0, 16.0
+"""Multiples of that load that are tried one after another, each where the one before does not calm
+the netting: nets of thick twine, or held so that they come to lie nearly flat, need more."""
+
 COARSE_LIMIT, LIMIT = 100, 3.0
 """Iterations after which a rough shape is given up: of the coarsest net, and of finer ones per
 square root of the number of nodes, so per row and column. With 48 meshes around up to 63 are
@@ -60,11 +64,17 @@ def cold_start(
         As `relax` has them.
     """
     even = replace(tow, lengths=np.full(2, tow.lengths.mean()))
-    state, spent, residual = _bowed_shape(model, heading, even)
+    spent = 0
+    for harder in HARDER:
+        pressure = harder * PRESSURE
+        state, more, residual = _bowed_shape(model, heading, even, pressure)
+        spent += more
+        if residual <= ROUGH:
+            break
     if residual <= ROUGH:
         if not lying and lies_over(model, state) and outward_normal_lift(state).min() > 0.0:
             return state, spent, ROUGH
-        state, more, residual = straightened(model, state, even)
+        state, more, residual = straightened(model, state, even, pressure=pressure)
         spent += more
     if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:
         return state, spent, residual
@@ -82,10 +92,12 @@ def bowed(model: GearModel, pressure: float) -> GearModel:
     return replace(model, bars=replace(bars, bow=np.maximum(bars.bow, bow)))
 
 
-def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int, float]:
-    """Shape of the gear with bowed twine."""
+def _bowed_shape(
+    model: GearModel, heading: float, tow: Tow, pressure: float
+) -> tuple[State, int, float]:
+    """Shape of the gear with twine that is bowed by this load, Pa."""
     coarse = coarser_model(model)
-    loose = bowed(model, PRESSURE)
+    loose = bowed(model, pressure)
     if coarse is None:
         # Boards keep their attitude until ropes and net have found a shape.
         state, spent, _ = relax(
@@ -98,7 +110,7 @@ def _bowed_shape(model: GearModel, heading: float, tow: Tow) -> tuple[State, int
             limit=120,
         )
     else:
-        state, spent, residual = _bowed_shape(coarse, heading, tow)
+        state, spent, residual = _bowed_shape(coarse, heading, tow, pressure)
         if residual > ROUGH:
             return state, spent, residual
         state = carried_over(coarse, state, model)
@@ -120,10 +132,15 @@ def held_shape(model: GearModel, state: State, tow: Tow) -> tuple[State, int, fl
 
 
 def straightened(
-    model: GearModel, state: State, tow: Tow, free: BoolArray | None = None
+    model: GearModel,
+    state: State,
+    tow: Tow,
+    free: BoolArray | None = None,
+    *,
+    pressure: float = PRESSURE,
 ) -> tuple[State, int, float]:
-    """Take the load of `bowed` away from a shape found with it; ``free`` as for `relax`."""
-    pressure, fall, least, spent = PRESSURE, FALL, LEAST, 0
+    """Take the load of `bowed` (Pa) away from a shape found with it; ``free`` as for `relax`."""
+    fall, least, spent = FALL, LEAST, 0
     while True:
         lower = pressure / fall
         last = lower < least
