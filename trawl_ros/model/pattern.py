@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
-from trawl_ros.model.compiled import compiled
+from trawl_ros.model.compiled import compiled, fused
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class SparsityPattern:
             first += len(values)
 
 
-@compiled
+@fused
 def _multiply(
     indices: IntArray,
     indptr: IntArray,
@@ -76,9 +76,14 @@ def _multiply(
     vector: FloatArray,
     product: FloatArray,
 ) -> None:
-    for column in range(len(vector)):
-        for k in range(indptr[column], indptr[column + 1]):
-            product[indices[k]] += data[k] * vector[column]
+    # Columns come in threes of like rows.
+    for column in range(0, len(vector), 3):
+        first, second, third = indptr[column], indptr[column + 1], indptr[column + 2]
+        a, b, c = vector[column], vector[column + 1], vector[column + 2]
+        for k in range(second - first):
+            product[indices[first + k]] += (
+                data[first + k] * a + data[second + k] * b + data[third + k] * c
+            )
 
 
 @compiled

@@ -1,20 +1,21 @@
 """Modes of the linearised motion M ẍ + C ẋ + K x = 0, by shift and invert."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.model.state import State, Tow
+from trawl_ros.solver.arnoldi import RitzPairs, ritz_pairs
 from trawl_ros.solver.factor import Factor, factorised
 
-SUBSPACE = 20
-"""Vectors among which modes are sought before the search starts anew with the best of them."""
+MOST = 60
+"""Vectors among which modes are sought: with the default gear, six take 24 of them."""
 
 
 @dataclass(frozen=True)
@@ -32,14 +33,9 @@ class LinearisedMotion:
         number: int,
         *,
         tolerance: float,
-        restarts: int | None = None,
-        subspace: int = SUBSPACE,
         factor: Factor | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Find the modes whose eigenvalues lie nearest to a shift.
-
-        One factorisation of s² M + s C + K serves, half the size of the first-order form: with
-        y = (x, ẋ), (A - s B)⁻¹ B y follows from it by substitution.
 
         Parameters
         ----------
@@ -49,10 +45,6 @@ class LinearisedMotion:
             Of modes to look for.
         tolerance
             Relative to their distance from the shift.
-        restarts
-            Of the search, after which it ends with those that are found.
-        subspace
-            Number of vectors among which modes are sought before the search starts anew.
         factor
             Of s² M + s C + K, where that is known.
 
@@ -61,29 +53,50 @@ class LinearisedMotion:
         values, vectors
             Eigenvalues (k,), 1/s, at most ``number``, and shapes (dof, k).
         """
+
+        def enough(values: FloatArray, residuals: FloatArray) -> bool:
+            return bool(np.all(residuals[:number] <= tolerance))
+
+        found = self.around(shift, enough, factor)
+        near = (found.residuals <= tolerance) & (np.arange(len(found.values)) < number)
+        return found.values[near], found.vectors(near)[: self.pattern.dof]
+
+    def around(
+        self,
+        shift: complex,
+        enough: Callable[[FloatArray, FloatArray], bool],
+        factor: Factor | None = None,
+    ) -> RitzPairs:
+        """Search the eigenvalues λ around a shift s, as 1 / (λ - s), until those found (k,), the
+        nearest first, and their errors (k,) relative to their distances from it are enough.
+
+        One factorisation of s² M + s C + K serves, half the size of the first-order form: with
+        y = (x, ẋ), (A - s B)⁻¹ B y follows from it by substitution.
+        """
+
+        def back(inverted: FloatArray) -> FloatArray:
+            return cast(FloatArray, shift + 1.0 / inverted)
+
         # All below takes a complex shift as it takes a real one.
         s = shift.real if shift.imag == 0.0 else cast(float, shift)
         n, times = self.pattern.dof, self.pattern.times
+        slowed = s * self.mass + self.damping
         if factor is None:
-            data = s**2 * self.mass + s * self.damping + self.stiffness
-            factor = factorised(self.pattern, data)
-        solve, kind = factor.solve, factor.data.dtype
+            factor = factorised(self.pattern, s * slowed + self.stiffness)
+        solve = factor.solve
 
         def apply(y: FloatArray) -> FloatArray:
             x, v = y[:n], y[n:]
             # From ẋ = s x + x₀ and M ẍ + C ẋ + K x = 0 with right-hand side (x, M v).
-            new = -solve(times(self.mass, s * x + v) + times(self.damping, x))
-            return np.concatenate([new, s * new + x])
+            new = np.empty_like(y)
+            np.negative(solve(times(self.mass, v) + times(slowed, x)), out=new[:n])
+            np.multiply(s, new[:n], out=new[n:])
+            new[n:] += x
+            return new
 
-        operator = LinearOperator((2 * n, 2 * n), matvec=apply, dtype=kind)
-        start = np.concatenate([np.ones(n), np.zeros(n)]).astype(kind)
-        try:
-            values, vectors = eigs(
-                operator, number, v0=start, tol=tolerance, ncv=subspace, maxiter=restarts
-            )
-        except ArpackNoConvergence as partial:
-            values, vectors = partial.eigenvalues, partial.eigenvectors
-        return shift + 1.0 / values, vectors[:n]
+        start = np.concatenate([np.ones(n), np.zeros(n)]).astype(factor.data.dtype)
+        found = ritz_pairs(apply, start, lambda some, errors: enough(back(some), errors), MOST)
+        return replace(found, values=back(found.values))
 
 
 def linearised_motion(model: GearModel, state: State, tow: Tow) -> LinearisedMotion:

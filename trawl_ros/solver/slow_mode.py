@@ -19,9 +19,8 @@ from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.modes import LinearisedMotion
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 
-MODES, SUBSPACE = 4, 14
-"""Modes that are sought, those of the eigenvalues nearest to 0, and vectors for that: with fewer
-the search starts anew, with more it does more than it has to."""
+MODES = 4
+"""Modes that are sought, those of the eigenvalues nearest to 0."""
 
 NET, PORT, STARBOARD = map(
     OBSERVABLES.index, ('net_depth', 'port_door_depth', 'starboard_door_depth')
@@ -49,9 +48,7 @@ def slow_mode(model: GearModel, found: Equilibrium) -> SlowMode:
     motion = LinearisedMotion(
         model.pattern, mass(*at), known.motion.damping, known.motion.stiffness
     )
-    rates, shapes = motion.nearest(
-        0.0, MODES, tolerance=1e-4, subspace=SUBSPACE, factor=known.factor
-    )
+    rates, shapes = motion.nearest(0.0, MODES, tolerance=1e-4, factor=known.factor)
     best = SlowMode(0.0, np.zeros(len(OBSERVABLES)))
     for rate, vector in zip(rates, shapes.T, strict=True):
         if abs(rate.imag) > 1e-6 * abs(rate) or rate.real >= 0.0:

@@ -75,7 +75,7 @@ def slow_motions(
     """
     wanted = number + SEARCHED
     motion = linearised_motion(model, state, tow)
-    rates, vectors = motion.nearest(0.0, wanted, tolerance=1e-8, subspace=2 * wanted + 2)
+    rates, vectors = motion.nearest(0.0, wanted, tolerance=1e-8)
     still = np.abs(rates.imag) <= 1e-6 * np.abs(rates)
     quiet = np.flatnonzero(still & (rates.real < 0.0))
     if len(quiet) < number:
