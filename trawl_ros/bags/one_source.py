@@ -124,9 +124,12 @@ def _alternates(values: tuple[float, ...]) -> bool:
 
 def _visits(readings: list[tuple[int, int, tuple[float, ...]]]) -> int:
     """Count the readings of a slower source between those of a faster one; 0 without one."""
-    readings = sorted(readings, key=lambda reading: reading[1])
-    times = np.array([stamp - readings[0][1] for _, stamp, _ in readings], dtype=float)
+    stamps = np.array([stamp for _, stamp, _ in readings])
     courses = np.array([values for _, _, values in readings]).T
+    if np.any(np.diff(stamps) < 0):
+        order = np.argsort(stamps, kind='stable')
+        stamps, courses = stamps[order], courses[:, order]
+    times = (stamps - stamps[0]).astype(float)
     # Values beyond any instrument are refused elsewhere.
     with np.errstate(over='ignore', invalid='ignore'):
         return max(_beside(times, sign * course) for course in courses for sign in (1.0, -1.0))
@@ -163,8 +166,9 @@ def _departures(values: FloatArray) -> FloatArray:
 
 def _alike(sizes: FloatArray) -> bool:
     """True if most of some sizes (n,) deviate little."""
-    middle = np.median(sizes)
-    return bool(middle > 0.0 and np.median(abs(sizes - middle)) <= SPREAD * middle)
+    # Of some ten numbers, which arrays take longer to sort.
+    middle = float(median(sizes.tolist()))
+    return middle > 0.0 and float(median(abs(sizes - middle).tolist())) <= SPREAD * middle
 
 
 def _values(sample: Sample) -> tuple[float, ...] | None:

@@ -4,7 +4,7 @@ What is readable is used; what is wrong with the rest is said in `Bag.problems`.
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from rosbags.typesys.store import Typestore
 from trawl_ros.bags.sources import BagFacts, open_source
 from trawl_ros.bags.storage.decoding import BagTypes, Decoder
 from trawl_ros.bags.storage.qos import parse_profiles
-from trawl_ros.bags.storage.stored import Definition
+from trawl_ros.bags.storage.stored import Definition, Stored
 from trawl_ros.bags.summary import BagSummary, count_topics
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.foreign import reading
@@ -138,24 +138,31 @@ class Bag:
             If a topic of the project has another type than it should, or there is not one
             readable message in the whole bag.
         """
+        return map(_raw, self._wanted(topics))
+
+    def _wanted(self, topics: Collection[str] | None) -> Iterator[Stored]:
+        """Give the messages of `raw` as their files have them."""
         self._check_types(topics)
         empty = True
-        for message in self.as_stored():
+        for stored in self._stored():
             empty = False
-            if topics is None or message.topic in topics:
-                yield message
+            if topics is None or stored[0] in topics:
+                yield stored
         if empty:
             known = f' ({"; ".join(self.problems)})' if self.problems else ''
             raise BagError(f'{self.path}: holds no message that can be read{known}')
 
     def as_stored(self) -> Iterator[RawMessage]:
         """Give all messages undecoded and unchecked, whatever their types; there may be none."""
+        return map(_raw, self._stored())
+
+    def _stored(self) -> Iterator[Stored]:
+        """Give the messages of `as_stored` as their files have them."""
         read = 0
         with reading(self.path, BagError, lambda: f'after {read} messages'):
-            for topic, type_name, message in self._source.messages():
+            for stored in self._source.messages():
                 read += 1
-                times = message.log_time, message.publish_time
-                yield RawMessage(topic, type_name, *times, message.data, message.channel_id)
+                yield stored
         stated = self._source.stated_count
         if read and stated is not None and stated > read:
             self._report(f'{self.path}: {read} of {stated} messages could be read')
@@ -175,15 +182,32 @@ class Bag:
         BagError
             As `raw`, and if the definition of one of the project's topics is not understood.
         """
-        decoders = self._decoders(topics)
+        for stored, message in self._decoded(self._decoders(topics, self._types.decoder)):
+            there = stored.message
+            yield Received(stored.topic, stored.type, there.log_time, message, there.channel_id)
+
+    def passing(self, topics: Collection[str]) -> Iterator[tuple[str, int, Any]]:
+        """Give full topic name, channel and decoded message, as `messages`, for those in a hurry.
+
+        A message may be filled anew with the content of the next: nobody may keep one.
+
+        Raises
+        ------
+        BagError
+            As `messages`.
+        """
+        for stored, message in self._decoded(self._decoders(topics, self._types.refilling)):
+            yield stored.topic, stored.message.channel_id, message
+
+    def _decoded(self, decoders: Mapping[str, Decoder]) -> Iterator[tuple[Stored, Any]]:
         failed: Counter[str] = Counter()
-        for raw in self.raw(decoders):
+        for stored in self._wanted(decoders):
             try:
-                message = decoders[raw.topic](raw.data)
+                message = decoders[stored[0]](stored[2].data)
             except MessageError:
-                failed[raw.topic] += 1
+                failed[stored.topic] += 1
                 continue
-            yield Received(raw.topic, raw.type, raw.log_time, message, raw.channel)
+            yield stored, message
         for topic, count in failed.items():
             self._report(
                 f'{self.path}: {count} messages on {topic} are not a {self.topics[topic]} '
@@ -234,13 +258,15 @@ class Bag:
             problems=tuple(self.problems),
         )
 
-    def _decoders(self, topics: Collection[str] | None) -> dict[str, Decoder]:
+    def _decoders(
+        self, topics: Collection[str] | None, made: Callable[[str, Definition], Decoder]
+    ) -> dict[str, Decoder]:
         decoders = {}
         for topic, definition in self.definitions().items():
             if topics is not None and topic not in topics:
                 continue
             try:
-                decoders[topic] = self._types.decoder(topic, definition)
+                decoders[topic] = made(topic, definition)
             except BagError as reason:
                 sentence = f'{self.path}: {reason}'
                 if find_topic(topic, self._namespace) and not self._lenient:
@@ -263,6 +289,12 @@ class Bag:
     def _report(self, problem: str) -> None:
         if problem not in self.problems:
             self.problems.append(problem)
+
+
+def _raw(stored: Stored) -> RawMessage:
+    topic, type_name, there = stored
+    times = there.log_time, there.publish_time
+    return RawMessage(topic, type_name, *times, there.data, there.channel_id)
 
 
 def read_messages(

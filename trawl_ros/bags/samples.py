@@ -57,17 +57,17 @@ class SampleStream:
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
         watches = {name: SourceWatch() for name in self.topics}
-        for received in bag.messages(names):
-            name = names[received.topic]
+        for topic, channel, message in bag.passing(names):
+            name = names[topic]
             try:
-                sample = to_sample(name, received.message)
+                sample = to_sample(name, message)
             except MessageError as reason:
                 refused[name] += 1
                 reasons.setdefault(name, str(reason))
                 continue
-            if why := watches[name].take(received.channel, sample):
+            if why := watches[name].take(channel, sample):
                 raise BagError(
-                    f'{path}: {received.topic} has two sources, for {why}; expected one instrument'
+                    f'{path}: {topic} has two sources, for {why}; expected one instrument'
                 )
             yield sample
         self.problems += bag.problems

@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from mcap.records import Message
-
 from trawl_ros.bags.storage.allowance import Allowance
 from trawl_ros.bags.storage.chunks import Damaged, inflate
 from trawl_ros.bags.storage.database import Database
@@ -20,8 +18,6 @@ from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import BAG_FILES, BAG_TOPICS, NAME
 
 Report = Callable[[str], None]
-Found = tuple[str, str, Message]
-"""Topic, type and message."""
 
 SUFFIXES = ('.mcap', '.db3')
 
@@ -142,22 +138,27 @@ class BagSource:
         """Give all (topic, type) there are."""
         return set[tuple[str, str]]().union(*(file.types() for file in self.files))
 
-    def messages(self) -> Iterator[Found]:
+    def messages(self) -> Iterator[Stored]:
         """Give all messages in the order of their log times."""
-        streams = (file.messages() for file in self.files)
+        streams = [file.messages() for file in self.files]
         lost = 0
         size = sum(path.stat().st_size for path in self._paths)
         allowed = Allowance(self.files[0].path, size)
-        for stored in heapq.merge(*streams, key=lambda stored: stored.message.log_time):
-            message = stored.message
-            if self._packed:
-                try:
-                    message = replace(message, data=inflate(message.data))
-                    allowed.take_bytes(len(message.data))
-                except Damaged:
-                    lost += 1
-                    continue
-            yield stored.topic, stored.type, message
+        if len(streams) == 1:
+            merged = streams[0]
+        else:
+            merged = heapq.merge(*streams, key=lambda stored: stored.message.log_time)
+        if not self._packed:
+            yield from merged
+            return
+        for topic, type_name, message in merged:
+            try:
+                plain = replace(message, data=inflate(message.data))
+                allowed.take_bytes(len(plain.data))
+            except Damaged:
+                lost += 1
+                continue
+            yield Stored(topic, type_name, plain)
         if lost:
             self._report(f'{self.files[0].path}: {lost} compressed messages are damaged')
 

@@ -11,6 +11,10 @@ from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.tows import FoundWindows
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.records.channels import READ_TOPICS
+
+SAMPLES = 100
+"""So many samples are read between two calls that tell of progress."""
 
 IN_TURN = 2
 """So many bags are read sooner than processes are started for them."""
@@ -33,20 +37,22 @@ def read_tow(task: BagTask, on_progress: OnProgress = ignore) -> FoundWindows:
     task
         The bag, its topics and its gear.
     on_progress
-        Called after each sample, with the part of the tow (s) that is read.
+        Called now and then, with the part of the tow (s) that is read.
     """
     identification = identification_for(task.gear)
     finder = identification.finder
-    stream = SampleStream([task.path], task.namespace)
+    stream = SampleStream([task.path], task.namespace, topics=READ_TOPICS)
     windows: list[SteadyWindow] = []
     newest: int | None = None
     done = 0
-    for _, sample in stream:
-        done += 0 if newest is None else max(0, sample.stamp - newest)
-        newest = sample.stamp if newest is None else max(newest, sample.stamp)
+    for number, (_, sample) in enumerate(stream):
+        if newest is None or sample.stamp > newest:
+            done += 0 if newest is None else sample.stamp - newest
+            newest = sample.stamp
         windows += [item for item in finder.feed(sample) if isinstance(item, SteadyWindow)]
-        detail = f'{len(windows)} steady windows'
-        on_progress(WorkProgress('reading', done / SECOND, None, 's', detail))
+        if number % SAMPLES == 0:
+            detail = f'{len(windows)} steady windows'
+            on_progress(WorkProgress('reading', done / SECOND, None, 's', detail))
     windows += [item for item in finder.finish() if isinstance(item, SteadyWindow)]
     return FoundWindows(
         name=str(task.path),

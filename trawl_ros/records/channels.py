@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import NamedTuple
 
 from trawl_ros.records.samples import (
     AttitudeSample,
@@ -163,6 +164,9 @@ _TABLE = (
 CHANNELS: Mapping[str, Channel] = MappingProxyType({row.name: row for row in _TABLE})
 """The channel table by name."""
 
+READ_TOPICS = tuple(dict.fromkeys(row.topic for row in _TABLE))
+"""Topics with readings of any channel."""
+
 REQUIRED = tuple(name for name, channel in CHANNELS.items() if channel.required)
 WITNESSES = ('heading', 'yaw_rate', 'ground_east', 'ground_north')
 """Channels that tell how the ship moves; no part of the fit."""
@@ -171,11 +175,11 @@ MEASURED = tuple(name for name in CHANNELS if name not in INPUTS and name not in
 """Channels compared with the model's observables of the same name."""
 
 
-@dataclass(frozen=True)
-class Reading:
+class Reading(NamedTuple):
     """Reading: one value (SI) of one channel with its stated std, 0 where none is stated.
 
-    ``low`` and ``high`` are the sensor's own limits where it has any.
+    ``low`` and ``high`` are the sensor's own limits where it has any. A tuple, for a tow has
+    hundreds of thousands.
     """
 
     channel: str

@@ -1,6 +1,7 @@
 """Messages of chunks in the order of their log times."""
 
 import heapq
+import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -33,19 +34,31 @@ def in_log_order(
     BagError
         If more bytes of chunks overlap than `BAG_WAITING`.
     """
-    waiting: list[tuple[int, int, int, Message]] = []
+    runs: list[tuple[int, int, int, list[Message]]] = []
     held = 0
-    for piece in [*pieces, None]:
-        while waiting and (piece is None or waiting[0][0] < piece.start):
-            message = heapq.heappop(waiting)[3]
-            held -= len(message.data)
-            yield message
+    for number, piece in enumerate([*pieces, None]):
+        end = math.inf if piece is None else piece.start
+        while runs and runs[0][0] < end:
+            _, offset, begun, run = heapq.heappop(runs)
+            # Alone, as chunks of most writers are, a run goes on to its end.
+            until = min(end, runs[0][0] + (offset < runs[0][1])) if runs else end
+            while True:
+                message = run.pop()
+                held -= len(message.data)
+                yield message
+                if not run:
+                    break
+                if run[-1].log_time >= until:
+                    heapq.heappush(runs, (run[-1].log_time, offset, begun, run))
+                    break
         if piece is None:
             break
-        for place, record in enumerate(load(piece) or ()):
-            if isinstance(record, Message):
-                held += len(record.data)
-                heapq.heappush(waiting, (record.log_time, piece.offset, place, record))
+        run = [record for record in load(piece) or () if isinstance(record, Message)]
+        if run:
+            held += sum(len(message.data) for message in run)
+            run.sort(key=lambda message: message.log_time)
+            run.reverse()
+            heapq.heappush(runs, (run[-1].log_time, piece.offset, number, run))
         if held > BAG_WAITING.value:
             raise BagError(
                 f'{path}: chunks before byte {piece.offset} overlap in time; expected '

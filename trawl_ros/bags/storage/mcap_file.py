@@ -141,14 +141,18 @@ class McapFile:
         allowed = Allowance(self.path, self._size)
         with open_file(self.path, BagError) as stream:
             load = partial(self._load, stream, allowed=allowed)
+            known = {
+                number: (topic, definition.type)
+                for number, (topic, definition) in self._known.all().items()
+            }
             for message in in_log_order(self.path, self._pieces, load):
-                described = self._known.find(message.channel_id)
+                described = known.get(message.channel_id)
                 if described is None:
                     lost_channels[message.channel_id] += 1
                 elif message.log_time > LATEST_STAMP.value:
                     late[described[0]] += 1
                 else:
-                    yield Stored(described[0], described[1].type, message)
+                    yield Stored(*described, message)
         for number, count in lost_channels.items():
             self._report(
                 f'{self.path}: {count} messages of channel {number}, whose description was lost, '

@@ -5,6 +5,7 @@ string, with numbers, and from version 9 on a plain list, with words.
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import yaml
@@ -79,7 +80,7 @@ def parse_profiles(topic: str, offered: Any) -> tuple[Qos, ...]:
     try:
         if isinstance(offered, str) and len(offered) > MAX_TEXT:
             raise ValueError(f'{len(offered)} characters')
-        profiles = tuple(parse_qos(offered))
+        profiles = _read(offered) if isinstance(offered, str) else tuple(parse_qos(offered))
         for profile in profiles:
             times = (profile.deadline, profile.lifespan, profile.liveliness_lease_duration)
             for number in (profile.depth, *(part for time in times for part in time)):
@@ -91,3 +92,9 @@ def parse_profiles(topic: str, offered: Any) -> tuple[Qos, ...]:
             f'{topic}: offered_qos_profiles cannot be understood ({type(reason).__name__}: '
             f'{reason}); expected a list of profiles as rosbag2 writes it'
         ) from reason
+
+
+@lru_cache(maxsize=64)
+def _read(text: str) -> tuple[Qos, ...]:
+    """Read profiles from text: slowly, and that of most topics is the same."""
+    return tuple(parse_qos(text))

@@ -1,6 +1,7 @@
 """Stored messages and definitions of a bag's file, whatever its storage."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from mcap.records import Message
 
@@ -8,9 +9,8 @@ from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import STORE, message_definition, type_hash
 
 
-@dataclass(frozen=True)
-class Stored:
-    """Stored message of a file, with its topic and type."""
+class Stored(NamedTuple):
+    """Stored message of a file, with its topic and type: a tuple, for there are many."""
 
     topic: str
     type: str

@@ -46,6 +46,7 @@ class ChannelBuffer:
     ) -> None:
         self._capacity = capacity
         self.channel = channel
+        self._low, self._high, self._noise = channel.low, channel.high, channel.noise
         self.order = order
         self.first: int | None = None
         self.delay = round(channel.delay * NANO)
@@ -68,12 +69,15 @@ class ChannelBuffer:
         Each one refused is counted by its reason.
         """
         # Stamps first: a sensor that says nonsense in time is not silent.
-        return sum(
-            self._plausible(accepted) and self._insert(accepted)
-            for accepted in self.order.judge(reading)
-        )
+        count = 0
+        for accepted in self.order.judge(reading):
+            count += self._plausible(accepted) and self._insert(accepted)
+        return count
 
     def _plausible(self, reading: Reading) -> bool:
+        value = reading.value
+        if self._low <= value <= self._high and reading.low <= value <= reading.high:
+            return True
         if not math.isfinite(reading.value):
             self._rejections.add('not finite', f'{self._where} reads {reading.value}')
             return False
@@ -89,20 +93,22 @@ class ChannelBuffer:
         return True
 
     def _insert(self, reading: Reading) -> bool:
-        place = bisect_left(self._stamps, reading.stamp)
-        if place < len(self._stamps) and self._stamps[place] == reading.stamp:
+        stamp, stamps = reading.stamp, self._stamps
+        newest = not stamps or stamp > stamps[-1]
+        place = len(stamps) if newest else bisect_left(stamps, stamp)
+        if not newest and stamps[place] == stamp:
             self._rejections.add('duplicate stamp', f'{self._where} has a stamp twice')
             return False
-        if self._decided is not None and reading.stamp < self._decided:
-            late = (self._decided - reading.stamp) / NANO
+        if self._decided is not None and stamp < self._decided:
+            late = (self._decided - stamp) / NANO
             self._rejections.add('late', f'{self._where} came {late:.1f} s too late for its window')
             return False
-        self._stamps.insert(place, reading.stamp)
+        stamps.insert(place, stamp)
         self._values.insert(place, reading.value)
-        stated = reading.std if math.isfinite(reading.std) and reading.std > 0.0 else 0.0
-        self._stds.insert(place, stated or self.channel.noise)
-        self.first = reading.stamp if self.first is None else min(self.first, reading.stamp)
-        if len(self._stamps) > self._capacity:
+        self._stds.insert(place, reading.std if 0.0 < reading.std < math.inf else self._noise)
+        if self.first is None or stamp < self.first:
+            self.first = stamp
+        if len(stamps) > self._capacity:
             self._drop_before(self._stamps[self._capacity // 10])
         return True
 

@@ -115,8 +115,9 @@ class SteadyWindowFinder:
             # Most ships have no yaw rate on the log: NaN there is no fault to be counted.
             if reading.channel == 'yaw_rate' and not math.isfinite(reading.value):
                 continue
-            self.arrived[reading.channel] += 1
-            self.readings[reading.channel] += self._buffers[reading.channel].add(reading)
+            name = reading.channel
+            self.arrived[name] += 1
+            self.readings[name] += self._buffers[name].add(reading)
         return self._advance(self._watermark()) if self._block_may_end() else []
 
     def finish(self) -> list[SteadyWindow | RejectedWindow]:

@@ -72,7 +72,8 @@ class TimestampCheck:
         """Return the readings that are accepted now, this one or those that waited for it."""
         if self.newest is None or reading.stamp > self.newest + self._leap:
             return self._wait(reading)
-        self.give_up()
+        if self._waiting:
+            self.give_up()
         behind = self.newest - reading.stamp
         if behind <= self._reorder:
             return self._accept([reading])
