@@ -16,8 +16,9 @@ from trawl_ros.records.channels import READ_TOPICS
 SAMPLES = 100
 """So many samples are read between two calls that tell of progress."""
 
-IN_TURN = 2
-"""So many bags are read sooner than processes are started for them."""
+IN_TURN_BYTES = 16_000_000
+"""Bags of so many bytes in all are read as soon as processes are started for them, by one that is
+there already: a process takes as long to start as 4 MB to read."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ def read_tows(
     paths, gear, namespace
         As in `BagTask`.
     scheduler
-        Address of a Dask cluster. Without it a few bags are read in turn, more by processes of
+        Address of a Dask cluster. Without it small bags are read in turn, others by processes of
         this machine; what is found is the same.
     on_progress
         Called as bags are read.
@@ -91,9 +92,19 @@ def read_tows(
         If a bag cannot be read at all.
     """
     tasks = [BagTask(path, gear, namespace) for path in paths]
-    if scheduler is None and len(tasks) <= IN_TURN:
+    small = len(paths) == 1 or sum(map(_size, paths)) <= IN_TURN_BYTES
+    if scheduler is None and small:
         return _in_turn(tasks, on_progress)
     return _at_once(tasks, scheduler, on_progress)
+
+
+def _size(path: Path) -> int:
+    """Bytes of a bag; 0 where they cannot be told, which reading it will."""
+    try:
+        files = path.iterdir() if path.is_dir() else (path,)
+        return sum(file.stat().st_size for file in files if file.is_file())
+    except OSError:
+        return 0
 
 
 def _in_turn(tasks: Sequence[BagTask], on_progress: OnProgress) -> list[FoundWindows]:
