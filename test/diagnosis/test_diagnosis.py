@@ -206,7 +206,7 @@ def test_the_next_tow_tells_an_effect_from_its_rival(coarse, caught):
     assert first.after > first.before > 0.0
     assert first.per_hour == pytest.approx(first.after - first.before)
     assert all(first.per_hour >= other.per_hour for other in proposals)
-    assert 'an hour of it parts the best effect from its nearest rival' in str(first)
+    assert 'the best effect from its nearest rival (χ² ' in str(first)
     assert propose(predictor, seen, best, np.array([2.0]), []) == ()
 
 

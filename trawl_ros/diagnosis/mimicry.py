@@ -210,14 +210,23 @@ def _sparing(test: ScoreTest, best: Weighed, explained: float) -> float:
 
     Boards that are turned about one axis are named with all three angles; a change of the gear
     file, which has one size, would stand ahead of them for that alone. What each choice of the
-    values lacks of the χ² that all of them explain is found to first order.
+    values lacks of the χ² that all of them explain is found to first order. Values of an effect
+    that was searched from several starts all count: one of them was chosen with the start.
     """
     block = _block(test, best)
+    names = [candidate.name for candidate in test.wanted]
+    chosen = {
+        place
+        for candidate in best.refit.wanted
+        if names.count(candidate.name) > 1
+        for place in test.block(candidate)
+    }
     whole, penalty = test.evidence.chi2(block), float(np.log(test.readings))
     return max(
         explained
         - (whole - test.evidence.chi2(some))
-        - test.evidence.degrees_of_freedom(some) * penalty
+        - max(test.evidence.degrees_of_freedom(some), len(chosen)) * penalty
         for number in range(1, len(block) + 1)
         for some in combinations(block, number)
+        if chosen <= set(some)
     )

@@ -132,7 +132,7 @@ def name(
     )
     verdict, reason = judge(grounds)
     if verdict == 'AMBIGUOUS':
-        # None is excluded that is the best in some of the resampled trials.
+        # None is excluded that is the best in a twentieth of the resampled trials.
         rivals = tuple(dict.fromkeys((*rivals, *best.others)))
     return Named(verdict, reason, weighed, alike, rivals, left)
 

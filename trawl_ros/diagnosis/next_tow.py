@@ -10,6 +10,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.candidates import Candidate, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
+from trawl_ros.diagnosis.rules import LEAST_BIC
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.over_ground import GroundTrack
@@ -23,6 +24,9 @@ STATES = 3
 
 STATE_MINUTES = 20.0
 """A state takes so long, with what the gear takes to settle."""
+
+WORTH = 1.0
+"""Tows of less χ² per hour are not proposed: no weather makes them tell."""
 
 TOLD = 3
 """So many tows are proposed."""
@@ -62,9 +66,11 @@ class Proposal:
             f'{lengths[0]:.0f} m of warp'
         )
         track = ', on the reciprocal track' if self.reciprocal else ''
+        tells = 'should tell' if self.per_hour >= LEAST_BIC else 'helps to tell'
         return (
-            f'Tow {what}{track}: an hour of it parts the best effect from its nearest rival by '
-            f'{self.per_hour:.1f} of χ² more (so far {self.before:.1f}).'
+            f'Tow {what}{track}: an hour of it {tells} the best effect from its nearest rival '
+            f'(χ² {self.per_hour:.1f} more, where {LEAST_BIC:g} are enough; so far '
+            f'{self.before:.1f}).'
         )
 
 
@@ -117,7 +123,7 @@ def propose(
             apart = _apart(test, after, best, values, rivals)
             proposals.append(Proposal(states, reciprocal, before, apart))
     ranked = sorted(proposals, key=lambda proposal: -proposal.per_hour)
-    return tuple(proposal for proposal in ranked[:TOLD] if proposal.per_hour > 0.0)
+    return tuple(proposal for proposal in ranked[:TOLD] if proposal.per_hour > WORTH)
 
 
 def _apart(

@@ -21,6 +21,10 @@ something is seen or named: neither is found from the data, as noise is."""
 NOISE_TO_EXPLAIN = 1.7
 """Noise found over noise stated from where it is asked whether it is noise."""
 
+NOISE_SEEN = 2.0
+"""Noise found over noise stated from where there is a discrepancy, though neither effect nor
+pattern shows it: a jet that reverses with the course leaves residuals of all signs."""
+
 RIVAL = 6.0
 """An effect whose χ² is worse than the best one's by less is not excluded."""
 
@@ -29,6 +33,9 @@ LEAST_BIC = 10.0
 
 LEAST_SHARE = 0.8
 """Part of the resampled trials in which the same effect is the best."""
+
+OTHER_SHARE = 0.05
+"""An effect that is the best in fewer of the resampled trials is excluded."""
 
 FIT = 1e-3
 """Probability below which what is left over does not look like errors."""
@@ -184,7 +191,7 @@ def judge_beside(verdict: Verdict, reason: str, mimics: Mapping[str, float]) -> 
     """
     better = [words for words, over in mimics.items() if over > LEAST_BIC]
     if better:
-        return 'UNKNOWN', f'what is in no catalogue explains it better: {"; or ".join(better)}'
+        return 'UNKNOWN', f'another cause explains it better: {"; or ".join(better)}'
     if not mimics:
         return verdict, reason
     beside = f'it may as well be something else: {"; or ".join(mimics)}'

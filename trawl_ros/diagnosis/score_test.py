@@ -17,7 +17,7 @@ from trawl_ros.diagnosis.candidates import (
 )
 from trawl_ros.diagnosis.evidence import Evidence, detectable, evidence, threshold
 from trawl_ros.diagnosis.patterns import ResidualPattern, patterns
-from trawl_ros.diagnosis.rules import DOUBT, FALSE_ALARMS, NOISE_TO_EXPLAIN
+from trawl_ros.diagnosis.rules import DOUBT, FALSE_ALARMS, NOISE_SEEN, NOISE_TO_EXPLAIN
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.estimation.fit.error_terms import TowErrors
 from trawl_ros.estimation.fit.fit import Fit
@@ -104,7 +104,7 @@ class ScoreTest:
     @property
     def detected(self) -> bool:
         """True if something beyond the model is detected."""
-        return self.strongest > self.limit
+        return self.strongest > self.limit or max(self.fit.scales) > NOISE_SEEN
 
     def detectable(self, candidate: Candidate) -> FloatArray:
         """Detectable departures (m,) from the candidate's start, each value alone."""

@@ -9,7 +9,15 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
-from trawl_ros.diagnosis.rules import ALIKE, DOUBT, FEWEST_TOWS, FEWEST_UNITS, leaves_too_much
+from trawl_ros.diagnosis.rules import (
+    ALIKE,
+    DOUBT,
+    FEWEST_TOWS,
+    FEWEST_UNITS,
+    LEAST_BIC,
+    OTHER_SHARE,
+    leaves_too_much,
+)
 from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
 
 DRAWS = 100
@@ -34,9 +42,10 @@ class Weighed:
     gains
         Gain of each left-out unit by it, χ².
     share
-        Part of resampled trials in which it is the best, or one of its class.
+        Part of resampled trials in which it is the best, or one of its class, or what few tows
+        exclude.
     others
-        Best candidates of the others.
+        Best candidates of the others, those of a twentieth of the trials or more.
     cosine
         The largest with any other effect that is not of its class.
     """
@@ -83,7 +92,11 @@ def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
     deltas = [2.0 * (before - refit.cost(scales)) for refit in refits]
     criteria = [delta - refit.number * penalty for delta, refit in zip(deltas, refits, strict=True)]
     gains, bests = _resampled(test, refits, criteria)
-    classes = [{*refit.names, *twins(test, refit)} for refit in refits]
+    behind = _far_behind(test, refits, criteria)
+    classes = [
+        {*refit.names, *twins(test, refit), *others}
+        for refit, others in zip(refits, behind, strict=True)
+    ]
     entries = [
         Weighed(
             refit=refit,
@@ -92,7 +105,11 @@ def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
             doubted_bic=criterion - delta * (1.0 - 1.0 / DOUBT**2),
             gains=gain,
             share=float(np.mean([name in alike for name in bests])),
-            others=tuple(dict.fromkeys(name for name in bests if name not in alike)),
+            others=tuple(
+                name
+                for name in dict.fromkeys(bests)
+                if name not in alike and bests.count(name) >= OTHER_SHARE * len(bests)
+            ),
             cosine=_nearest(test, refit),
         )
         for refit, delta, criterion, gain, alike in zip(
@@ -100,6 +117,26 @@ def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
         )
     ]
     return tuple(sorted(entries, key=lambda entry: entry.delta_bic, reverse=True))
+
+
+def _far_behind(
+    test: ScoreTest, refits: Sequence[Refit], criteria: Sequence[float]
+) -> list[frozenset[str]]:
+    """Effects that are worse than each by `LEAST_BIC`, all refitted.
+
+    Where it is noise that is drawn anew, that of the data counts twice: it does not bring back what
+    the data themselves exclude. Tows that are drawn anew have errors of the model too.
+    """
+    if len(test.fit.errors) >= FEWEST_TOWS:
+        return [frozenset()] * len(refits)
+    return [
+        frozenset(
+            other.names[0]
+            for other, its in zip(refits, criteria, strict=True)
+            if len(other.names) == 1 and its < criterion - LEAST_BIC
+        )
+        for criterion in criteria
+    ]
 
 
 def _resampled(

@@ -2,7 +2,8 @@
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.report.common_units import in_common_unit
-from trawl_ros.diagnosis.rules import FALSE_ALARMS
+from trawl_ros.diagnosis.report.known_together import known_together
+from trawl_ros.diagnosis.rules import FALSE_ALARMS, NOISE_SEEN
 from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.gear.parts import own_parts
 
@@ -48,6 +49,8 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             'No data of this kind can part it from '
             f'{", ".join(named.alike).replace("_", " ")}: read the name as any of these.'
         )
+    if best is not None and diagnosis.verdict in ('NAMED', 'AMBIGUOUS'):
+        lines += known_together(best)
     if best is not None:
         it = 'It' if diagnosis.verdict == 'NAMED' else f'The best effect, {_names(best)},'
         lines.append(
@@ -94,6 +97,12 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             f'{diagnosis.score_test.limit:.1f} in {FALSE_ALARMS:.0%} of trials without any effect '
             '(-log₁₀ of a probability).'
         )
+        noise = max(diagnosis.score_test.fit.scales)
+        if noise > NOISE_SEEN:
+            lines.append(
+                f'Readings lie around the model by {noise:.1f} times what noise explains, with '
+                'every effect and pattern free.'
+            )
     return tuple(own_parts(line, diagnosis.gear) for line in lines)
 
 
@@ -105,11 +114,17 @@ def _effects(diagnosis: Diagnosis) -> str:
     best = diagnosis.best
     if best is None:
         return 'unknown'
+    neutral = {
+        (candidate.name, parameter.name): parameter.neutral
+        for candidate in best.refit.wanted
+        for parameter in candidate.effect.parameters
+    }
     phrases = []
     for name, values in values_of(best.refit).items():
         listed = ', '.join(
             f'{parameter.replace("_", " ")} {value:.3g}{" " + unit if unit else ""} '
-            f'({low:.3g} to {high:.3g}){in_common_unit(value, low, high, unit)}'
+            f'({low:.3g} to {high:.3g})'
+            + in_common_unit(value, low, high, unit, parameter, neutral[name, parameter])
             for parameter, (value, low, high, unit) in values.items()
         )
         phrases.append(f'{name.replace("_", " ")}, {listed}')

@@ -20,13 +20,14 @@ def _sentences(diagnosis: Diagnosis) -> list[str]:
             return ['Nothing need be done; the last table of the report says what would not show.']
         case 'NOT_TESTABLE':
             return ['Mend what the reason says, and diagnose again.']
-    looked_at = [
-        f'{number}. {_card(effect)}' for number, effect in enumerate(_likely(diagnosis), 1)
+    cards = [_card(effect) for effect in _likely(diagnosis)]
+    changes = [
+        f'{str(mimic)[0].upper()}{str(mimic)[1:]}: {mimic.change.direct}'
+        for mimic in diagnosis.mimics
     ]
-    looked_at += [
-        f'{number}. {str(mimic)[0].upper()}{str(mimic)[1:]}: {mimic.change.direct}'
-        for number, mimic in enumerate(diagnosis.mimics, len(looked_at) + 1)
-    ]
+    # Without a name a change is told where it explains more than the best effect.
+    cards = [*changes, *cards] if diagnosis.verdict == 'UNKNOWN' else [*cards, *changes]
+    looked_at = [f'{number}. {card}' for number, card in enumerate(cards, 1)]
     if diagnosis.verdict == 'NAMED':
         first = 'Look first at what is named.' if looked_at else ''
         mended = 'If it is found and mended, tow the same states again beside the same baseline; '
@@ -39,7 +40,7 @@ def _sentences(diagnosis: Diagnosis) -> list[str]:
         last = (
             f'What no look tells, a tow does: {diagnosis.proposals[0]}'
             if diagnosis.proposals
-            else 'More tows of other warp lengths and speeds make the evidence stronger.'
+            else 'Tows of other warp lengths and speeds make the evidence stronger.'
         )
     else:
         channels = list(dict.fromkeys(where.channel for where in diagnosis.where))[:3]

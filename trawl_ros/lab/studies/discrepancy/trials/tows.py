@@ -74,7 +74,7 @@ SEA: Mapping[str, BlindTrialPlan] = {
         (PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
         baseline=1,
     ),
-    'two tows': BlindTrialPlan((PlannedTow(_LONGER, True), PlannedTow(_LONGER, False)), baseline=1),
+    'two tows': BlindTrialPlan((PlannedTow(_TWO, True), PlannedTow(_TWO, False)), baseline=1),
     'no baseline': BlindTrialPlan(
         (PlannedTow(_LONGER, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
         baseline=0,

@@ -1,0 +1,50 @@
+"""Values of an effect that are known together and not each alone."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.diagnosis.report.common_units import in_common_unit
+from trawl_ros.diagnosis.weighing import Weighed
+
+BETTER = 0.3
+"""A sum or difference is told whose std is below this part of either value's."""
+
+WIDTH = 1.96
+"""Half a 95 % interval, in std."""
+
+
+def known_together(best: Weighed) -> Iterator[str]:
+    """Yield a sentence on each two values of which sum or difference alone is known well.
+
+    Where only the difference of upper and lower bridles shows, the intervals of both are wide.
+    """
+    estimate, refit = best.refit.estimate, best.refit
+    for candidate, block in zip(refit.wanted, refit.fit.prior.blocks('effect'), strict=True):
+        for own, (i, j) in zip(
+            combinations(candidate.effect.parameters, 2), combinations(block, 2), strict=True
+        ):
+            first, second = own
+            if first.unit != second.unit:
+                continue
+            value, std, word = sharper(estimate.values, estimate.covariance, i, j)
+            if std > BETTER * min(estimate.std[i], estimate.std[j]):
+                continue
+            low, high = value - WIDTH * std, value + WIDTH * std
+            unit = f' {first.unit}' if first.unit else ''
+            common = in_common_unit(value, low, high, first.unit)
+            yield (
+                f'Of {candidate.name.replace("_", " ")} {first.name.replace("_", " ")} {word} '
+                f'{second.name.replace("_", " ")} is known, {value:.3g}{unit} ({low:.3g} to '
+                f'{high:.3g}){common}, better than each alone.'
+            )
+
+
+def sharper(values: FloatArray, covariance: FloatArray, i: int, j: int) -> tuple[float, float, str]:
+    """Sum or difference of two values, whichever is known better, with its std and word."""
+    sign = -1.0 if covariance[i, j] > 0.0 else 1.0
+    variance = covariance[i, i] + covariance[j, j] + 2.0 * sign * covariance[i, j]
+    std = float(np.sqrt(max(variance, 0.0)))
+    return float(values[i] + sign * values[j]), std, 'less' if sign < 0.0 else 'and'
