@@ -164,8 +164,11 @@ _TABLE = (
 CHANNELS: Mapping[str, Channel] = MappingProxyType({row.name: row for row in _TABLE})
 """The channel table by name."""
 
-READ_TOPICS = tuple(dict.fromkeys(row.topic for row in _TABLE))
-"""Topics with readings of any channel."""
+SEABED_TOPIC = 'vessel/echo_sounder/depth'
+"""Topic of the water's depth, which no channel has and windows take along."""
+
+READ_TOPICS = (*dict.fromkeys(row.topic for row in _TABLE), SEABED_TOPIC)
+"""Topics with readings of any channel, and of the seabed."""
 
 REQUIRED = tuple(name for name, channel in CHANNELS.items() if channel.required)
 WITNESSES = ('heading', 'yaw_rate', 'ground_east', 'ground_north')
