@@ -16,9 +16,11 @@ from trawl_ros.records.channels import READ_TOPICS
 SAMPLES = 100
 """So many samples are read between two calls that tell of progress."""
 
+IN_TURN = 2
+"""So many bags are read sooner than processes are started for them."""
+
 IN_TURN_BYTES = 16_000_000
-"""Bags of so many bytes in all are read as soon as processes are started for them, by one that is
-there already: a process takes as long to start as 4 MB to read."""
+"""So are bags of so many bytes in all: a process takes as long to start as 4 MB to read."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +83,8 @@ def read_tows(
     paths, gear, namespace
         As in `BagTask`.
     scheduler
-        Address of a Dask cluster. Without it small bags are read in turn, others by processes of
-        this machine; what is found is the same.
+        Address of a Dask cluster. Without it few or small bags are read in turn, more by processes
+        of this machine; what is found is the same.
     on_progress
         Called as bags are read.
 
@@ -92,8 +94,8 @@ def read_tows(
         If a bag cannot be read at all.
     """
     tasks = [BagTask(path, gear, namespace) for path in paths]
-    small = len(paths) == 1 or sum(map(_size, paths)) <= IN_TURN_BYTES
-    if scheduler is None and small:
+    few = len(tasks) <= IN_TURN or sum(map(_size, paths)) <= IN_TURN_BYTES
+    if scheduler is None and few:
         return _in_turn(tasks, on_progress)
     return _at_once(tasks, scheduler, on_progress)
 
