@@ -2,10 +2,8 @@
 
 At a root F(x, p) = 0, so dx/dp = K⁻¹ ∂F/∂p with K = -∂F/∂x; one factorisation serves all
 parameters. The partial derivatives and the observables along dx/dp are taken by the complex
-step, so the result is exact to the accuracy of the linear solution.
+step and with C = -∂F/∂v, so the result is exact to the accuracy of the linear solution.
 """
-
-from dataclasses import replace
 
 import numpy as np
 
@@ -13,9 +11,9 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import forces
 from trawl_ros.model.board import own_load_slopes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.numerics import STEP, stepped
+from trawl_ros.model.slopes.along import add_forces_along_tow
 from trawl_ros.model.slopes.observed import observed_slopes
-from trawl_ros.model.state import State, Tow, TowSlopes, held_boundary
+from trawl_ros.model.state import TowSlopes, held_boundary
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.factor import solve_refined
@@ -24,22 +22,6 @@ from trawl_ros.solver.warm_start import Tangent
 
 PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
 """Parameters of the derivatives: per unit coefficient, per m, per m, per m/s."""
-
-
-def _perturbed(found: Equilibrium, place: int) -> tuple[State, Tow]:
-    """State and tow with an imaginary step of port or starboard warp, or speed."""
-    state, tow = found.state, found.tow
-    if place < 2:
-        lengths = tow.lengths.astype(complex)
-        lengths[place] += 1j * STEP
-        return state, replace(tow, lengths=lengths)
-    ahead = _ahead(found)
-    towed = replace(
-        state,
-        node_velocities=stepped(state.node_velocities, ahead),
-        board_velocities=stepped(state.board_velocities, ahead),
-    )
-    return towed, replace(tow, block_velocities=stepped(tow.block_velocities, ahead))
 
 
 def _ahead(found: Equilibrium) -> FloatArray:
@@ -68,12 +50,13 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
         state.board_rates,
         model.water,
     ).reshape(12, number)
-    for side in range(3):
-        pushes[:, number + side] = forces(model, *_perturbed(found, side)).imag / STEP
-    shifts = solve_refined(rest_linearisation(model, found.state, found.tow).factor, pushes)
+    known = rest_linearisation(model, state, found.tow)
+    velocities, boundary = _changed_motion(model, found)
+    add_forces_along_tow(model, state, found.tow, boundary, pushes)
+    pushes[:, -1] -= model.pattern.times(known.motion.damping, velocities[:, -1])
+    shifts = solve_refined(known.factor, pushes)
     found.remember(Tangent(model.coefficients, model.rest, shifts))
-    along = shifts, *_changed_motion(model, found)
-    return observed_slopes(model, found.state, found.tow, *along)[1]
+    return observed_slopes(model, state, found.tow, shifts, velocities, boundary)[1]
 
 
 def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, TowSlopes]:
