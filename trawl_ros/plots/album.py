@@ -110,9 +110,9 @@ def plot(
     >>> import tempfile
     >>> import trawl_ros
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     drawn = trawl_ros.plot('bags/sea_trial', folder, times=[600.0])
+    ...     drawn = trawl_ros.plot('tow_1', folder, times=[600.0])
     >>> [picture.file for picture in drawn.pictures]
-    ['history.png', 'track.png', 'gear_00600s.png']
+    ['history.png', 'gear_00600s.png']
     """
     bag, out = Path(bag), Path(out)
     empty_folder(out, force=force)

@@ -41,6 +41,7 @@ from trawl_ros.nodes.runtime.credit import HEADER
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.sim_node import SimNode
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
+from trawl_ros.nodes.trial_node import STATUS as TRIAL_STATUS
 from trawl_ros.nodes.vessel_node import VesselNode
 from trawl_ros.nodes.winch_node import WinchNode
 from trawl_ros.records.topics import SYNC, absolute
@@ -148,13 +149,13 @@ def sound_stream(folder: Path, gear: str, minutes: float) -> Stream:
 
 
 def _estimates(stamp: int) -> list[TopicMessage]:
-    """Give what the recorder hears besides: estimates and findings."""
+    """Give what the recorder hears besides: estimates, findings and the trial's status."""
     statuses = diagnostic_array(stamp, [Status('coefficients', OK, 'estimating', {'a1': '1.19'})])
     return [
         estimate_message(np.ones(12)),
         covariance_message(np.eye(12)),
         innovation_message(stamp, [ChannelInnovation('door_spread', 0.1, 0.3, 0.3)]),
-        *((name, statuses) for name in (STATUS, FINDINGS, DIAGNOSTICS)),
+        *((name, statuses) for name in (STATUS, FINDINGS, TRIAL_STATUS, DIAGNOSTICS)),
     ]
 
 
