@@ -20,13 +20,14 @@ def test_differences_are_shares_of_the_value_and_of_30_degrees_around_zero() -> 
 def test_warp_and_bridles_are_fine_enough_even_for_a_coarse_net_and_the_rest_has_a_reason() -> None:
     outcome = CASE.run(True)
     checks = {check.key: check for check in outcome.rows}
-    angles = {'angles_straight', 'angles_bowed'}
-    assert set(checks) == {'warp_500', 'bridle_500', 'joins_500', 'net_500', 'all_500'} | angles
+    of_nets = {'angles_straight', 'angles_bowed', 'sizes_straight', 'sizes_bowed'}
+    assert set(checks) == {'warp_500', 'bridle_500', 'joins_500', 'net_500', 'all_500'} | of_nets
     assert checks['warp_500'].ok
     assert checks['bridle_500'].ok
     for check in outcome.rows:
         assert np.isfinite(check.value)
         assert check.ok or 'numerical meshes around' in check.note
+    assert checks['angles_straight'].note.endswith('within 0.5°: 24.')
     *by_length, bowed = outcome.tables
     assert {len(table.rows) for table in by_length} == {len(OBSERVABLES)}
     assert [row[0] for row in bowed.rows] == ['straight', 'straight', 'bowed', 'bowed']

@@ -17,11 +17,14 @@ from trawl_ros.solver.operating_point import OperatingPoint
 LENGTH = 500.0
 """Warp length, m."""
 
-COUNTS = 36, 48, 72, 96
+COUNTS = 36, 48, 60, 72, 96
 """Numerical meshes around the net."""
 
 ALLOWED = 0.5
 """Difference of an angle (°) from that of the finest net that is asked for."""
+
+ALLOWED_SHARE = 2.0
+"""The same of a length or tension, %."""
 
 ANGLES = 'port_attack', 'port_inclination', 'port_roll'
 SHOWN = 'door_spread', 'port_door_depth', 'vertical_opening', 'warp_tension', *ANGLES
@@ -56,21 +59,35 @@ def _observed(gear: GearRecord) -> FloatArray:
 def _checks(seen: dict[str, dict[int, FloatArray]], own: int) -> Iterator[MeasuredValue]:
     for kind, by_count in seen.items():
         finest = max(by_count)
-        angles = np.abs(by_count[own] - by_count[finest])[-len(ANGLES) :]
-        worst = int(angles.argmax())
-        column = len(SHOWN) - len(ANGLES) + worst
-        series = ', '.join(f'{values[column]:.2f}°' for values in by_count.values())
+        others = f'from the net of {finest} meshes around, twine {kind}, {LENGTH:g} m of warp'
+        off = {count: np.abs(values - by_count[finest]) for count, values in by_count.items()}
+        shares = 100.0 * off[own][: -len(ANGLES)] / by_count[finest][: -len(ANGLES)]
         yield MeasuredValue(
-            f'largest difference of α, δ or roll from the net of {finest} meshes around, twine '
-            f'{kind}, {LENGTH:g} m of warp',
-            float(angles[worst]),
+            f'largest difference of spread, depth, opening or tension {others}',
+            float(shares.max()),
+            '%',
+            at_most(ALLOWED_SHARE),
+            _series(by_count, int(shares.argmax())),
+            key=f'sizes_{kind}',
+        )
+        worst = len(SHOWN) - len(ANGLES) + int(off[own][-len(ANGLES) :].argmax())
+        enough = min(count for count in off if off[count][-len(ANGLES) :].max() <= ALLOWED)
+        yield MeasuredValue(
+            f'largest difference of α, δ or roll {others}',
+            float(off[own][worst]),
             '°',
             at_most(ALLOWED),
-            'the grouping of the netting has not settled for it: '
-            f'{ANGLES[worst]} with {", ".join(map(str, by_count))} numerical meshes around is '
-            f'{series}.',
+            f'{_series(by_count, worst)} The fewest of these with all three within {ALLOWED:g}°: '
+            f'{enough}.',
             key=f'angles_{kind}',
         )
+
+
+def _series(by_count: dict[int, FloatArray], column: int) -> str:
+    """Sentence with one observable over the meshes around."""
+    values = ', '.join(f'{observed[column]:.2f}' for observed in by_count.values())
+    counts = ', '.join(map(str, by_count))
+    return f'{SHOWN[column]} with {counts} numerical meshes around is {values}.'
 
 
 def _table(seen: dict[str, dict[int, FloatArray]]) -> TextTable:
