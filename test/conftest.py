@@ -3,7 +3,7 @@
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -178,3 +178,19 @@ def steady_tow(coarse_gear: Path) -> SteadyTow:
         start = found.equilibrium
         states.append((length, speed, found.observables))
     return SteadyTow(tuple(states), model.water.pressure)
+
+
+@pytest.fixture(scope='session')
+def onset_samples(steady_tow: SteadyTow) -> Callable[..., Iterable[Sample]]:
+    """Give samples of minutes in one state, in which cells show a part too much from a time on."""
+    still = replace(steady_tow, states=steady_tow.states[:1])
+
+    def samples(minutes: int, begin_s: float = np.inf, part: float = 0.1) -> Iterable[Sample]:
+        for sample in still.samples(start=SECOND, leg_s=60 * minutes):
+            if isinstance(sample, WinchSample) and sample.stamp >= begin_s * SECOND:
+                port, starboard = ((1.0 + part) * tension for tension in sample.tensions)
+                yield replace(sample, tensions=(port, starboard))
+            else:
+                yield sample
+
+    return samples

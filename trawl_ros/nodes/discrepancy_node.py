@@ -8,8 +8,13 @@ from typing import Any, ClassVar
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
+from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.knowledge import of_identification
+from trawl_ros.diagnosis.onset.log_book import Event, LogBook
+from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.estimation.from_gear import finder_for
@@ -19,28 +24,45 @@ from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_a
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.parameters import Number, Text
+from trawl_ros.nodes.runtime.parameters import Flag, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import OneSourceEach
 from trawl_ros.nodes.runtime.rewinding import Reached, Rewinding
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, WatchingThread
-from trawl_ros.nodes.workers.finding_status import CALM, finding_statuses
+from trawl_ros.nodes.workers.finding_status import (
+    CALM,
+    finding_statuses,
+    onset_status,
+    onset_watch_status,
+)
+from trawl_ros.nodes.workers.onset_worker import OnsetThread
 from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
 from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.samples import Sample
 
 FINDINGS = 'discrepancy/findings'
 FINISH = 'discrepancy/finish'
+ACKNOWLEDGE = 'discrepancy/acknowledge'
+DISMISS = 'discrepancy/dismiss'
+
+OPERATOR = 'operator'
+"""Who acknowledges and dismisses, in the log book: a service does not know by whom it is called."""
+
+MOST_TOLD = 5
+"""Newest findings of what has begun that are published with each."""
 
 SAMPLES = tuple(dict.fromkeys(channel.topic for channel in CHANNELS.values()))
 """Topics that feed a channel."""
 
 
 class DiscrepancyNode(TrawlNode):
-    """Diagnoses all steady windows so far after each new one.
+    """Diagnoses all steady windows so far after each new one, and watches for what begins.
 
     What is found goes out on ``discrepancy/findings`` and as a warning on ``/diagnostics``.
-    ``discrepancy/finish``, or the signal to end, writes the report of all tows it has heard.
+    ``discrepancy/finish``, or the signal to end, writes the report of all tows it has heard. The
+    operator's ``discrepancy/acknowledge`` and ``discrepancy/dismiss`` are about the newest finding
+    of what has begun.
     """
 
     SPECS: ClassVar = (
@@ -49,6 +71,11 @@ class DiscrepancyNode(TrawlNode):
         Text('output', '', 'Folder for the report, new or empty; none if empty.'),
         Number('baseline_tows', 0, 'tows', 0, 100, 'So many of the first tows are of a gear in '
                'order.', whole=True),
+        Flag('watch', True, 'True if the tow is watched without pause for what begins in it.'),
+        Text('estimate', '', 'An identification.json: the boards as they are known when a tow is '
+             'watched; by the prior of the gear file if empty.'),
+        Text('log_book', '', 'File for the log book of findings, which is gone on with; none if '
+             'empty.'),
         *WINDOW_SPECS,
     )  # fmt: skip
     DRAINS: ClassVar = True
@@ -63,21 +90,59 @@ class DiscrepancyNode(TrawlNode):
         self._finder = finder_for(self._gear, window_options(parameters))
         self._windows: list[SteadyWindow] = []
         self._outcome = DiagnosisOutcome()
-        self._reached = Reached()
+        self._reached, self._dealt = Reached(), Reached()
+        self._told: dict[int, Finding] = {}
+        self._acknowledged: set[int] = set()
         self._instruments = OneSourceEach()
         self._rewinding = Rewinding()
+        self._verdict: list[Status] = []
+        self._open_book()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._publish)
-        self._progress = ConsumerProgress(self, idle=lambda: self._watching.idle)
+        self._progress = ConsumerProgress(self, idle=self._idle)
+        watched = parameters['watch'] and self._gear.pair is None
+        self._monitor = self._new_monitor() if watched else None
+        self._onset = (
+            None
+            if self._monitor is None
+            else OnsetThread(self._monitor, self._tell_finding, self._watched)
+        )
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
         # Alone in its group: samples still come in while the service waits for a diagnosis.
         alone = MutuallyExclusiveCallbackGroup()
         self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
+        self.offer(ACKNOWLEDGE, self._acknowledge)
+        self.offer(DISMISS, self._dismiss)
         self._watching.start()
+        if self._onset is not None:
+            self._onset.start()
+
+    def _open_book(self) -> None:
+        path = self.parameters['log_book']
+        self._book = LogBook(Path(path)) if path else None
+        self._book_trouble = ''
+        self._log('begun')
+
+    def _new_monitor(self) -> OnsetMonitor:
+        estimate = self.parameters['estimate']
+        knowledge = of_identification(Path(estimate)) if estimate else None
+        last = self._book.last_number() if self._book is not None else 0
+        return OnsetMonitor(self._gear, knowledge, last_number=last)
+
+    def _idle(self) -> bool:
+        return self._watching.idle and (self._onset is None or self._onset.idle)
 
     def statuses(self) -> list[Status]:
-        """Return the status of the diagnosis."""
+        """Return the statuses of the diagnosis, and of the watch for what begins."""
+        return [*self._of_diagnosis(), *self._of_watch()]
+
+    def _of_watch(self) -> list[Status]:
+        if self._monitor is None or self._onset is None:
+            return []
+        return [onset_watch_status(self._monitor, self._onset.trouble or self._book_trouble)]
+
+    def _of_diagnosis(self) -> list[Status]:
         diagnosis, trouble = self._outcome.diagnosis, self._outcome.trouble
         values = {'windows': str(len(self._windows))}
         if trouble:
@@ -92,6 +157,8 @@ class DiscrepancyNode(TrawlNode):
         """Decide the remaining windows, diagnose, and write the report."""
         self._take(self._finder.finish())
         self._watching.stop()
+        if self._onset is not None:
+            self._onset.stop()
         self._tell(self._write())
 
     def _feeder(self, topic: str) -> Callable[[Any], None]:
@@ -104,15 +171,83 @@ class DiscrepancyNode(TrawlNode):
                 if one is sample:
                     self._instruments.check(topic, sample)
                 self._take(self._finder.feed(one))
-                self._progress.done(self._reached.take(one.stamp))
+                self._reached.take(one.stamp)
+                if self._onset is None:
+                    self._progress.done(self._reached.stamp)
+                else:
+                    self._onset.feed(one)
 
         return feed
+
+    def _watched(self, sample: Sample) -> None:
+        self._progress.done(self._dealt.take(sample.stamp))
+
+    def _tell_finding(self, finding: Finding) -> None:
+        """Publish a finding of what has begun, and keep in the log book who was told."""
+        before = self._told.get(finding.number)
+        self._told[finding.number] = finding
+        if before is None or before.state != finding.state:
+            self._log(finding.state, finding)
+            self.get_logger().warning(
+                f'finding {finding.number} {finding.state}: {finding.sentence()}'
+            )
+        self._send_findings()
+        if before is None or before.state != finding.state or before.name != finding.name:
+            topic = self.resolve_topic_name(FINDINGS)
+            heard = {one.node_name for one in self.get_subscriptions_info_by_topic(topic)}
+            self._log('published', finding, to=sorted(heard))
+
+    def _send_findings(self) -> None:
+        told = [onset_status(one, one.number in self._acknowledged) for one in self._newest_told()]
+        self.send(FINDINGS, diagnostic_array(self._reached.stamp, [*self._verdict, *told]))
+
+    def _newest_told(self) -> list[Finding]:
+        """Newest findings of what has begun."""
+        return [self._told[number] for number in sorted(self._told)[-MOST_TOLD:]]
+
+    def _log(
+        self, event: Event, finding: Finding | None = None, *, who: str = '', to: Sequence[str] = ()
+    ) -> None:
+        if self._book is None:
+            return
+        try:
+            self._book.write(event, self._reached.stamp, who or self.get_name(), finding, to)
+        except TrawlError as reason:
+            self._book_trouble = str(reason)
+        else:
+            self._book_trouble = ''
+
+    def _newest_finding(self) -> Finding:
+        told = self._newest_told()
+        if not told:
+            raise TrawlError('nothing has been found to begin')
+        return told[-1]
+
+    def _acknowledge(self) -> str:
+        finding = self._newest_finding()
+        self._acknowledged.add(finding.number)
+        self._log('acknowledged', finding, who=OPERATOR)
+        self._send_findings()
+        return f'finding {finding.number} is acknowledged: {finding.sentence()}'
+
+    def _dismiss(self) -> str:
+        finding = self._newest_finding()
+        dismissed = None if self._onset is None else self._onset.dismiss(finding.number)
+        if dismissed is None:
+            raise TrawlError(f'finding {finding.number} is {finding.state} already')
+        self._told[finding.number] = dismissed
+        self._log('dismissed', dismissed, who=OPERATOR)
+        self._send_findings()
+        return f'finding {finding.number} is dismissed: {dismissed.sentence()}'
 
     def _forget(self) -> None:
         self._finder.reset()
         self._instruments.forget()
         self._watching.forget()
+        if self._onset is not None:
+            self._onset.reset()
         self._windows, self._reached, self._outcome = [], Reached(), DiagnosisOutcome()
+        self._dealt = Reached()
         self.get_logger().warning('stamps of the winch went back; all begins anew')
 
     def _take(self, decided: Sequence[SteadyWindow | RejectedWindow]) -> None:
@@ -129,8 +264,8 @@ class DiscrepancyNode(TrawlNode):
     def _publish(self, outcome: DiagnosisOutcome) -> None:
         self._outcome = replace(outcome, diagnosis=outcome.diagnosis or self._outcome.diagnosis)
         if outcome.diagnosis is not None:
-            statuses = finding_statuses(outcome.diagnosis)
-            self.send(FINDINGS, diagnostic_array(self._reached.stamp, statuses))
+            self._verdict = finding_statuses(outcome.diagnosis)
+            self._send_findings()
 
     def _write(self) -> tuple[str, bool]:
         """Write the report; return the closing sentence, and True if all windows count."""
@@ -158,6 +293,8 @@ class DiscrepancyNode(TrawlNode):
     async def _finish(self, request: Any, response: Any) -> Any:
         self._take(self._finder.finish())
         await self._watching
+        if self._onset is not None:
+            await self._onset
         written = self._write()
         response.message, response.success = written
         self._tell(written)

@@ -175,7 +175,9 @@ RIGHTS = {
         _names(ESTIMATES, 'identification/'), _READINGS, ('identification/finish',)
     ),
     'discrepancy_node': _consumer(
-        _names(ESTIMATES, 'discrepancy/'), _READINGS, ('discrepancy/finish',)
+        _names(ESTIMATES, 'discrepancy/'),
+        _READINGS,
+        ('discrepancy/finish', 'discrepancy/acknowledge', 'discrepancy/dismiss'),
     ),
     'bag_recorder': _consumer((), _names((*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS))),
     # Recorded commands are not played on a secured graph.

@@ -1,9 +1,12 @@
-"""Diagnostic statuses of a diagnosis, for ``discrepancy/findings``."""
+"""Diagnostic statuses of a diagnosis and of what begins, for ``discrepancy/findings``."""
 
+from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
+from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.report.sentences import headline
-from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 
 NAME = 'discrepancy'
 CALM = ('NO_DISCREPANCY', 'NOT_TESTABLE')
@@ -55,3 +58,44 @@ def _sizes(refit: Refit) -> dict[str, dict[str, str]]:
                 f'{parameter} unit': unit,
             }
     return by_effect
+
+
+def onset_status(finding: Finding, acknowledged: bool) -> Status:
+    """Status of a finding of what has begun; one that was dismissed or withdrawn is calm."""
+    values = {
+        'state': finding.state,
+        'acknowledged': str(acknowledged).lower(),
+        'onset': f'{finding.onset_ns / SECOND:.3f}',
+        'onset low': f'{finding.onset_low_ns / SECOND:.3f}',
+        'onset high': f'{finding.onset_high_ns / SECOND:.3f}',
+        'raised': f'{finding.raised_ns / SECOND:.3f}',
+        'not told from': ', '.join(finding.alike),
+        'rarity': f'{finding.rarity:.1f}',
+        'limit': f'{finding.limit:.1f}',
+    }
+    for name, one in finding.values.items():
+        values |= {
+            name: f'{one.value:.6g}',
+            f'{name} low': f'{one.low:.6g}',
+            f'{name} high': f'{one.high:.6g}',
+            f'{name} unit': one.unit,
+        }
+    level = WARN if finding.state in ('raised', 'settled') else OK
+    return Status(f'{NAME}: onset {finding.number}', level, finding.sentence(), values)
+
+
+def onset_watch_status(monitor: OnsetMonitor, trouble: str) -> Status:
+    """Status of the watch for what begins; without a prediction it says why."""
+    watched, unwatched = monitor.watched, monitor.unwatched
+    values = {
+        'stretches watched': str(watched),
+        'stretches without a prediction': str(unwatched),
+        'findings': str(len(monitor.findings)),
+    }
+    if trouble:
+        return Status('onset', ERROR, trouble, values)
+    if (found := monitor.open) is not None:
+        return Status('onset', WARN, found.sentence(), values)
+    if monitor.why_not:
+        return Status('onset', OK, f'not watching: {monitor.why_not}', values)
+    return Status('onset', OK, 'watching', values)

@@ -1,0 +1,68 @@
+"""A tow that goes on is watched: what begins in it is found within minutes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.core.time import SECOND
+from trawl_ros.diagnosis.onset.knowledge import Knowledge
+from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.load import load_gear
+from trawl_ros.records.samples import WinchSample
+
+BEGIN_S = 540.0
+FEW = {name: catalogue()[name] for name in ('tension_cell', 'net_drag', 'catch_build_up')}
+
+
+@pytest.fixture(scope='module')
+def onset_gear(coarse_gear):
+    return load_gear(coarse_gear)
+
+
+@pytest.fixture
+def monitor(onset_gear):
+    std = board_prior(onset_gear).std
+    known = Knowledge(onset_gear.board.coefficients.array(), np.diag((0.2 * std) ** 2))
+    return OnsetMonitor(onset_gear, known, effects=FEW)
+
+
+def test_cells_that_begin_to_show_too_much_are_found_with_time_and_size(monitor, onset_samples):
+    findings = [found for sample in onset_samples(12, BEGIN_S) for found in monitor.feed(sample)]
+    first, last = findings[0], findings[-1]
+    assert first.delay_s < 300.0
+    begin_ns = BEGIN_S * SECOND
+    assert abs(first.onset_ns - begin_ns) < 90.0 * SECOND
+    assert first.onset_low_ns <= begin_ns <= first.onset_high_ns
+    assert 'tension_cell' in (last.name, *last.alike) or last.name == 'both_tension_offset'
+    assert {found.number for found in findings} == {1}
+    dismissed = monitor.dismiss(1)
+    assert dismissed is not None
+    assert dismissed.state == 'dismissed'
+    assert monitor.dismiss(1) is None
+    more = onset_samples(15, BEGIN_S)
+    again = [one for sample in more if sample.stamp > 720 * SECOND for one in monitor.feed(sample)]
+    assert not again, 'what was dismissed is not raised anew'
+
+
+@pytest.mark.slow
+def test_a_gap_is_told_and_the_tow_is_watched_again_behind_it(monitor, onset_samples):
+    silent = (480.0, 600.0)
+    reasons = set()
+    for sample in onset_samples(18):
+        if not silent[0] < sample.stamp / SECOND < silent[1]:
+            assert monitor.feed(sample) == []
+            reasons.add(monitor.why_not)
+    assert any('silent' in reason for reason in reasons)
+    assert monitor.why_not == ''
+    assert monitor.watched > 5
+
+
+def test_a_gear_that_the_model_cannot_tow_is_told(monitor, onset_samples):
+    for sample in onset_samples(8):
+        short = isinstance(sample, WinchSample)
+        assert monitor.feed(replace(sample, lengths=(20.0, 20.0)) if short else sample) == []
+    assert monitor.watched == 0
+    assert monitor.why_not

@@ -1,0 +1,101 @@
+"""`discrepancy_node` watches a tow without pause, and its log book has who was told what."""
+
+from collections.abc import Sequence
+from functools import partial
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
+
+from trawl_ros.diagnosis.onset.log_book import LogBook  # noqa: E402
+from trawl_ros.messages.diagnostics import WARN, read_statuses  # noqa: E402
+from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
+from trawl_ros.nodes.discrepancy_node import (  # noqa: E402
+    ACKNOWLEDGE,
+    DISMISS,
+    FINDINGS,
+    DiscrepancyNode,
+)
+from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
+from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+DOMAIN = 96
+BEGIN_S = 540.0
+
+
+class Bridge(TrawlNode):
+    """Hears findings."""
+
+    SPECS = ()
+
+    def __init__(self, **kwargs):
+        super().__init__('bridge', **kwargs)
+        self.heard = []
+        self.listen(FINDINGS, lambda message: self.heard.append(read_statuses(message)), CONSUMER)
+
+    def onsets(self) -> Sequence[str]:
+        """Names of the statuses on what has begun, in the last message."""
+        return [one.name for one in self.heard[-1] if 'onset' in one.name] if self.heard else []
+
+
+@pytest.fixture(scope='module')
+def moving_bag(steady_tow, onset_samples, tmp_path_factory):
+    path = tmp_path_factory.mktemp('onset') / 'bag'
+    return steady_tow.write(path, onset_samples(12, BEGIN_S))
+
+
+def _play(graph, bag, **parameters):
+    player = graph.add(BagPlayer, bag=str(bag), wait_for=['discrepancy_node'], **parameters)
+    graph.until(lambda: player.exit_code is not None, timeout_s=600.0)
+    graph.remove(player)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('rate', [0.0, 120.0])
+def test_a_finding_is_published_acknowledged_and_kept(
+    open_graph, moving_bag, coarse_gear, tmp_path, rate
+):
+    book = tmp_path / 'book.jsonl'
+    with open_graph(DOMAIN) as graph:
+        node = graph.add(DiscrepancyNode, gear=str(coarse_gear), log_book=str(book))
+        bridge = graph.add(Bridge)
+        graph.until(lambda: node.subscribers()[FINDINGS][0])
+        _play(graph, moving_bag, rate=rate)
+        graph.until(bridge.onsets, timeout_s=400.0)
+        assert graph.call(bridge, ACKNOWLEDGE).success
+        onset = next(one for one in bridge.heard[-1] if 'onset' in one.name)
+        assert abs(float(onset.values['onset']) - BEGIN_S) < 180.0
+        assert any(one.level == WARN and one.name == 'onset' for one in node.statuses())
+        assert graph.call(bridge, DISMISS).success
+        assert not graph.call(bridge, DISMISS).success
+        node.finish_work()
+    events = [event['event'] for event in LogBook(book).events()]
+    assert events[:3] == ['begun', 'raised', 'published']
+    assert events.index('acknowledged') < events.index('dismissed')
+    published = next(one for one in LogBook(book).events() if one['event'] == 'published')
+    assert 'bridge' in published['to']
+
+
+@pytest.mark.slow
+def test_a_bag_that_is_looped_is_two_tows_and_a_node_that_is_restarted_counts_on(
+    open_graph, moving_bag, coarse_gear, tmp_path
+):
+    book = tmp_path / 'book.jsonl'
+    for first in (1, 3):
+        with open_graph(DOMAIN) as graph:
+            node = graph.add(DiscrepancyNode, gear=str(coarse_gear), log_book=str(book))
+            for _ in range(2):
+                _play(graph, moving_bag, rate=0.0)
+            graph.until(node._idle, timeout_s=600.0)
+            node.finish_work()
+        raised = [one['finding'] for one in LogBook(book).events() if one['event'] == 'raised']
+        assert raised[-2:] == [first, first + 1]
+
+
+def test_nothing_is_watched_where_it_is_not_wanted(open_graph, coarse_gear, tmp_path):
+    with open_graph(DOMAIN) as graph:
+        node = graph.add(partial(DiscrepancyNode), gear=str(coarse_gear), watch=False)
+        assert [one.name for one in node.statuses()] == ['discrepancy']
+        node.finish_work()

@@ -1,0 +1,353 @@
+"""Monitor of a tow that goes on: raises a finding minutes after an effect begins."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.core.time import SECOND
+from trawl_ros.diagnosis.onset.candidates import WATCHED, CandidateTable, candidate_table
+from trawl_ros.diagnosis.onset.findings import Finding, OnsetValue
+from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
+from trawl_ros.diagnosis.onset.ratios import OnsetEvidence, RatioBank
+from trawl_ros.diagnosis.onset.responses import OnsetResponses, onset_responses
+from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch, StretchCutter
+from trawl_ros.diagnosis.onset.towing import ModelTow, TowedStretch, WatchedGear, measured
+from trawl_ros.diagnosis.onset.whitening import MOST_ABSORBED, Whitened, WhiteningFilter, states_for
+from trawl_ros.effects.base.effect import Effect
+from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.water import build_water
+from trawl_ros.records.samples import Sample
+from trawl_ros.solver.stepper import StepFailed
+
+ALIKE = 6.0
+"""Candidates whose evidence comes within this of the best's are not told from it, as by the rules
+for steady windows."""
+
+MOVED = 0.5
+"""Part of the gear file's std by which an estimate may move before the tow is linearised anew."""
+
+
+@dataclass(frozen=True)
+class OnsetOptions:
+    """Options of the monitor.
+
+    Attributes
+    ----------
+    window
+        Onsets that are looked at, in stretches.
+    settled
+        Stretches since its onset after which a finding stays as it is.
+    limit
+        Rarity beyond which a finding is raised. By `trawl study onset --tune`: at most one false
+        finding in 230 h, over all candidates and onsets.
+    inflation
+        Factor on the std of errors that are stated, as for steady windows.
+    """
+
+    window: int = 60
+    settled: int = 50
+    limit: float = 9.0
+    inflation: float = 1.2
+
+
+@dataclass(frozen=True)
+class WatchedStretch:
+    """Stretch as it was watched: the readings beside the model's, and the evidence after it.
+
+    ``why_not`` is the reason where nothing was compared.
+    """
+
+    end_ns: int
+    means: FloatArray
+    towed: TowedStretch | None
+    white: Whitened | None
+    signatures: FloatArray | None
+    evidence: tuple[OnsetEvidence, ...]
+    why_not: str = ''
+
+    @property
+    def rarity(self) -> float:
+        """The largest rarity of all candidates, 0 where there is none."""
+        return self.evidence[0].rarity if self.evidence else 0.0
+
+
+@dataclass
+class _Absorbed:
+    """Value that has been found before and is taken along: its column, and when it began."""
+
+    column: int
+    onset: int
+    place: int
+
+
+@dataclass
+class _Watch:
+    """State of a tow under watch."""
+
+    model: ModelTow
+    bank: RatioBank
+    filter: WhiteningFilter | None = None
+    responses: OnsetResponses | None = None
+    absorbed: list[_Absorbed] = field(default_factory=list)
+    taken: int = 0
+    moving: bool = False
+
+
+class OnsetMonitor:
+    """Monitor of one tow after another, from samples to findings.
+
+    Parameters
+    ----------
+    gear
+        The gear as it is believed.
+    knowledge
+        Of its boards; by default the prior of the gear file.
+    options
+        Of the monitor.
+    effects
+        The catalogue, where not all of it.
+    on_stretch
+        Called after each stretch.
+    last_number
+        Number of the last finding before.
+
+    Attributes
+    ----------
+    findings
+        All of them, by number; the newest may still be open.
+    watched, unwatched
+        Numbers of stretches that were compared, and that could not be.
+    why_not
+        Reason why the newest stretch was not compared; empty where it was.
+    """
+
+    def __init__(
+        self,
+        gear: GearRecord,
+        knowledge: Knowledge | None = None,
+        options: OnsetOptions | None = None,
+        effects: Mapping[str, Effect] | None = None,
+        on_stretch: Callable[[WatchedStretch], None] = lambda stretch: None,
+        last_number: int = 0,
+    ) -> None:
+        gear.require_boards('whose tow could be watched')
+        prior = board_prior(gear)
+        self.options = options or OnsetOptions()
+        self._known = knowledge or of_gear_file(gear)
+        self._std = prior.std
+        self.table: CandidateTable = candidate_table(effects)
+        self._gear = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
+        self._growing = self.table.growing.astype(float)
+        self._depth = build_water(gear).depth
+        self._on_stretch = on_stretch
+        self.why_not = ''
+        self.findings: dict[int, Finding] = {}
+        self._newest = last_number
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew with no tow; findings so far stay as they are."""
+        if (left := self.open) is not None:
+            self._put(replace(left, state='settled'))
+        self._cutter = StretchCutter(self._depth)
+        self._watch = self._new_watch()
+        self._last_number = 0
+        self.watched = self.unwatched = 0
+        self.why_not = 'the tow has just begun'
+
+    def _new_watch(self) -> _Watch:
+        model = ModelTow(self._gear, self._known.values)
+        size = states_for(len(self._known.values))
+        return _Watch(model, RatioBank(self.table, self.options.window, size))
+
+    def feed(self, sample: Sample) -> list[Finding]:
+        """Take a sample; return findings that are new or have changed."""
+        return [found for last in self._cutter.feed(sample) for found in self._take(last)]
+
+    def dismiss(self, number: int) -> Finding | None:
+        """Take a finding for what is no effect; None where there is no such open one."""
+        found = self.findings.get(number)
+        if found is None or found.state not in ('raised', 'settled'):
+            return None
+        if found.open:
+            self._take_along(found)
+        return self._put(replace(found, state='dismissed'))
+
+    @property
+    def open(self) -> Finding | None:
+        """Finding that may still change."""
+        newest = self.findings.get(self._newest)
+        return newest if newest is not None and newest.open else None
+
+    def _put(self, found: Finding) -> Finding:
+        self.findings[found.number] = found
+        return found
+
+    def _take(self, last: LastStretch) -> Iterator[Finding]:
+        watch = self._watch
+        towed = watch.model.advance(last)
+        if isinstance(towed, TowedStretch) and watch.responses is None:
+            try:
+                self._begin_watch(watch)
+            except (NoSteadyState, StepFailed) as reason:
+                towed = f'responses of the gear are not known: {reason}'
+        self.why_not = towed if isinstance(towed, str) else ''
+        means, noise = measured(last)
+        model = towed if isinstance(towed, TowedStretch) else None
+        if watch.filter is None or watch.responses is None:
+            self._tell(last, means, None, None, None, ())
+            return
+        if last.moves and not watch.moving:
+            watch.filter.begin_state()
+        watch.moving = last.moves
+        lasting = None if model is None else model.by_values
+        white = watch.filter.step(
+            means, noise, model, watch.model.coefficients, last.log_std,
+            self._taken_along(lasting, last.number),
+        )  # fmt: skip
+        signatures = None
+        if lasting is not None:
+            ages = np.arange(self.options.window)
+            signatures = watch.responses.since(lasting, ages, self._growing)
+        watch.bank.step(watch.filter, white, signatures)
+        evidence = tuple(watch.bank.best()) if white is not None else ()
+        self._tell(last, means, model, white, signatures, evidence)
+        if evidence:
+            yield from self._judge(last, evidence)
+        if self.open is None and self._has_moved():
+            watch.model.begin_anew(watch.filter.coefficients)
+
+    def _begin_watch(self, watch: _Watch) -> None:
+        steady = watch.model.steady
+        assert steady is not None
+        oldest = self.options.window
+        watch.responses = onset_responses(self._gear, watch.model.coefficients, steady, oldest)
+        if watch.filter is None:
+            watch.filter = WhiteningFilter(
+                self._known.values, self._known.covariance, watch.responses.log,
+                self.options.inflation,
+            )  # fmt: skip
+
+    def _has_moved(self) -> bool:
+        watch = self._watch
+        if watch.filter is None:
+            return False
+        moved = (watch.filter.coefficients - watch.model.coefficients) / self._std
+        return bool(np.max(np.abs(moved)) > MOVED)
+
+    def _tell(
+        self, last: LastStretch, means: FloatArray, towed: TowedStretch | None,
+        white: Whitened | None, signatures: FloatArray | None,
+        evidence: tuple[OnsetEvidence, ...],
+    ) -> None:  # fmt: skip
+        if white is None:
+            self.unwatched += 1
+        else:
+            self.watched += 1
+        self._on_stretch(
+            WatchedStretch(last.end_ns, means, towed, white, signatures, evidence, self.why_not)
+        )
+
+    def _judge(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
+        before, limit = self.open, self.options.limit
+        rarest = evidence[0]
+        if before is None:
+            if rarest.rarity > limit:
+                self._newest += 1
+                yield self._put(self._finding(self._newest, last, evidence, last.end_ns))
+            return
+        if rarest.rarity < 0.5 * limit:
+            yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
+            return
+        age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
+        found = self._finding(before.number, last, evidence, before.raised_ns)
+        if age >= self.options.settled:
+            found = replace(found, state='settled')
+            self._take_along(found)
+        yield self._put(found)
+
+    def _finding(
+        self, number: int, last: LastStretch, evidence: Sequence[OnsetEvidence], raised_ns: int
+    ) -> Finding:
+        told = [(self._weight(one), one) for one in evidence]
+        told.sort(key=lambda pair: -pair[0])
+        (most, best), *others = told
+        candidate = self.table.candidates[best.candidate]
+        alike = [
+            self.table.candidates[one.candidate].name
+            for weight, one in others
+            if weight > most - ALIKE
+        ]
+        length = round(LIVE.stretch_s * SECOND)
+        onset = last.end_ns - (best.age + 1) * length
+        own = [self.table.parameters[column] for column in candidate.columns]
+        std = np.sqrt(np.diag(best.covariance))
+        values = {}
+        for parameter, departure, one in zip(own, best.values, std, strict=True):
+            value = parameter.neutral + departure
+            low, high = np.clip([value - 1.96 * one, value + 1.96 * one],
+                                parameter.low, parameter.high)  # fmt: skip
+            values[parameter.name] = OnsetValue(
+                float(value), float(low), float(high), parameter.unit
+            )
+        return Finding(
+            number=number,
+            state='raised',
+            raised_ns=raised_ns,
+            updated_ns=last.end_ns,
+            onset_ns=onset,
+            # What begins within a stretch may be taken for what begins with the next.
+            onset_low_ns=last.end_ns - (int(best.ages.max()) + 1) * length - length // 2,
+            onset_high_ns=last.end_ns - int(best.ages.min()) * length,
+            name=candidate.name,
+            words=candidate.words,
+            values=values,
+            alike=tuple(alike),
+            rarity=evidence[0].rarity,
+            limit=self.options.limit,
+        )
+
+    def _weight(self, one: OnsetEvidence) -> float:
+        """Twice the logarithm of the evidence: the ratio, less what its values could have been."""
+        own = list(self.table.candidates[one.candidate].columns)
+        # The determinant of the prior's covariance over the posterior's.
+        known = np.linalg.slogdet(one.covariance)[1]
+        free = 2.0 * float(np.sum(np.log(self.table.scale[own])))
+        return one.ratio - (free - float(known))
+
+    def _take_along(self, found: Finding) -> None:
+        """Take what was found along as known to be there, and watch for what comes beside it."""
+        watch = self._watch
+        assert watch.filter is not None
+        (candidate,) = (one for one in self.table.candidates if one.name == found.name)
+        first = round((found.updated_ns - found.onset_ns) / (LIVE.stretch_s * SECOND))
+        number = self._last_number - first + 1
+        for column in candidate.columns:
+            # The oldest makes room.
+            place = watch.taken % MOST_ABSORBED
+            watch.taken += 1
+            watch.absorbed = [one for one in watch.absorbed if one.place != place]
+            watch.filter.absorb(place, float(self.table.scale[column]))
+            watch.absorbed.append(_Absorbed(column, number, place))
+        watch.filter.loosen()
+        watch.bank.forget()
+
+    def _taken_along(self, lasting: FloatArray | None, number: int) -> FloatArray:
+        """Signatures (k, `MOST_ABSORBED`) of what is taken along, in a stretch."""
+        self._last_number = number
+        found = np.zeros((len(WATCHED), MOST_ABSORBED))
+        watch = self._watch
+        if lasting is None or watch.responses is None:
+            return found
+        for one in watch.absorbed:
+            own = [one.column]
+            ages = np.array([max(number - one.onset, 0)])
+            known = watch.responses.only(own).since(lasting[:, own], ages, self._growing[own])
+            found[:, one.place] = known[0, :, 0]
+        return found

@@ -1,0 +1,139 @@
+"""Likelihood ratios of what may have begun, over all onsets in a window.
+
+Window-limited generalised likelihood ratios (Willsky and Jones, IEEE Trans. Automat. Contr. 21,
+1976; Lai, IEEE Trans. Inf. Theory 44, 1998): the marks that a signature leaves in the innovations
+are correlated with these, for each onset.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.diagnosis.onset.candidates import CandidateTable
+from trawl_ros.diagnosis.onset.whitening import MOST, Whitened, WhiteningFilter
+
+FEWEST = 2
+"""Stretches since an onset, at least, before it counts."""
+
+
+@dataclass(frozen=True)
+class OnsetEvidence:
+    """Evidence for one candidate.
+
+    Attributes
+    ----------
+    candidate
+        Its number.
+    age
+        Stretches since the likeliest onset, that in which it began among them.
+    ratio
+        Twice the logarithm of the likelihood ratio.
+    rarity
+        -log10 of the probability of as much at one onset without any effect.
+    values, covariance
+        Departures (m,) from neutral, and their covariance (m, m).
+    ages : (n,) int array
+        Of the onsets that 95 % of the likelihood do not exclude.
+    """
+
+    candidate: int
+    age: int
+    ratio: float
+    rarity: float
+    values: FloatArray
+    covariance: FloatArray
+    ages: IntArray
+
+
+class RatioBank:
+    """Bank of likelihood ratios, one per candidate and onset.
+
+    Parameters
+    ----------
+    table
+        The candidates.
+    window
+        Onsets w that are kept, in stretches.
+    size
+        States of the whitening filter.
+
+    Attributes
+    ----------
+    products : (w, p) array
+        Of marks and innovations, by age of the onset.
+    squares : (w, p, p) array
+        Of marks.
+    """
+
+    def __init__(self, table: CandidateTable, window: int, size: int) -> None:
+        self.table, self._window = table, window
+        p = len(table.parameters)
+        self._means = np.zeros((window, size, p))
+        self.products, self.squares = np.zeros((window, p)), np.zeros((window, p, p))
+        self.known = 0
+
+    def forget(self) -> None:
+        """Discard all onsets so far."""
+        for array in (self._means, self.products, self.squares):
+            array[:] = 0.0
+        self.known = 0
+
+    def step(
+        self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None
+    ) -> None:
+        """Advance by a stretch, in which another onset may lie.
+
+        Parameters
+        ----------
+        whitening
+            The filter, after the stretch.
+        white
+            Its innovations; None where there are none.
+        signatures : (w, k, p) array
+            Of the stretch, by age.
+        """
+        for array in (self._means, self.products, self.squares):
+            array[1:] = array[:-1].copy()
+            array[0] = 0.0
+        self.known = min(self.known + 1, self._window)
+        means = np.moveaxis(self._means, 1, 0)
+        whitening.advance(means)
+        if white is None or signatures is None:
+            return
+        own = signatures[:, white.rows] - white.model @ self._means
+        marks = np.moveaxis(white.whitened(np.moveaxis(own, 1, 0)), 0, 1)
+        self._means += white.gain @ own
+        told = np.clip(white.whitened(white.residual), -MOST, MOST)
+        self.products += np.einsum('wrp,r->wp', marks, told)
+        self.squares += np.matmul(np.swapaxes(marks, 1, 2), marks)
+
+    def best(self) -> list[OnsetEvidence]:
+        """Evidence for each candidate at its likeliest onset; the rarest first."""
+        ages = np.arange(FEWEST - 1, self.known)
+        if not len(ages):
+            return []
+        found = []
+        scale = self.table.scale
+        low, high = self.table.reach
+        for number, candidate in enumerate(self.table.candidates):
+            own = list(candidate.columns)
+            squares = self.squares[ages][:, own][:, :, own]
+            informed = squares + np.diag(scale[own] ** -2.0)
+            products = self.products[ages][:, own]
+            values = np.linalg.solve(informed, products[..., None])[..., 0]
+            values = np.clip(values, low[own], high[own])
+            ratios = 2.0 * np.einsum('wp,wp->w', values, products) - np.einsum(
+                'wp,wpq,wq->w', values, informed, values
+            )
+            best = int(np.argmax(ratios))
+            near = ages[ratios >= ratios[best] - chi2.ppf(0.95, 1)]
+            found.append(
+                OnsetEvidence(
+                    number, int(ages[best]), float(ratios[best]),
+                    float(-chi2.logsf(ratios[best], len(own)) / np.log(10.0)),
+                    values[best], np.linalg.inv(informed[best]), near,
+                )
+            )  # fmt: skip
+        return sorted(found, key=lambda one: -one.rarity)

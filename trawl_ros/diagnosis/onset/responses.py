@@ -1,0 +1,158 @@
+"""Responses of the gear to effects that begin, as they fade into those of effects long there.
+
+What an effect changes after its onset is what it would change had it been there for long, less a
+part that fades: a free motion of the gear. That part is taken from one steady state and added at
+all times, as the motions that are slow hardly differ from state to state; it is no exact
+derivative. `docs/diagnosis.md` has what that costs.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.diagnosis.onset.stretches import LIVE
+from trawl_ros.diagnosis.onset.towing import ROWS, WatchedGear
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.solver.motion.course import InputPoint
+from trawl_ros.solver.motion.tow import DifferentiatedTow
+
+FOLLOWED = 20
+"""Stretches through which responses are towed."""
+
+STEP_S = 5.0
+"""Step of that; a stretch is a whole number of it."""
+
+TAIL_S = 250.0
+"""Time in which the slowest motion fades to 1/e beyond them; between 200 and 550 s in gears."""
+
+LOG_TAPS = 8
+"""Stretches for which an error of the log in one stretch is felt."""
+
+
+@dataclass(frozen=True)
+class OnsetResponses:
+    """Responses to a step at the beginning of a stretch.
+
+    Attributes
+    ----------
+    fading : (a, k, p) array
+        What is still missing to an effect long there in the means of the stretches since, by
+        the values of all effects.
+    grown : (a, k, p) array
+        Integral of that over time, in hours, up to the middle of each stretch.
+    log : (t, k) array
+        Means of the stretches since by a log that shows 1 m/s too much in one stretch alone.
+    """
+
+    fading: FloatArray
+    grown: FloatArray
+    log: FloatArray
+
+    def only(self, columns: Sequence[int]) -> 'OnsetResponses':
+        """Responses to some of the values alone."""
+        own = list(columns)
+        return OnsetResponses(self.fading[..., own], self.grown[..., own], self.log)
+
+    def since(self, lasting: FloatArray, ages: IntArray, growing: FloatArray) -> FloatArray:
+        """Signatures (n, k, p) of effects that began so many stretches (n,) ago.
+
+        Parameters
+        ----------
+        lasting : (k, p) array
+            What effects change that have been there for long.
+        ages
+            0 in the stretch with whose beginning the effect begins.
+        growing : (p,) array
+            1 for values with which an effect grows, else 0.
+        """
+        hours = (ages + 0.5) * LIVE.stretch_s / 3600.0
+        known = np.minimum(ages, len(self.fading) - 1)
+        steps = lasting - self.fading[known]
+        ramps = lasting * hours[:, None, None] - self.grown[known]
+        signatures: FloatArray = steps * (1.0 - growing) + ramps * growing
+        return signatures
+
+
+def onset_responses(
+    gear: WatchedGear,
+    coefficients: FloatArray,
+    inputs: tuple[float, float, float],
+    oldest: int,
+) -> OnsetResponses:
+    """Responses at a steady state.
+
+    Parameters
+    ----------
+    gear, coefficients
+        That is towed.
+    inputs
+        Warp lengths (m) and speed (m/s) of the state.
+    oldest
+        Stretches to which responses are known.
+
+    Raises
+    ------
+    NoSteadyState
+        If there is no such state.
+    StepFailed
+        If its motion cannot be computed.
+    """
+    parameters = gear.parameters
+    point = _held(inputs)
+    motion = DifferentiatedTow(
+        gear.model.with_coefficients(coefficients), parameters, lambda time: point, gear.acting
+    )
+    lasting = motion.observed()
+    own = parameters.of_effects, parameters.of_inputs
+    motion.forget(slice(own[0].start, own[1].stop))
+    steps, towed = round(LIVE.stretch_s / STEP_S), []
+    last = motion.observed().slopes
+    for _ in range(FOLLOWED):
+        seen = [last]
+        for _ in range(steps):
+            motion.advance(STEP_S)
+            seen.append(motion.observed().slopes)
+        last = seen[-1]
+        # The first of the two derivatives at an onset is that before it.
+        means = np.array([0.5 * (a + b) for a, b in itertools.pairwise(seen)])
+        towed.append(np.mean(means, axis=0))
+    missing = lasting.slopes - np.array(towed)
+    at = Situation(inputs, hours=1.0)
+    shown = [gear.by_values(one[:, own[0]], lasting.values, at) for one in missing]
+    # What sensors show at once is not missing, and came in with each.
+    nothing = gear.by_values(np.zeros_like(missing[0][:, own[0]]), lasting.values, at)
+    fading = _with_tail(np.array(shown) - nothing, oldest)
+    hours = LIVE.stretch_s / 3600.0
+    grown = hours * (np.cumsum(fading, axis=0) - 0.5 * fading)
+    return OnsetResponses(fading, grown, _of_log(gear, np.array(towed), own[1].start))
+
+
+def _of_log(gear: WatchedGear, towed: FloatArray, first: int) -> FloatArray:
+    names = [error.name for error in INPUT_ERRORS]
+    place = names.index('speed offset')
+    # A log that shows too much is a ship that is slower; by a std of that error.
+    steps = towed[:LOG_TAPS, :, first + place][:, ROWS] / INPUT_ERRORS[place].std
+    pulses: FloatArray = np.diff(steps, axis=0, prepend=0.0)
+    return pulses
+
+
+def _held(inputs: tuple[float, float, float]) -> InputPoint:
+    additions = np.zeros((len(INPUT_ERRORS), 3))
+    for row, error in enumerate(INPUT_ERRORS):
+        column = ('port_length', 'starboard_length', 'speed').index(error.channel)
+        additions[row, column] = -error.std * (inputs[column] if error.relative else 1.0)
+    return InputPoint(
+        np.array(inputs), np.zeros(3), hours=1.0,
+        errors=additions, error_rates=np.zeros_like(additions),
+    )  # fmt: skip
+
+
+def _with_tail(fading: FloatArray, oldest: int) -> FloatArray:
+    """Fading parts of `FOLLOWED` stretches, gone on with to the ``oldest``."""
+    more = np.arange(1, max(oldest - len(fading), 0) + 1)
+    tail = fading[-1] * np.exp(-more * LIVE.stretch_s / TAIL_S)[:, None, None]
+    return np.concatenate((fading, tail))

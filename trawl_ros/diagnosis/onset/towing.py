@@ -1,0 +1,263 @@
+"""Tow of the model along a tow that goes on, with derivatives by all that may begin in it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.diagnosis.mimics.drift import Drift
+from trawl_ros.diagnosis.onset.candidates import WATCHED, AtOneHour
+from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch
+from trawl_ros.effects.base.effect import Effect, Situation, sense
+from trawl_ros.effects.effect_set import EffectSet
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, CorrectedInputs
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.towing import AGAIN_S, HIGHEST_M, SETTLING_S
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import fallen_boards
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.effect_sensitivity import shown_values
+from trawl_ros.solver.motion.course import InputPoint, by_values
+from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.motion.tow import DifferentiatedTow
+from trawl_ros.solver.stepper import StepFailed
+
+ROWS = [OBSERVABLES.index(name) for name in WATCHED]
+
+
+@dataclass(frozen=True)
+class TowedStretch:
+    """Stretch as the model was towed along it.
+
+    Attributes
+    ----------
+    values : (k,) array
+        Means of the watched channels by the model, weighted as their readings came.
+    by_coefficients : (k, 12) array
+    by_inputs : (k, e) array
+        By a std of each of `INPUT_ERRORS`.
+    by_values : (k, p) array
+        By the values of effects that have been there for long.
+    situation
+        Of the effects.
+    """
+
+    values: FloatArray
+    by_coefficients: FloatArray
+    by_inputs: FloatArray
+    by_values: FloatArray
+    situation: Situation
+
+
+@dataclass(frozen=True)
+class WatchedGear:
+    """Gear that is towed along: the model, the effects that are there, and those that may begin."""
+
+    model: GearModel
+    acting: EffectSet
+    effects: tuple[Effect, ...]
+
+    @property
+    def moving(self) -> tuple[Effect, ...]:
+        """Effects that act on the gear or on what it is towed with."""
+        return tuple(effect for effect in self.effects if acts_on_gear(effect))
+
+    @property
+    def parameters(self) -> MotionParameters:
+        """Parameters of the derivatives in time."""
+        errors = tuple(error.name for error in INPUT_ERRORS)
+        return MotionParameters(effects=self.moving, inputs=errors)
+
+    def by_values(self, moved: FloatArray, shown: FloatArray, at: Situation) -> FloatArray:
+        """Derivatives (k, p) of readings by the values of all effects.
+
+        Parameters
+        ----------
+        moved : (n_observables, m) array
+            Of the observables by the values of those that act on the gear.
+        shown : (n_observables,) array
+            Observables.
+        at
+            The situation.
+        """
+        parts, first = [], 0
+        for effect in self.effects:
+            part = np.zeros((len(OBSERVABLES), len(effect.parameters)))
+            if acts_on_gear(effect):
+                last = first + len(effect.parameters)
+                part, first = part + moved[:, first:last], last
+            if type(effect).apply_to_sensors is not Effect.apply_to_sensors:
+                part = (
+                    part
+                    + by_values(self.acting, effect, lambda there: shown_values(there, shown, at)).T
+                )
+            parts.append(part)
+        return np.hstack(parts)[ROWS]
+
+
+def acts_on_gear(effect: Effect) -> bool:
+    """True if an effect may act on the gear or on what it is towed with."""
+    own = effect.of if isinstance(effect, AtOneHour) and effect.of is not None else effect
+    if isinstance(own, Drift) and not any(own.inputs):
+        return False
+    kind = type(own)
+    return kind.gear is not Effect.gear or kind.apply_to_inputs is not Effect.apply_to_inputs
+
+
+class _Following:
+    """Inputs along which the model is towed; those of each stretch come with it."""
+
+    def __init__(self, tow: MovingTow) -> None:
+        self.take(tow, 0.0, 0.0)
+
+    def take(self, tow: MovingTow, begin: float, time: float) -> None:
+        """Follow a tow from ``begin`` (s) of it on, which is the time ``time`` of the motion."""
+        inputs = replace(tow.inputs, knots=())
+        self._inputs = CorrectedInputs(inputs, np.zeros(len(INPUT_ERRORS)), np.zeros(0))
+        self._ahead = begin - time
+
+    def __call__(self, time: float) -> InputPoint:
+        return replace(self._inputs(time + self._ahead), hours=time / 3600.0)
+
+
+class ModelTow:
+    """Tow of the model, stretch by stretch.
+
+    Parameters
+    ----------
+    gear
+        That is towed.
+    coefficients
+        Of its boards (12,).
+    """
+
+    def __init__(self, gear: WatchedGear, coefficients: FloatArray) -> None:
+        self._gear = gear
+        self._parameters = gear.parameters
+        self._motion: DifferentiatedTow | None = None
+        self._following: _Following | None = None
+        self._next = -1
+        self._again = 0
+        self.coefficients = coefficients
+
+    @property
+    def steady(self) -> tuple[float, float, float] | None:
+        """Warp lengths (m) and speed (m/s) of the equilibrium that the motion began in."""
+        return None if self._motion is None else self._began
+
+    def begin_anew(self, coefficients: FloatArray | None = None) -> None:
+        """Begin in an equilibrium with the next stretch, by other coefficients where given."""
+        self._motion = None
+        if coefficients is not None:
+            self.coefficients = coefficients
+
+    def advance(self, last: LastStretch) -> TowedStretch | str:
+        """Tow along a stretch.
+
+        Where there is no motion to go on from, it begins in the equilibrium of the inputs of the
+        oldest of the minutes before, which the slowest motions are given to fade in.
+
+        Returns
+        -------
+        TowedStretch or str
+            What the model shows, or the reason why there is no prediction.
+        """
+        if last.tow is None:
+            self._motion = None
+            return last.why_not
+        if last.number < self._again:
+            return 'the tow of the model is begun anew after a stop'
+        try:
+            if self._motion is None or last.number != self._next:
+                if last.place * LIVE.stretch_s < SETTLING_S - 1e-6:
+                    return 'what the gear did before is not known'
+                self._begin(last)
+            self._next = last.number + 1
+            return self._towed(last.tow, last.place)
+        except (NoSteadyState, StepFailed) as reason:
+            self._stop(last)
+            return f'the model cannot be towed: {reason}'
+        except _NotPredicted as reason:
+            if reason.ends:
+                self._stop(last)
+            return str(reason)
+
+    def _stop(self, last: LastStretch) -> None:
+        self._motion = None
+        self._again = last.number + round(AGAIN_S / LIVE.stretch_s)
+
+    def _begin(self, last: LastStretch) -> None:
+        assert last.tow is not None
+        self._following = _Following(last.tow)
+        model = self._gear.model.with_coefficients(self.coefficients)
+        self._motion = DifferentiatedTow(
+            model, self._parameters, self._following, self._gear.acting
+        )
+        port, starboard, speed = map(float, self._following(0.0).inputs)
+        self._began = (port, starboard, speed)
+        for _ in range(last.place * last.tow.steps):
+            self._motion.advance(last.tow.step_s)
+        self._require_upright()
+
+    def _require_upright(self) -> None:
+        assert self._motion is not None
+        if any(fallen_boards(self._motion.motion.state)) and not self._gear.model.paired:
+            raise _NotPredicted('a board of the model falls over', ends=True)
+
+    def _towed(self, tow: MovingTow, place: int) -> TowedStretch:
+        motion, following = self._motion, self._following
+        assert motion is not None
+        assert following is not None
+        following.take(tow, place * tow.stretch_s, motion.time)
+        seen = [motion.observed()]
+        for _ in range(tow.steps):
+            motion.advance(tow.step_s)
+            seen.append(motion.observed())
+        self._require_upright()
+        if np.max(motion.motion.state.nodes[:, 2]) > HIGHEST_M:
+            raise _NotPredicted('the gear of the model breaks the surface', ends=False)
+        # Channels without a reading in this stretch take the plain mean; nothing is compared.
+        weights = np.full((len(OBSERVABLES), tow.steps + 1), 1.0 / (tow.steps + 1))
+        for name, own in zip(tow.channels, tow.weights[place], strict=True):
+            if np.isfinite(own).all() and own.sum() > 0.5:
+                weights[OBSERVABLES.index(name)] = own
+        values = np.einsum('sn,ns->n', [one.values for one in seen], weights)
+        slopes = np.einsum('snm,ns->nm', [one.slopes for one in seen], weights)
+        own = self._parameters
+        point = following(motion.time)
+        at = Situation(
+            (float(point.inputs[0]), float(point.inputs[1]), float(point.inputs[2])),
+            point.heading,
+            sense(point.heading),
+            1.0,
+        )
+        shown = shown_values(self._gear.acting, values, at)
+        return TowedStretch(
+            shown[ROWS],
+            slopes[ROWS, own.of_coefficients],
+            slopes[ROWS, own.of_inputs],
+            self._gear.by_values(slopes[:, own.of_effects], values, at),
+            at,
+        )
+
+
+class _NotPredicted(Exception):
+    """There is no prediction; ``ends`` the motion of the model or not."""
+
+    def __init__(self, why: str, *, ends: bool) -> None:
+        super().__init__(why)
+        self.ends = ends
+
+
+def measured(last: LastStretch, names: Sequence[str] = WATCHED) -> tuple[FloatArray, FloatArray]:
+    """Means (k,) of the watched channels in a stretch, and their noise; NaN where none."""
+    means, noise = np.full((2, len(names)), np.nan)
+    if last.tow is not None:
+        for place, name in enumerate(names):
+            if name in last.tow.channels:
+                column = last.tow.channels.index(name)
+                means[place] = last.tow.means[last.place, column]
+                noise[place] = last.tow.noise[last.place, column]
+    return means, noise

@@ -1,0 +1,266 @@
+"""Whitening filter: innovations of a tow that goes on, and what a signature leaves in them.
+
+A Kalman filter over all that may be wrong without an effect: coefficients as far as they are
+known, errors of counters and log, calibration, and the processes of `estimation/motion`. What an
+effect changes passes through the same filter, and comes out as its mark on the innovations.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
+from trawl_ros.diagnosis.onset.candidates import WATCHED
+from trawl_ros.diagnosis.onset.responses import LOG_TAPS
+from trawl_ros.diagnosis.onset.stretches import LIVE
+from trawl_ros.diagnosis.onset.towing import TowedStretch
+from trawl_ros.estimation.fit.error_terms import (
+    GROUPS,
+    MODEL_ANGLE,
+    MODEL_FRACTION,
+    group_of,
+)
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorSizes, ErrorTimes
+from trawl_ros.records.channels import CHANNELS, INPUTS
+
+MOST_ABSORBED = 6
+"""Values of effects that are known already and taken along, at most."""
+
+INPUT_TIMES = (600.0, 600.0, 900.0)
+"""Correlation times (s) of the errors of both counters and of the log that change along the way."""
+
+STATE_LEAP, LEAPS = 0.5, {'door_spread': 1.5}
+"""Std of what a channel is wrong by more or less in the next state of a tow, in its bias: assumed,
+and of the spread as measured at a dock (0.6 m, `config/instruments/default.yaml`)."""
+
+COUNTER_STD_M = LIVE.counter_std_m
+"""Std of those of the counters, as for the fit in motion."""
+
+
+@dataclass(frozen=True)
+class Whitened:
+    """Innovations (r,) of a stretch, white and of unit size, with what made them so.
+
+    Attributes
+    ----------
+    residual
+        As they are.
+    root : (r, r) array
+        Lower root of their covariance.
+    rows
+        Flags (k,) of the watched channels that are among them.
+    gain : (s, r) array
+        Of the filter.
+    """
+
+    residual: FloatArray
+    root: FloatArray
+    rows: BoolArray
+    gain: FloatArray
+    model: FloatArray
+
+    def whitened(self, innovations: FloatArray) -> FloatArray:
+        """Innovations (r, ...) in units of their own errors."""
+        flat = innovations.reshape(len(self.root), -1)
+        white = solve_triangular(self.root, flat, lower=True, check_finite=False)
+        return np.asarray(white.reshape(innovations.shape), np.float64)
+
+
+class WhiteningFilter:
+    """Whitening filter.
+
+    Parameters
+    ----------
+    start, covariance
+        Coefficients (12,) as they are known, and their covariance (12, 12).
+    log
+        Means (t, k) of the stretches since by a log that shows 1 m/s too much in one stretch.
+    inflation
+        Factor on the std of all errors that are stated.
+    """
+
+    def __init__(
+        self, start: FloatArray, covariance: FloatArray, log: FloatArray, inflation: float
+    ) -> None:
+        self._start, self._log, self._inflation = start, log, inflation
+        self._known = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
+        self.mean = np.zeros(self.size)
+        self.variance = np.eye(self.size)
+        self.variance[self._absorbed, self._absorbed] = 0.0
+
+    @cached_property
+    def _starts(self) -> tuple[int, ...]:
+        return _starts(len(self._start))
+
+    @property
+    def size(self) -> int:
+        """Number of states s."""
+        return self._starts[-1]
+
+    def _part(self, number: int) -> Slice:
+        return slice(self._starts[number], self._starts[number + 1])
+
+    @property
+    def _absorbed(self) -> Slice:
+        return self._part(7)
+
+    @property
+    def calibrations(self) -> Slice:
+        """Slice of the calibration of each watched channel."""
+        return self._part(4)
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Coefficients (12,) by the present estimate."""
+        values: FloatArray = self._start + self._known @ self.mean[self._part(0)]
+        return values
+
+    def loosen(self) -> None:
+        """Take calibration for as little known as at the beginning."""
+        diagonal = np.einsum('ii->i', self.variance)
+        diagonal[self.calibrations] += 1.0
+
+    def begin_state(self) -> None:
+        """Take sensors and counters for wrong by another amount: winches or speed begin to change.
+
+        The dock where they were measured says so of spread and counters.
+        """
+        diagonal = np.einsum('ii->i', self.variance)
+        leaps = [LEAPS.get(name, STATE_LEAP) for name in WATCHED]
+        diagonal[self.calibrations] += np.square(leaps)
+        counters = self._part(2).start
+        diagonal[counters : counters + 2] += 1.0
+
+    def absorb(self, number: int, scale: float) -> None:
+        """Take a value along that has been found, of a size up to ``scale``."""
+        place = self._absorbed.start + number
+        self.variance[place], self.variance[:, place] = 0.0, 0.0
+        self.variance[place, place] = scale**2
+        self.mean[place] = 0.0
+
+    def step(
+        self, means: FloatArray, noise: FloatArray, towed: TowedStretch | None,
+        linearised_at: FloatArray, log_std: float, absorbed: FloatArray,
+    ) -> Whitened | None:  # fmt: skip
+        """Advance by a stretch.
+
+        Parameters
+        ----------
+        means, noise
+            Of the watched channels (k,), NaN where there is no reading.
+        towed
+            The model; None where there is no prediction.
+        linearised_at
+            Coefficients (12,) with which it was towed.
+        log_std
+            Std of the log's mean in the stretch, m/s.
+        absorbed : (k, `MOST_ABSORBED`) array
+            Signatures of what is taken along.
+
+        Returns
+        -------
+        Whitened or None
+            Innovations; None where nothing could be compared.
+        """
+        self.advance(self.mean)
+        self._spread(log_std)
+        if towed is None:
+            return None
+        rows = np.isfinite(means) & np.isfinite(noise)
+        if not rows.any():
+            return None
+        model = self._model(towed, absorbed)[rows]
+        shift = towed.by_coefficients @ (self._start - linearised_at)
+        residual = (means - towed.values - shift)[rows] - model @ self.mean
+        own = np.array([CHANNELS[name].noise for name in WATCHED])
+        white = (noise**2 + (ErrorSizes().drift[0] * own) ** 2)[rows] * self._inflation**2
+        covariance = model @ self.variance @ model.T + np.diag(white)
+        root = np.linalg.cholesky(covariance)
+        gain = np.linalg.solve(covariance, model @ self.variance).T
+        found = Whitened(residual, root, rows, gain, model)
+        # A reading far off moves the filter no more than one at the edge of what errors make.
+        bounded = root @ np.clip(found.whitened(residual), -MOST, MOST)
+        self.mean = self.mean + gain @ bounded
+        kept = np.eye(self.size) - gain @ model
+        self.variance = kept @ self.variance @ kept.T + gain @ np.diag(white) @ gain.T
+        return found
+
+    def advance(self, states: FloatArray) -> None:
+        """Advance states (s, ...) in time by a stretch, in place."""
+        states *= self._decay.reshape(-1, *(1,) * (states.ndim - 1))
+        taps = self._part(3)
+        states[taps] = np.roll(states[taps], 1, axis=0)
+        states[taps.start] = 0.0
+
+    @cached_property
+    def _decay(self) -> FloatArray:
+        """Factors (s,) of the states from one stretch to the next."""
+        decay, times = np.ones(self.size), ErrorTimes()
+        decay[self._part(2)] = np.exp(-LIVE.stretch_s / np.array(INPUT_TIMES))
+        decay[self._part(5)] = np.exp(-LIVE.stretch_s / times.state)
+        decay[self._part(6)] = np.exp(-LIVE.stretch_s / times.model)
+        return decay
+
+    def _spread(self, log_std: float) -> None:
+        """Advance the covariance in time by a stretch."""
+        self.advance(self.variance)
+        self.advance(self.variance.T)
+        diagonal = np.einsum('ii->i', self.variance)
+        for number in (2, 5, 6):
+            part = self._part(number)
+            diagonal[part] += 1.0 - self._decay[part] ** 2
+        diagonal[self._part(3).start] = (log_std * self._inflation) ** 2
+
+    def _model(self, towed: TowedStretch, absorbed: FloatArray) -> FloatArray:
+        """What each state of unit size changes in the watched channels (k, s)."""
+        k = len(WATCHED)
+        bias = np.array(
+            [
+                CHANNELS[name].bias_std(value)
+                for name, value in zip(WATCHED, towed.values, strict=True)
+            ]
+        )
+        errors = [error.name for error in INPUT_ERRORS]
+        offsets = [errors.index(f'{name} offset') for name in INPUTS]
+        per_unit = towed.by_inputs[:, offsets] / [INPUT_ERRORS[place].std for place in offsets]
+        log = CHANNELS['speed'].bias_std(towed.situation.speed)
+        sizes = np.array([COUNTER_STD_M, COUNTER_STD_M, STATE_SHARE * log])
+        groups = np.zeros((k, len(GROUPS)))
+        for row, (name, value) in enumerate(zip(WATCHED, towed.values, strict=True)):
+            angle = CHANNELS[name].unit == 'rad'
+            groups[row, GROUPS.index(group_of(name))] = (
+                MODEL_ANGLE if angle else MODEL_FRACTION * abs(value)
+            )
+        stated = self._inflation
+        return np.hstack(
+            (
+                towed.by_coefficients @ self._known,
+                towed.by_inputs * stated,
+                per_unit * sizes * stated,
+                self._log.T,
+                np.diag(bias) * stated,
+                np.diag(bias) * STATE_SHARE * stated,
+                groups * stated,
+                absorbed,
+            )
+        )
+
+
+def states_for(coefficients: int) -> int:
+    """Number of states of a filter for so many coefficients."""
+    return _starts(coefficients)[-1]
+
+
+def _starts(coefficients: int) -> tuple[int, ...]:
+    k = len(WATCHED)
+    sizes = (
+        coefficients, len(INPUT_ERRORS), len(INPUTS), LOG_TAPS, k, k, len(GROUPS), MOST_ABSORBED,
+    )  # fmt: skip
+    return tuple(int(one) for one in np.cumsum((0, *sizes)))
+
+
+MOST = 4.0
+"""Whitened innovations beyond this are taken for this: one reading alone is no onset."""
