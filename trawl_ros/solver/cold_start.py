@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray
+from trawl_ros.model.assembly import forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import lies_over, outward_normal_lift
 from trawl_ros.model.state import State, Tow
@@ -34,15 +35,21 @@ COARSE_LIMIT, LIMIT = 100, 3.0
 square root of the number of nodes, so per row and column. With 48 meshes around up to 63 are
 needed, with 96 up to 160."""
 
-ROUGH = 1.0
-"""Force (N) left at which the load is lowered further."""
+ROUGH, SHARE = 1.0, 0.01
+"""Force (N) left at which a shape with bowed twine is found; on the way down, at which share of the
+force that the fall of the load has left over, where that is more."""
 
-LEAST, TOO_LITTLE = 1.0, 1e-3
+LEAST, TOO_LITTLE = 4.0, 1e-3
 """Load (Pa) below which it is taken away altogether; where that fails it is lowered on, down to
 the second value."""
 
-FALL, LEAST_FALL = 4.0, 1.2
-"""Factor by which the load is lowered at once, and the one at which that is given up."""
+FIRST_FALL, FALL, LEAST_FALL = 2.0, 3.0, 1.2
+"""Factors by which the load is lowered at first, with nothing known of what that does to the shape,
+and later, and the one at which that is given up."""
+
+BOWED_POWER = 2.0 / 3.0
+"""Power of the load with which the tension rises of a bar that is just as long as it is unstretched
+(`trawl_ros.model.bar.bowed_at`): the shape is nearly a straight line in that."""
 
 
 def cold_start(
@@ -140,14 +147,22 @@ def straightened(
     pressure: float = PRESSURE,
 ) -> tuple[State, int, float]:
     """Take the load of `bowed` (Pa) away from a shape found with it; ``free`` as for `relax`."""
-    fall, least, spent = FALL, LEAST, 0
+    fall, least, spent, before = FALL, LEAST, 0, None
     while True:
-        lower = pressure / fall
+        lower = pressure / (fall if before else min(fall, FIRST_FALL))
         last = lower < least
-        wanted = TOLERANCE if last else ROUGH
+        wanted, start, trial_model = TOLERANCE, state, model
+        if not last:
+            trial_model = bowed(model, lower)
+            left = forces(trial_model, state, tow)
+            if free is not None:
+                left = left[free]
+            wanted = max(ROUGH, SHARE * float(np.abs(left).max()))
+        if before:
+            start = _on(*before, pressure, state, 0.0 if last else lower)
         trial, more, residual = relax(
-            model if last else bowed(model, lower),
-            state,
+            trial_model,
+            start,
             tow,
             tolerance=wanted,
             time_step=WARM_TIME_STEP,
@@ -156,6 +171,7 @@ def straightened(
         )
         spent += more
         if residual <= wanted:
+            before = pressure, state
             state, pressure = trial, lower
             if last:
                 return state, spent, residual
@@ -165,3 +181,15 @@ def straightened(
             fall = np.sqrt(fall)
         else:
             return trial, spent, residual
+
+
+def _on(high: float, first: State, low: float, second: State, load: float) -> State:
+    """The shape at a load, on the straight line through those at two higher ones (Pa)."""
+    top, here, there = (value**BOWED_POWER for value in (high, low, load))
+    share = (here - there) / (top - here)
+    return replace(
+        second,
+        nodes=second.nodes + share * (second.nodes - first.nodes),
+        board_positions=second.board_positions
+        + share * (second.board_positions - first.board_positions),
+    )
