@@ -56,7 +56,9 @@ help:
 demo: $(VENV)/ready
 	@$(BIN)/trawl demo --out $(DEMO)
 
-check: lint quick
+# Side by side: types take one core for as long as the quick tests take the other.
+check: $(VENV)/ready
+	@$(MAKE) --no-print-directory --jobs 2 lint quick
 
 quick: $(VENV)/ready
 	@$(PYTEST) -m 'not slow and not ros' $(QUICK)
