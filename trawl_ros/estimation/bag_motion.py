@@ -102,7 +102,8 @@ def fit_tows(
     Raises
     ------
     TrawlError
-        If the model cannot be towed along any stretch.
+        If the model cannot be towed along any stretch, or the fit does not come to rest while there
+        are windows to fall back on.
     """
     estimate = None if identification is None else identification.estimate
     prior, options, towed = board_prior(gear), MotionOptions(), TowedGear(build_model(gear))
@@ -126,6 +127,9 @@ def fit_tows(
     fit = fit_motion(towed, tows, prior, options, start, show)
     if not fit.readings:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
+    if identification is not None and not fit.converged:
+        # Intervals of a place that is not at rest mean nothing, and the windows have theirs.
+        raise TrawlError(f'the fit of all of the tow did not come to rest: {fit.reason}')
     if identification is None:
         return MotionOutcome(fit, prior, None, tuple(refused), stack(()))
     estimator = identification.estimator

@@ -155,8 +155,9 @@ def test_tows_that_are_joined_are_one_least_squares_problem():
     assert found.negative_log_likelihood == pytest.approx(likelihood)
 
 
-def test_sizes_of_noise_and_of_the_models_error_are_found():
-    chance, truth, times = np.random.default_rng(8), np.array([1.6, 0.1, 3.0, 0.3]), ErrorTimes()
+@pytest.mark.parametrize(('true', 'told'), [(3.0, 3.0), (0.2, 1.0)])
+def test_sizes_of_errors_are_found_those_of_slow_ones_not_below_what_is_stated(true, told):
+    chance, truth, times = np.random.default_rng(8), np.array([1.6, 0.1, true, 0.3]), ErrorTimes()
     own = rows(chance, 200)
     root = np.linalg.cholesky(own.covariance(truth, times))
     columns = chance.standard_normal((400, 14))
@@ -167,7 +168,8 @@ def test_sizes_of_noise_and_of_the_models_error_are_found():
     data = LinearData((groups,), (slice(14, 14),), 14, times)
     found = estimated_sizes(data, ErrorSizes(), ErrorSizes())
     assert found.noise[0] == pytest.approx(1.6, rel=0.15)
-    assert found.model[0] == pytest.approx(3.0, rel=0.4)
+    assert found.model[0] == pytest.approx(told, rel=0.4)
+    assert found.state[0] >= ErrorSizes().state[0]
     assert found.noise[1] == 1.0
 
 

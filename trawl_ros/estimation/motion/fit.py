@@ -24,13 +24,13 @@ from trawl_ros.estimation.motion.steps import Place, cost, misfit, shared_std, s
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, linearise_tow
 from trawl_ros.estimation.motion.weights import robust_factors
 
-NEAR = 0.1
+NEAR = 0.3
 """Part of every std from which a fit is at rest where no step lowers its cost."""
 
-COOLER = 0.25
+COOLER = 0.4
 """Factor from step to step on the errors of the data while these are taken for too large."""
 
-DAMPING, STIFFER, LOOSER = 1.0, 8.0, 0.2
+DAMPING, STIFFER, LOOSER = 1.0, 30.0, 0.2
 """First damping after a step that was refused, factors after each further one and after one that
 was taken."""
 
@@ -63,9 +63,11 @@ class _Search:
     linear: tuple[LinearisedTow, ...] = ()
     noise: tuple[FloatArray, ...] = ()
     damping: float = 0.0
+    towings: int = 0
 
     def linearise(self, at: Place, iteration: int) -> tuple[LinearisedTow, ...]:
         found = []
+        self.towings += 1
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
             then = partial(self.on_stretch, iteration, number)
@@ -189,6 +191,9 @@ def fit_motion(
             reason = (
                 f'after {iteration} iterations the step is below {options.tolerance:g} of every std'
             )
+            break
+        if search.towings >= options.towings:
+            reason = f'still moving after {search.towings} towings'
             break
         if not search.advance(now, iteration) and temper == 1.0:
             converged = size < NEAR

@@ -30,8 +30,9 @@ class MotionOptions:
         Largest change of a coefficient in one step, in prior std.
     tolerance
         A step below this part of every coefficient's std is the end.
-    iterations, attempts
-        At most; attempts at a step that lowers the cost, each damped more.
+    iterations, attempts, towings
+        At most; attempts at a step that lowers the cost, each damped more; towings of all tows in
+        all, after which no step is begun.
     huber
         Std beyond which a mean counts less; infinite for normal errors.
     """
@@ -45,6 +46,7 @@ class MotionOptions:
     tolerance: float = 0.1
     iterations: int = 20
     attempts: int = 4
+    towings: int = 14
     huber: float = 2.5
 
 

@@ -59,6 +59,11 @@ class MotionOutcome:
         return np.sqrt(np.diag(self.fit.covariance))
 
     @property
+    def covariance(self) -> FloatArray:
+        """Posterior covariance (12, 12) by all of the tow."""
+        return self.fit.covariance
+
+    @property
     def low(self) -> FloatArray:
         """Lower ends (12,) of the 95 % intervals, cut at the bounds."""
         return np.maximum(self.fit.values - HALF_95 * self.std, self.prior.low)

@@ -25,6 +25,10 @@ ECHO_LIMIT, LIMIT = 4.0, 6.0
 """Robust std from the median at which a reading is an outlier: of acoustic distances, where false
 echoes are many, and of other quantities."""
 
+CHANGE_S, MEDIAN_REACH_S, STANDS_M_S = 4.0, 6.0, 0.05
+"""Time over which a counter's changes are taken, reach of their median, and speed below which a
+winch stands, where no winch tells its speed."""
+
 MOST_READINGS = 1_000_000
 """Readings of a channel: a day of ten a second."""
 
@@ -66,7 +70,7 @@ class TowReadings:
     series
         Series of each channel that has readings enough.
     payout
-        Series of the pay-out speeds (m/s) of both winches.
+        Series of the pay-out speeds (m/s) of both winches, by their counters where no winch tells.
     """
 
     start_ns: int
@@ -134,7 +138,7 @@ def tow_readings(
     Raises
     ------
     TrawlError
-        If counters, log or the winches' pay-out speeds are missing.
+        If counters or log are missing.
     """
     options, rejections, winch = WindowOptions(), Rejections(), Watermark()
     buffers = {
@@ -162,18 +166,30 @@ def tow_readings(
             f'{name}: fewer than {WIDE} usable readings of {topics}, so the model cannot be towed '
             'along'
         )
-    if len(payout) < WIDE:
-        raise TrawlError(
-            f"{name}: {len(payout)} readings of the winches' pay-out speed on "
-            f'{CHANNELS[INPUTS[0]].topic}, expected at least {WIDE}: without it a counter that '
-            'leaps looks like a warp that moves'
-        )
     start = max(int(known[name][0][0]) for name in INPUTS)
     series = {
         name: series_of(CHANNELS[name], (stamps - start) / SECOND, values, float(np.median(stds)))
         for name, (stamps, values, stds) in known.items()
         if len(stamps) >= WIDE
     }
+    if len(payout) < WIDE:
+        told = payout_by_counter(series[INPUTS[0]]), payout_by_counter(series[INPUTS[1]])
+        return TowReadings(start, series, told)
     times = (np.array(sorted(payout), dtype=np.int64) - start) / SECOND
     port, starboard = np.array([payout[stamp] for stamp in sorted(payout)]).T
     return TowReadings(start, series, (Series(times, port), Series(times, starboard)))
+
+
+def payout_by_counter(counter: Series) -> Series:
+    """Pay-out speed (m/s) that a counter tells: medians of its changes, so that a counter which
+    leaps moves no warp.
+    """
+    times, values = counter.times, counter.values
+    later = np.searchsorted(times, times + CHANGE_S - 1e-6)
+    first = np.flatnonzero(later < len(times))
+    last = later[first]
+    speeds = (values[last] - values[first]) / (times[last] - times[first])
+    period = float(np.median(np.diff(times)))
+    speeds = _median(speeds, 1 + 2 * round(MEDIAN_REACH_S / period))
+    speeds[np.abs(speeds) < STANDS_M_S] = 0.0
+    return Series(0.5 * (times[first] + times[last]), speeds)

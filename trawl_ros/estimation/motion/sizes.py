@@ -23,6 +23,11 @@ before the data speak."""
 LOG_SPREAD = 0.3
 """Std of the logarithm of the size of the log's errors."""
 
+FLOORED = np.array([False, False, True, True])
+"""Of those: sizes that the data may find larger than stated, and no smaller. How little an error
+of the model, or of a state, changes through a tow does not show how large it is; what of it is
+alike all along, coefficients take up."""
+
 SIMPLEX = 0.5
 """First steps of the search, in these std."""
 
@@ -68,7 +73,8 @@ def estimated_sizes(data: LinearData, expected: ErrorSizes, start: ErrorSizes) -
     data
         Linearised tows.
     expected
-        Medians of the sizes before the data speak; a size of 0 stays 0.
+        Medians of the sizes before the data speak; a size of 0 stays 0, and slow errors are no
+        smaller than expected.
     start
         Sizes to begin with.
     """
@@ -88,6 +94,7 @@ def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: 
 
     def factors(logs: FloatArray) -> FloatArray:
         full = np.zeros(len(SPREAD))
+        logs = np.where(FLOORED[free], np.maximum(logs, 0.0), logs)
         full[free] = known[free] * np.exp(logs * SPREAD[free])
         return full
 

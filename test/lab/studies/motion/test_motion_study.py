@@ -20,7 +20,7 @@ def trial(number, chance, *, ratio=0.5, narrow=1.0, off=0.0):
     return MotionTrial(
         series='finer', number=number, truth=[0.0] * 12, values=values.tolist(), std=std.tolist(),
         low=(values - 1.96 * std).tolist(), high=(values + 1.96 * std).tolist(),
-        squared=np.sum((values / std) ** 2, axis=1).tolist(), converged=True, reason='',
+        squared=np.sum((values / std) ** 2, axis=1).tolist(), refused='', reason='',
         iterations=5, windows=5, left_out_s=300.0, duration_s=2820.0, rejected={'collapsed': 1},
         measured=measured.tolist(),
         predicted=(measured + away[:, None, None]).tolist(), sizes={}, cpu_s=50.0,

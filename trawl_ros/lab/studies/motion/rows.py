@@ -153,16 +153,17 @@ def _held_out_rows(
 
 
 def _rest_rows(trials: Sequence[MotionTrial], series: str) -> list[MeasuredValue]:
-    rest = [trial.converged for trial in trials]
+    learned = [trial for trial in trials if not trial.refused]
     rates = [trial.duration_s / trial.cpu_s for trial in trials]
     drawn = len(trials) + sum(sum(trial.rejected.values()) for trial in trials)
-    left = sum(trial.left_out_s for trial in trials) / 60.0
+    left = sum(trial.left_out_s for trial in learned) / 60.0
     return [
         MeasuredValue(
-            f'{series}: fits of all of the tow that came to rest',
-            100.0 * float(np.mean(rest)), '%',
-            note=f'{sum(rest)} of {len(rest)}; those that did not count in all figures; '
-            f'{left:.0f} min of all tows left out, their beginnings among them',
+            f'{series}: tows that all of was learned from',
+            100.0 * len(learned) / len(trials), '%',
+            note=f'{len(learned)} of {len(trials)}; of the others the windows count in all '
+            'figures, as in trawl identify, which says that the fit did not come to rest; '
+            f'{left:.0f} min left out, beginnings among them',
         ),
         MeasuredValue(
             f'{series}: time towed over processor time of the fit, median', float(np.median(rates)),

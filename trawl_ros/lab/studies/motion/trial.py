@@ -10,6 +10,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.bag_motion import STRETCHES, fit_tows
 from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.from_gear import board_prior, identification_for
+from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.series import tow_readings
 from trawl_ros.estimation.motion.stretches import moving_tow
 from trawl_ros.lab.studies.identification.plant import Cut
@@ -69,12 +70,14 @@ class MotionTrial:
         Estimates, their standard deviations and intervals.
     squared : 2 numbers
         Squared errors of the twelve in the metric of the posterior, 12 in the mean.
-    converged, reason, iterations
+    refused
+        Sentence on why all of the tow was not learned from; then the second is as the first.
+    reason, iterations
         Of the fit in motion.
     windows
         Number of steady windows.
-    left_out_s, duration_s
-        Time of stretches that do not count, and of those that do.
+    duration_s, left_out_s
+        Length of the tow, and time of it that does not count.
     rejected
         Boards drawn before that cannot be towed, by reason.
     measured : n × 4 numbers
@@ -95,12 +98,12 @@ class MotionTrial:
     low: list[list[float]]
     high: list[list[float]]
     squared: list[float]
-    converged: bool
+    refused: str
     reason: str
     iterations: int
     windows: int
-    left_out_s: float
     duration_s: float
+    left_out_s: float
     rejected: dict[str, int]
     measured: list[list[float]]
     predicted: list[list[list[float | None]]]
@@ -130,43 +133,54 @@ def run_motion_trial(task: Task) -> MotionTrial:
     read = tow_readings(plant.samples, build_water(gear).depth, task.name)
     tow = moving_tow(read, task.name, STRETCHES)
     begun = time.process_time()
-    learned = fit_tows(gear, identification, [tow], [(0,)], ())
+    learned, refused = None, ''
+    try:
+        learned = fit_tows(gear, identification, [tow], [(0,)], ())
+    except TrawlError as reason:
+        refused = str(reason)
     cpu_s = time.process_time() - begun
     unseen = steady_windows([plant.held_out], AS_STATED, chance, first_tow=1)
-    both = (estimate.values, learned.fit.values)
+    whole = estimate if learned is None else learned
+    both = (estimate.values, estimate.values if learned is None else learned.fit.values)
+    covariances = estimate.covariance, whole.covariance
     predictions = [
         identification.estimator.predictions(values, unseen)
         for values in (*both, plant.coefficients)
     ]
-    fit = learned.fit
-    covariances = estimate.covariance, fit.covariance
+    fit = None if learned is None else learned.fit
     return MotionTrial(
         series=task.series,
         number=task.number,
         truth=plant.coefficients.tolist(),
         values=[values.tolist() for values in both],
-        std=[estimate.std.tolist(), learned.std.tolist()],
-        low=[estimate.low.tolist(), learned.low.tolist()],
-        high=[estimate.high.tolist(), learned.high.tolist()],
+        std=[estimate.std.tolist(), whole.std.tolist()],
+        low=[estimate.low.tolist(), whole.low.tolist()],
+        high=[estimate.high.tolist(), whole.high.tolist()],
         squared=[
             _squared(values - plant.coefficients, covariance)
             for values, covariance in zip(both, covariances, strict=True)
         ],
-        converged=fit.converged,
-        reason=fit.reason,
-        iterations=fit.iterations,
+        refused=refused,
+        reason='' if fit is None else fit.reason,
+        iterations=0 if fit is None else fit.iterations,
         windows=estimate.windows,
-        left_out_s=float(sum(part.end - part.begin for _, part in learned.left_out)),
-        duration_s=learned.duration_s,
+        duration_s=len(tow) * tow.stretch_s,
+        left_out_s=0.0 if learned is None else _left_out(learned),
         rejected=dict(plant.rejected),
         measured=stack([paper_values(window.means) for window in unseen]).tolist(),
         predicted=[
             [[None if np.isnan(value) else value for value in row] for row in rows.tolist()]
             for rows in predictions
         ],
-        sizes={**{kind: list(getattr(fit.sizes, kind)) for kind in KINDS}, 'log': [fit.sizes.log]},
+        sizes={} if fit is None else {
+            **{kind: list(getattr(fit.sizes, kind)) for kind in KINDS}, 'log': [fit.sizes.log]
+        },
         cpu_s=cpu_s,
-    )
+    )  # fmt: skip
+
+
+def _left_out(learned: MotionOutcome) -> float:
+    return float(sum(part.end - part.begin for _, part in learned.left_out))
 
 
 def _squared(away: FloatArray, covariance: FloatArray) -> float:
