@@ -10,21 +10,23 @@ from click.testing import CliRunner
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.studies.flume.held import PRECISE, held
-from trawl_ros.lab.studies.flume.states import FlumeState, read_states
+from trawl_ros.lab.studies.flume.doubts import DOUBTS, Doubted, doubts_table
+from trawl_ros.lab.studies.flume.held import PRECISE, held, led_to
+from trawl_ros.lab.studies.flume.states import BRIDLE, SHACKLE, FlumeState, read_states
 from trawl_ros.lab.studies.flume.study import Compared, exponent, rows_of
 
 MEASURED = Path(__file__).parents[5] / 'shared/data/noaa_trawlmetrics/flume_tank_2025_2026.csv'
 
 TEXT = """\
 trial,trawl,bridles,bridle_length,catch,pulling_point_elevation_mm,towing_speed_kn,\
-spread_u_wing_m,opening_headline_m,bridle_tension_total_t,door_spread_m
-1.0,83-112,standard,normal,empty,200.0,2.0,17.84,2.72,,74.0
-2.0,83-112,2,short,1,300.0,3.0,17.52,2.4,2.4,69.8
-3.0,PNE,standard,normal,empty,200.0,2.0,16.0,6.4,2.6,60.4
+spread_u_wing_m,opening_headline_m,bridle_tension_total_t,door_spread_m,bridle_angle_deg,\
+spread_l_wing_m,upper_wingend_height_m
+1.0,83-112,standard,normal,empty,200.0,2.0,17.84,2.72,,74.0,22.4,20.16,1.4
+2.0,83-112,2,short,1,300.0,3.0,17.52,2.4,2.4,69.8,20.3,,1.2
+3.0,PNE,standard,normal,empty,200.0,2.0,16.0,6.4,2.6,60.4,20.0,17.0,2.0
 """
 
-STATE = FlumeState('1', False, False, False, 0.2, 72.0, 1.5, 17.5, 2.0, 2.0e4)
+STATE = FlumeState('1', False, False, False, 0.2, 60.8, 1.5, 17.5, 2.0, 2.0e4)
 
 
 def test_a_table_gives_the_states_of_one_trawl_in_si(tmp_path):
@@ -35,6 +37,9 @@ def test_a_table_gives_the_states_of_one_trawl_in_si(tmp_path):
     assert not second.counts
     assert first.speed == pytest.approx(1.0289, abs=1e-4)
     assert math.isnan(first.tension)
+    # Without the legs the ropes from masts to lower wings are the bridles and what lengthens them.
+    way = (first.pulling_points - first.lower_spread) / 2.0 / math.sin(math.radians(22.4))
+    assert way == pytest.approx(BRIDLE + SHACKLE, abs=0.2)
     assert second.tension == pytest.approx(2.4 * 9806.65)
     assert (second.sweeps, second.short, second.catch) == (True, True, True)
 
@@ -63,10 +68,13 @@ def test_the_footrope_lies_on_the_floor_which_pushes_and_does_not_pull(coarse):
     seen = net.found.observables
     assert seen.net_depth + seen.vertical_opening == pytest.approx(0.2, abs=PRECISE)
     assert 0.0 < net.floor < 25.0 * 34.1
+    assert 0.0 < net.wing_height < net.height + 0.1
+    assert net.lower_spread > net.spread
+    assert 0.0 < net.lower_share < 0.5
 
 
 def test_pulling_points_further_apart_open_the_wings_and_lower_the_mouth(coarse):
-    near, far = (held(coarse, replace(STATE, pulling_points=apart)) for apart in (60.0, 72.0))
+    near, far = (held(coarse, replace(STATE, pulling_points=apart)) for apart in (52.0, 60.8))
     assert far.spread > near.spread + 1.0
     assert far.height < near.height
 
@@ -82,6 +90,23 @@ def test_rows_tell_errors_and_the_exponent(coarse):
     assert exponent([(1.0, 3.0), (2.0, 12.0)]) == pytest.approx(2.0)
 
 
+def test_a_doubt_changes_its_number_and_tells_what_the_height_needs(coarse):
+    net = held(coarse, STATE)
+    fast = replace(STATE, trial='64.0', height=1.1 * net.height, tension=net.tension)
+    slow = replace(STATE, trial='67.0', speed=1.0, tension=0.5 * net.tension)
+    for doubt in DOUBTS:
+        assert doubt.change(coarse, 1.0) == coarse
+        assert (doubt.change(coarse, 0.9) != coarse) == (doubt.low < doubt.high)
+    slower = held(coarse, slow)
+    missing = dict.fromkeys(DOUBTS[0].factors)
+    table = doubts_table(
+        [Doubted(DOUBTS[0], {1.0: net} | missing, {1.0: slower} | missing)], [fast, slow]
+    )
+    assert [row[1] for row in table.rows] == ['', '', '× 0.6', '× 1.4']
+    assert table.rows[1][3] == f'{net.height:.2f}'
+    assert table.rows[2][2:7] == ('–', '–', '–', '–', 'not enough')
+
+
 @pytest.mark.skipif(not MEASURED.is_file(), reason='the measured states are not beside this')
 def test_the_measured_states_are_those_that_were_chosen():
     states = read_states(MEASURED)
@@ -89,3 +114,15 @@ def test_the_measured_states_are_those_that_were_chosen():
     counting = [state.trial for state in states if state.counts]
     assert counting == ['1.0', '2.0', '3.0', '4.0', '5.0', '6.0', '8.0', '9.0', '10.0',
                         '63.0', '65.0', '66.0', '67.0']  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_net_is_led_from_one_state_to_another_and_has_the_drag_of_small_twine(coarse):
+    net = held(coarse, STATE)
+    slower = replace(STATE, speed=1.35, pulling_points=58.0)
+    led, cold = led_to(coarse, slower, STATE, net), held(coarse, slower)
+    for name in ('spread', 'height', 'tension'):
+        assert getattr(led, name) == pytest.approx(getattr(cold, name), rel=0.01)
+    power = math.log(net.tension / led.tension) / math.log(STATE.speed / slower.speed)
+    assert 1.4 < power < 1.8
+    assert held(coarse, STATE, None).tension < 0.9 * net.tension

@@ -1,19 +1,22 @@
 """Steady states of the tank's net on its floor."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.studies.flume.states import FlumeState
-from trawl_ros.model.gear_model import build_model
+from trawl_ros.lab.studies.flume.states import BRIDLE, SHACKLE, SWEEP, TRUNCATED, FlumeState
+from trawl_ros.model.assembly import bar_tensions
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.twine_drag import VISCOSITY, with_twine_drag
 
-LEG, SHORTER = 18.5, 11.6
-"""Length (m) of the legs from the pulling points to what follows, normal and short: the way from
-pulling point to wing tip that spreads and printed angles of trials 1 and 7 leave, less 54.9 m."""
-
-SWEEP, BEHIND_SWEEP = 27.4, 27.4
+STUB = 0.5
+"""Length (m) of the rope without weight and drag between a mast and what follows."""
 
 PRECISE = 0.002
 """Height (m) over the floor at which the footrope lies on it."""
@@ -21,14 +24,28 @@ PRECISE = 0.002
 FIRST_SHARE, STEP_SHARE, MOST = 0.2, 0.02, 30
 """Shares of the footrope's weight that the search tries first; and how often it tries."""
 
+SCALE = 8
+"""The tank's net was this many times smaller: readings are multiples of 0.08 m, a centimetre in the
+tank. Speeds went with the root of it, so Reynolds numbers with its power of 3/2."""
+
+ROUNDS = 2
+"""Rounds in which the first equilibrium and a model that depends on it settle together; each later
+one has the drag of the one before, which is centimetres away."""
+
+
+STEPS = 4
+"""Steps in which a net is led from one state to another."""
+
 
 @dataclass(frozen=True)
 class HeldNet:
-    """Net held by its pulling points: its equilibrium, and what the floor carries of the
+    """Net held by its pulling points: its model and equilibrium, and what the floor carries of the
     footrope (N).
     """
 
+    model: GearModel
     found: Equilibrium
+    elevation: float
     floor: float
 
     @property
@@ -47,12 +64,57 @@ class HeldNet:
         seen = self.found.observables
         return seen.port_tension + seen.starboard_tension
 
+    @property
+    def laid(self) -> float:
+        """Weight in water (N) of the lower bridles, which the floor carries; they are made as the
+        upper ones.
+        """
+        return 2.0 * (BRIDLE + SHACKLE) * self.model.gear.bridle.weight_in_water_n_m
 
-def held(gear: GearRecord, state: FlumeState) -> HeldNet:
+    @property
+    def lower_spread(self) -> float:
+        """Distance (m) between the lower wing tips."""
+        ends = self._nodes[self.model.layout.footrope[[0, -1]]]
+        return float(np.linalg.norm(ends[1] - ends[0]))
+
+    @property
+    def wing_height(self) -> float:
+        """Height (m) of the upper wing tips above the floor."""
+        return float(self._nodes[self.model.layout.headrope[0], 2]) + self.elevation
+
+    @property
+    def lower_share(self) -> float:
+        """Share of the lower bridles in the pull of all."""
+        pulls = bar_tensions(self.model, self.found.state, self.found.tow)
+        upper, lower = (
+            float(np.mean(pulls[own]))
+            for name, _, own in self.model.layout.lines
+            if name in ('port_upper_bridle', 'port_lower_bridle')
+        )
+        return lower / (upper + lower)
+
+    @property
+    def _nodes(self) -> FloatArray:
+        return np.real(self.found.state.nodes)
+
+
+def in_the_tank(model: GearModel, found: Equilibrium) -> GearModel:
+    """Copy of a gear whose netting has the drag of the tank's small twine and slow water."""
+    return with_twine_drag(model, found, VISCOSITY * SCALE**1.5)
+
+
+def held(
+    gear: GearRecord,
+    state: FlumeState,
+    settled: Callable[[GearModel, Equilibrium], GearModel] | None = in_the_tank,
+    near: HeldNet | None = None,
+) -> HeldNet:
     """Find the net of a state, with its footrope on the floor.
 
-    The floor carries legs and lower bridles, and of the footrope as much as lets its middle lie
+    The floor carries sweeps and lower bridles, and of the footrope as much as lets its middle lie
     where the floor is: what is left on the net is sought, spread evenly. There is no friction.
+    ``settled`` changes the model by the equilibrium that it is in; None leaves the coefficients of
+    the gear file. The search begins at ``near``, or cold.
 
     Raises
     ------
@@ -60,24 +122,30 @@ def held(gear: GearRecord, state: FlumeState) -> HeldNet:
         If the net comes to rest nowhere on the way.
     """
     whole = gear.footrope.weight_in_water_n_m * (gear.footrope.length_m or 0.0)
-    leg = (SHORTER if state.short else LEG) + (SWEEP if state.sweeps else 0.0)
-    point = OperatingPoint(leg, leg, state.speed)
+    length = SWEEP if state.sweeps else STUB
+    point = OperatingPoint(length, length, state.speed)
 
-    def below(share: float, start: Equilibrium | None) -> tuple[float, Equilibrium]:
-        model = build_model(_rigged(gear, state, share))
+    def below(share: float, start: Equilibrium | None) -> tuple[float, GearModel, Equilibrium]:
+        model = rigged = build_model(_rigged(gear, state, share))
+        if settled is not None and start is not None:
+            model = settled(rigged, start)
         found = find_equilibrium(model, point, start)
+        for _ in range(ROUNDS if settled is not None and start is None else 0):
+            assert settled is not None
+            model = settled(rigged, found)
+            found = find_equilibrium(model, point, found)
         seen = found.observables
-        return seen.net_depth + seen.vertical_opening - state.elevation, found
+        return seen.net_depth + seen.vertical_opening - state.elevation, model, found
 
-    share, found = FIRST_SHARE, None
-    deep, found = below(share, found)
+    share = FIRST_SHARE if near is None else 1.0 - near.floor / whole
+    deep, model, found = below(share, None if near is None else near.found)
     slope = None
     for _ in range(MOST):
         if abs(deep) <= PRECISE:
-            return HeldNet(found, (1.0 - share) * whole)
+            return HeldNet(model, found, state.elevation, (1.0 - share) * whole)
         step = STEP_SHARE if slope is None else -deep / slope
         step = max(-0.2, min(0.2, step))
-        deeper, found = below(share + step, found)
+        deeper, model, found = below(share + step, found)
         slope = (deeper - deep) / step
         share, deep = share + step, deeper
     raise NoSteadyState(
@@ -86,19 +154,52 @@ def held(gear: GearRecord, state: FlumeState) -> HeldNet:
     )
 
 
+def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet) -> HeldNet:
+    """Lead the net of a known state to another one of the same rig, in equal steps.
+
+    Raises
+    ------
+    NoSteadyState
+        If it comes to rest no more on the way: with the trial it was led from, and how far it came.
+    """
+    reached = 0
+    for step in range(1, STEPS + 1):
+        share = step / STEPS
+        between = replace(
+            state,
+            **{
+                name: getattr(known, name) + share * (getattr(state, name) - getattr(known, name))
+                for name in ('speed', 'pulling_points', 'elevation')
+            },
+        )
+        try:
+            net = held(gear, between, near=net)
+        except NoSteadyState as reason:
+            raise NoSteadyState(
+                f'led from trial {known.trial} the net came {reached} of {STEPS} steps: {reason}'
+            ) from None
+        reached = step
+    return net
+
+
 def _rigged(gear: GearRecord, state: FlumeState, share: float) -> GearRecord:
     """Gear as it stood for a state, with a share of the footrope's weight."""
     assert gear.pair is not None
     foot = gear.footrope.weight_in_water_n_m * share
-    bridles = gear.bridles
-    if state.sweeps:
-        bridles = tuple(
-            bridle.model_copy(update={'length_m': BEHIND_SWEEP}) for bridle in bridles or ()
+    length = SWEEP if state.sweeps else TRUNCATED if state.short else BRIDLE
+    bridles = tuple(
+        bridle.model_copy(
+            update={'length_m': length + (SHACKLE if bridle.at_net == 'lower' else 0.0)}
         )
+        for bridle in gear.bridles or ()
+    )
+    front = {'weight_in_water_n_m': 0.0}
+    if not state.sweeps:
+        front |= {'normal_drag': 0.0, 'tangential_drag': 0.0, 'segments': 2}
     return gear.model_copy(
         update={
             'pair': gear.pair.model_copy(update={'distance_m': state.pulling_points}),
-            'warp': gear.warp.model_copy(update={'weight_in_water_n_m': 0.0}),
+            'warp': gear.warp.model_copy(update=front),
             'footrope': gear.footrope.model_copy(update={'weight_in_water_n_m': foot}),
             'bridles': bridles,
         }

@@ -15,6 +15,18 @@ TRAWL = '83-112'
 TUNED = ('64.0',)
 """Trial at which one number of the gear file was set: it never counts."""
 
+BRIDLE, SWEEP, SHACKLE = 54.9, 27.4, 0.61
+"""Lengths (m): of bridles as printed (standard ones; others follow a sweep and are as long as
+it), and what lengthens the lower ones: printed spreads of doors and lower wings and bridle angles
+leave 70.7 m (70.5 to 71.0) of rope on either side, for bridles, legs and 0.6 m."""
+
+TRUNCATED = 47.95
+"""Length (m) of standard bridles in rigs with short ones, of whose rope 63.8 m are left."""
+
+LEG = 15.24
+"""Legs of the doors and their extensions (m), 10 and 40 feet, which were not in the tank: the
+report of the test says so, and that it worked spreads of doors out from them and the bridle
+angle."""
 
 MOST_ROWS = 10_000
 
@@ -36,13 +48,15 @@ class FlumeState:
     elevation
         Height (m) of the pulling points above the floor.
     pulling_points
-        Distance (m) between them.
+        Distance (m) between them: of the doors, less what the legs would add on both sides.
     speed
         Of the water, m/s.
     spread, height
         Distance (m) between the upper wing tips, height (m) of the headrope above the footrope.
     tension
         Of both sides together, N.
+    lower_spread, wing_height
+        Distance (m) between the lower wing tips, height (m) of the upper ones above the floor.
     """
 
     trial: str
@@ -55,6 +69,8 @@ class FlumeState:
     spread: float
     height: float
     tension: float
+    lower_spread: float = math.nan
+    wing_height: float = math.nan
 
     @property
     def counts(self) -> bool:
@@ -88,17 +104,20 @@ def read_states(path: Path) -> list[FlumeState]:
 
 
 def _state(row: dict[str, str]) -> FlumeState:
+    angle = math.radians(float(row['bridle_angle_deg']))
     return FlumeState(
         trial=row['trial'],
         sweeps=row['bridles'] != 'standard',
         short=row['bridle_length'] == 'short',
         catch=row['catch'] != 'empty',
         elevation=1e-3 * float(row['pulling_point_elevation_mm']),
-        pulling_points=float(row['door_spread_m']),
+        pulling_points=float(row['door_spread_m']) - 2.0 * LEG * math.sin(angle),
         speed=UNITS['kn'].size * float(row['towing_speed_kn']),
         spread=_number(row['spread_u_wing_m']),
         height=_number(row['opening_headline_m']),
         tension=UNITS['tf'].size * _number(row['bridle_tension_total_t']),
+        lower_spread=_number(row['spread_l_wing_m']),
+        wing_height=_number(row['upper_wingend_height_m']),
     )
 
 

@@ -9,10 +9,10 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import EffectRecord, GearRecord
 from trawl_ros.lab.validation.sea.published import HaulRecord
 from trawl_ros.lab.validation.sea.quantities import quantities
-from trawl_ros.lab.validation.sea.twine_drag import with_twine_drag
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.observables import Observables
-from trawl_ros.solver.equilibrium import SteadyState, steady_state
+from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, steady_state
+from trawl_ros.solver.twine_drag import with_twine_drag
 
 STRUMMING = 2.35
 """Normal drag coefficient of a tow cable that vibrates at sea, the middle of 2.2 to 2.5."""
@@ -34,7 +34,7 @@ class Change:
     what: str
     gear: Callable[[GearRecord], GearRecord] = lambda gear: gear
     speed: float = 1.0
-    settled: Callable[[GearModel, SteadyState], GearModel] | None = None
+    settled: Callable[[GearModel, Equilibrium], GearModel] | None = None
 
 
 def _strumming(gear: GearRecord) -> GearRecord:
@@ -96,7 +96,7 @@ def _settled(model: GearModel, change: Change, haul: HaulRecord) -> tuple[GearMo
     steady, settled = steady_state(model, haul.warp_m, speed), model
     for _ in range(ROUNDS if change.settled is not None else 0):
         assert change.settled is not None
-        settled = change.settled(model, steady)
+        settled = change.settled(model, steady.equilibrium)
         steady = steady_state(settled, haul.warp_m, speed, start=steady.equilibrium)
     return settled, steady
 

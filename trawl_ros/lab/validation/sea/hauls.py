@@ -8,6 +8,7 @@ import numpy as np
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
+from trawl_ros.lab.validation.sea.doubts import doubts_table
 from trawl_ros.lab.validation.sea.figure import haul_figure
 from trawl_ros.lab.validation.sea.modelled import ModelledHaul, modelled, right_sign
 from trawl_ros.lab.validation.sea.published import PointRecord, TrendRecord, published_hauls
@@ -131,6 +132,7 @@ def run(small: bool) -> Findings:
             points_table(hauls, published),
             trends_table(trends, by_name, published),
             changes_table(hauls, small=small),
+            doubts_table(hauls, small=small),
             gears_table(gears, published),
             TextTable(
                 'Looked at and not used.',

@@ -14,7 +14,7 @@ from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.assembly import motion_of, points_of
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import tension
-from trawl_ros.solver.equilibrium import SteadyState
+from trawl_ros.solver.equilibrium import Equilibrium
 
 VISCOSITY = 1.05e-6
 """Kinematic viscosity of sea water at 20 °C, m²/s."""
@@ -37,12 +37,15 @@ def friction_coefficient(across: FloatArray, along: FloatArray) -> FloatArray:
     return coefficient
 
 
-def with_twine_drag(model: GearModel, steady: SteadyState) -> GearModel:
-    """Copy of a gear whose netting has the drag of its twine's Reynolds numbers in a steady state.
+def with_twine_drag(
+    model: GearModel, found: Equilibrium, viscosity: float = VISCOSITY
+) -> GearModel:
+    """Copy of a gear whose netting has the drag of its twine's Reynolds numbers in an equilibrium.
 
-    Shielding of the netting stays; ropes and knots keep their coefficients.
+    Shielding of the netting stays; ropes and knots keep their coefficients. A kinematic viscosity
+    (m²/s) that is larger than that of water stands for a model of the gear.
     """
-    found, net = steady.equilibrium, model.gear.netting
+    net = model.gear.netting
     motion = motion_of(model, points_of(model, found.state, found.tow), found.tow)
     unit = tension(model.bars, motion)[1]
     flow = model.water.current(motion.height) - motion.velocity
@@ -54,24 +57,25 @@ def with_twine_drag(model: GearModel, steady: SteadyState) -> GearModel:
     # Of round twines side by side the volume over the area says how thick they are.
     area = np.array([max(bar.area, 1e-12) for bar in mesh])
     thick = 4.0 / np.pi * np.array([bar.volume for bar in mesh]) / area
-    cross, sliding = (speed[numbers] * thick / VISCOSITY for speed in (across, along))
+    cross, sliding = (speed[numbers] * thick / viscosity for speed in (across, along))
     normal, friction = bars.normal_drag.copy(), bars.friction.copy()
     normal[numbers] *= normal_coefficient(cross) / net.normal_drag
     friction[numbers] *= friction_coefficient(cross, sliding) / net.friction
     return replace(
         model,
         bars=replace(bars, normal_drag=normal, friction=friction),
-        lump_drag_area=model.lump_drag_area * _codend_share(model, steady, thick, numbers),
+        lump_drag_area=model.lump_drag_area
+        * _codend_share(model, found, thick, numbers, viscosity),
     )
 
 
 def _codend_share(
-    model: GearModel, steady: SteadyState, thick: FloatArray, numbers: IntArray
+    model: GearModel, found: Equilibrium, thick: FloatArray, numbers: IntArray, viscosity: float
 ) -> FloatArray:
     """Drag area (n,) of the nodes of the codend's line over that of the gear file, 1 elsewhere."""
     net, angle = model.gear.netting, np.radians(model.gear.netting.codend_mesh_angle_deg)
     line = np.array([bar.group == 'codend' for bar in model.net_mesh.bars])
-    reynolds = steady.equilibrium.point.speed * thick[line] / VISCOSITY
+    reynolds = found.point.speed * thick[line] / viscosity
     cross, sliding = reynolds * np.sin(angle), reynolds * np.cos(angle)
     cubes = np.sin(angle) ** 3, np.pi * np.cos(angle) ** 3
     law = normal_coefficient(cross), friction_coefficient(cross, sliding)

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.validation.sea.twine_drag import (
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.equilibrium import steady_state
+from trawl_ros.solver.twine_drag import (
     VISCOSITY,
     friction_coefficient,
     normal_coefficient,
     with_twine_drag,
 )
-from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver.equilibrium import steady_state
 
 
 def test_coefficients_are_those_of_the_formulas() -> None:
@@ -29,7 +29,7 @@ def test_coefficients_are_those_of_the_formulas() -> None:
 def test_only_netting_changes_and_keeps_its_shielding() -> None:
     model = build_model(load_gear('krill_1600').refined(net=0.4))
     steady = steady_state(model, 250.0, 1.08)
-    changed = with_twine_drag(model, steady)
+    changed = with_twine_drag(model, steady.equilibrium)
     numbers = np.concatenate(
         [own for name, _, own in model.layout.lines if name in ('netting', 'codend')]
     )
