@@ -310,13 +310,13 @@ def build_model(gear: GearRecord) -> GearModel:
 
     record = gear.netting
     added = (record.added_mass_normal, 0.0)
+    first, before, nodes = len(build.ends), len(build.lines), net.tolist()
     for bar in mesh.bars:
         # The codend's drag is on its nodes, its volume and stiffness in its bars.
         area = 0.0 if bar.group == 'codend' else bar.area
         row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
         drag = (record.normal_drag * bar.shielding, record.friction * bar.shielding)
-        number = build.bar(net[bar.start], net[bar.end], bar.rest, (*row, *drag, *added, bar.bow))
-        build.lines.append((bar.group, [int(net[bar.start]), int(net[bar.end])], [number]))
+        build.bar(nodes[bar.start], nodes[bar.end], bar.rest, (*row, *drag, *added, bar.bow))
     rests_of, sides = _frame_rests(gear, mesh), mesh.wing_ends
     for name, rope, rim, rests in (
         ('headrope', gear.headrope, mesh.headrope, rests_of[0]),
@@ -361,7 +361,13 @@ def build_model(gear: GearRecord) -> GearModel:
     lumps += buoyant
     guess = np.full((build.count, 3), np.nan)
     guess[net] = mesh.positions
-    ends = np.array([[build.resolve(a), build.resolve(b)] for a, b in build.ends])
+    ends = build.resolved(build.ends)
+    ropes = [(name, build.resolved(points), np.array(bars)) for name, points, bars in build.lines]
+    numbers = np.arange(len(ends))
+    netting = [
+        (bar.group, ends[number], numbers[number : number + 1])
+        for number, bar in enumerate(mesh.bars, first)
+    ]
     kite = replace(mesh.kite, nodes=net[mesh.kite.nodes])
     return GearModel(
         gear=gear,
@@ -388,10 +394,7 @@ def build_model(gear: GearRecord) -> GearModel:
             footrope=net[mesh.footrope],
             kite=kite,
             top_warp_bars=np.array(top_bars),
-            lines=tuple(
-                (name, np.array([build.resolve(p) for p in points]), np.array(bars))
-                for name, points, bars in build.lines
-            ),
+            lines=(*ropes[:before], *netting, *ropes[before:]),
         ),
         first_guess=guess,
         net_mesh=mesh,

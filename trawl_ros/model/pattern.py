@@ -1,13 +1,16 @@
 """The sparsity pattern of a gear's matrices, found once when its model is built."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import scipy.sparse as sp
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.model.compiled import compiled, fused
+
+PATTERNS = 4
+"""So many patterns are kept: gears that differ in what their bars are made of have the same one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +97,28 @@ def _add(values: FloatArray, slots: IntArray, data: FloatArray) -> None:
 
 def build_pattern(nodes: int, ends: IntArray, kite: IntArray) -> SparsityPattern:
     """The pattern of a gear with ``nodes`` free nodes bars between the points ``ends``
-    and a kite held at the three nodes ``kite``.
+    and a kite held at the three nodes ``kite``; the same object for gears that are alike in these.
     """
+    return _built(nodes, _Numbers(ends), _Numbers(kite))
+
+
+class _Numbers:
+    """Numbers that compare by what they are."""
+
+    def __init__(self, values: IntArray) -> None:
+        self.values = values
+        self._key = values.shape, values.tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Numbers) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+@lru_cache(PATTERNS)
+def _built(nodes: int, bars: _Numbers, held: _Numbers) -> SparsityPattern:
+    ends, kite = bars.values, held.values
     i, j = ends.T
     dof = 3 * nodes + 12
     free_i, free_j = i < nodes, j < nodes

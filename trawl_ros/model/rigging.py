@@ -1,5 +1,7 @@
 """Rigging of a gear as nodes and bars: ropes, bridles, and what hangs on them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
@@ -58,13 +60,13 @@ class GearBuilder:
         self.lines.append((name, points, bars))
         return bars
 
-    def resolve(self, number: int) -> int:
-        """Final number of a point."""
-        if number <= self.BLOCK:
-            return self.count + 6 + (self.BLOCK - number)
-        if number <= self.FASTENING:
-            return self.count + (self.FASTENING - number)
-        return number
+    def resolved(self, numbers: Sequence[int] | Sequence[tuple[int, int]]) -> IntArray:
+        """Final numbers of points."""
+        points = np.array(numbers)
+        fastening = self.count + (self.FASTENING - points)
+        block = self.count + 6 + (self.BLOCK - points)
+        rigged = np.where(points <= self.BLOCK, block, fastening)
+        return np.where(points <= self.FASTENING, rigged, points)
 
 
 def rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:

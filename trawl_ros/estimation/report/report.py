@@ -220,7 +220,8 @@ def report(
         raise TrawlError(identification.why_not() or 'nothing is estimated')
     windows, weight = estimator.windows, estimator.options.prior_weight
     number = 1 + max(window.tow for window in windows)
-    at_end = solve_windows(estimator, estimate.values, estimator.fit.net)
+    own = [linear.state for linear in estimator.fit.windows]
+    at_end = solve_windows(estimator, estimate.values, estimator.fit.net, own)
     return Report(
         estimate=estimate,
         prior=estimator.prior,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from trawl_ros.estimation.fit.posterior import GATE
 from trawl_ros.estimation.fit.whiteness import Whiteness, ljung_box
 from trawl_ros.estimation.pipeline import WindowUsed
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+
+if TYPE_CHECKING:
+    from trawl_ros.solver.equilibrium import Equilibrium
 
 
 @dataclass(frozen=True)
@@ -69,9 +73,13 @@ class ChannelResiduals:
 
 
 def solve_windows(
-    estimator: Estimator, coefficients: FloatArray, net: FloatArray | None = None
+    estimator: Estimator,
+    coefficients: FloatArray,
+    net: FloatArray | None = None,
+    own: Sequence['Equilibrium'] = (),
 ) -> list[Linearised | None]:
-    """Solve the model at the inputs of each window, from the nearest one already solved.
+    """Solve the model at the inputs of each window, from its own state where that is known, else
+    from the nearest one already solved.
 
     Parameters
     ----------
@@ -81,6 +89,8 @@ def solve_windows(
         Shape (12,).
     net
         Factors (2,) on drag and weight of the net; as in the gear file if None.
+    own
+        Steady states of the windows at these coefficients or nearby.
 
     Returns
     -------
@@ -98,7 +108,7 @@ def solve_windows(
         away = np.abs(inputs[:row] / inputs[row] - 1.0).sum(axis=1)
         solved = [solved_in_order[i] for i in np.argsort(away, kind='stable')]
         near = next((linear.state for linear in solved if linear is not None), None)
-        starts = (None,) if near is None else (near, None)
+        starts = (*own[row : row + 1], *(() if near is None else (near,)), None)
         try:
             linear = linearise(
                 estimator.predictor, estimator.observables, window, coefficients, starts, net=net
