@@ -262,7 +262,7 @@ class _Damaged:
 
     def _open(self, path: Path) -> McapFile | None:
         try:
-            stated = self._metadata.stated() if self._metadata else None
+            stated = self._metadata.stated if self._metadata else None
             return McapFile(path, self._report, stated)
         except BagError as reason:
             self._report(str(reason))

@@ -249,8 +249,7 @@ def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: boo
     unpacked = Unpacked(files) if _mode(metadata) == 'file' else None
     if unpacked:
         files = unpacked.plain
-    stated = metadata.stated()
-    opened = [_open_file(file, report, stated) for file in files]
+    opened = [_open_file(file, report, metadata.stated) for file in files]
     source = BagSource(opened, metadata, report, unpacked)
     for disagreement in source.disagreements():
         if not lenient:
@@ -296,5 +295,7 @@ def _mode(metadata: BagMetadata | None) -> str:
     return '' if mode == 'none' else mode
 
 
-def _open_file(path: Path, report: Report, stated: StatedTopics | None = None) -> StorageFile:
+def _open_file(
+    path: Path, report: Report, stated: Callable[[], StatedTopics] | None = None
+) -> StorageFile:
     return Database(path, report) if path.suffix == '.db3' else McapFile(path, report, stated)

@@ -54,7 +54,7 @@ class McapFile:
     report
         Takes a sentence for each thing that is wrong but can be lived with.
     stated
-        Topics by the bag's metadata, for a file that has lost their descriptions.
+        Gives the topics by the bag's metadata, for a file that has lost their descriptions.
 
     Attributes
     ----------
@@ -71,7 +71,10 @@ class McapFile:
     distro = ''
 
     def __init__(
-        self, path: Path, report: Callable[[str], None], stated: StatedTopics | None = None
+        self,
+        path: Path,
+        report: Callable[[str], None],
+        stated: Callable[[], StatedTopics] | None = None,
     ) -> None:
         self.path = path
         self._report = report
@@ -255,7 +258,7 @@ class McapFile:
             sample_messages(chunks, lost),
             [*self._known.records(), *read_remains(stream, self._damaged, self._size)],
             {n: topic for n, (topic, _) in self._known.all().items() if n not in lost},
-            self._stated,
+            self._stated() if self._stated else None,
             in_order=self._library == LIBRARY,
         )
         reasons: defaultdict[str, list[str]] = defaultdict(list)

@@ -17,8 +17,6 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import ReaderError
-from rosbags.rosbag2.metadata import parse_qos
 
 from trawl_ros.core.errors import BagError
 
@@ -77,6 +75,10 @@ def parse_profiles(topic: str, offered: Any) -> tuple[Qos, ...]:
     BagError
         If it is neither, or lacks a policy.
     """
+    # Imported here: it takes a recorder's start long, which reads none.
+    from rosbags.rosbag2 import ReaderError
+    from rosbags.rosbag2.metadata import parse_qos
+
     try:
         if isinstance(offered, str) and len(offered) > MAX_TEXT:
             raise ValueError(f'{len(offered)} characters')
@@ -97,4 +99,6 @@ def parse_profiles(topic: str, offered: Any) -> tuple[Qos, ...]:
 @lru_cache(maxsize=64)
 def _read(text: str) -> tuple[Qos, ...]:
     """Read profiles from text: slowly, and that of most topics is the same."""
+    from rosbags.rosbag2.metadata import parse_qos
+
     return tuple(parse_qos(text))
