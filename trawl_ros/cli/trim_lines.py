@@ -27,9 +27,11 @@ def points_lines(points: FloatArray) -> tuple[str, ...]:
 def state_line(warp: float, speed: float, steady: 'SteadyState') -> str:
     """A steady state at a warp length (m) and speed (m/s)."""
     observables: Observables = steady.observables
+    # δ has no sign: which way the port board leans its roll tells.
+    inward = ' inward' if observables.port_roll < 0.0 else ''
     return (
         f'at {warp:g} m and {speed:g} m/s: α {np.degrees(observables.port_attack):.1f}°, '
-        f'δ {np.degrees(observables.port_inclination):.1f}°, '
+        f'δ {np.degrees(observables.port_inclination):.1f}°{inward}, '
         f'β {np.degrees(observables.port_slip):.1f}°, '
         f'spread {observables.door_spread:.1f} m, door depth {observables.door_depth:.1f} m, '
         f'tension {observables.warp_tension / 1e3:.1f} kN; the slowest motion settles in '
