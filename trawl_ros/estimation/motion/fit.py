@@ -201,9 +201,10 @@ def fit_motion(
             break
     data = search.data(search.linear, search.here)
     place: Place = search.here
+    wide = sizes.tempered(options.widened)
     if converged:
-        place = step(data, search.here, prior, sizes, options.largest_step)
-    told = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
+        place = step(data, search.here, prior, wide, options.largest_step)
+    told = joined(data.information(wide), data.precisions(wide.log), data.shared)
     covariance = np.linalg.inv(told.matrix + np.eye(data.shared))[:12, :12]
     return MotionFit(
         values=prior.start + prior.std * place[0][:12],

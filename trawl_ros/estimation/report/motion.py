@@ -11,8 +11,8 @@ from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 CAUTION = (
-    'Take intervals in motion for too narrow: of the one tow whose plant is not the model, they '
-    'were (docs/identification/motion.md).'
+    'Intervals in motion are those of errors twice as large as found, for a plant that is not the '
+    'model; no trials have scored them yet (docs/identification/motion.md).'
 )
 
 MOST_NAMED = 3
