@@ -59,7 +59,7 @@ def test_a_finding_is_published_acknowledged_and_kept(
 ):
     book = tmp_path / 'book.jsonl'
     with open_graph(DOMAIN) as graph:
-        node = graph.add(DiscrepancyNode, gear=str(coarse_gear), log_book=str(book))
+        node = graph.add(DiscrepancyNode, gear=str(coarse_gear), watch=True, log_book=str(book))
         bridge = graph.add(Bridge)
         graph.until(lambda: node.subscribers()[FINDINGS][0])
         _play(graph, moving_bag, rate=rate)
@@ -85,7 +85,7 @@ def test_a_bag_that_is_looped_is_two_tows_and_a_node_that_is_restarted_counts_on
     book = tmp_path / 'book.jsonl'
     for first in (1, 3):
         with open_graph(DOMAIN) as graph:
-            node = graph.add(DiscrepancyNode, gear=str(coarse_gear), log_book=str(book))
+            node = graph.add(DiscrepancyNode, gear=str(coarse_gear), watch=True, log_book=str(book))
             for _ in range(2):
                 _play(graph, moving_bag, rate=0.0)
             graph.until(node._idle, timeout_s=600.0)
@@ -96,6 +96,6 @@ def test_a_bag_that_is_looped_is_two_tows_and_a_node_that_is_restarted_counts_on
 
 def test_nothing_is_watched_where_it_is_not_wanted(open_graph, coarse_gear, tmp_path):
     with open_graph(DOMAIN) as graph:
-        node = graph.add(partial(DiscrepancyNode), gear=str(coarse_gear), watch=False)
+        node = graph.add(partial(DiscrepancyNode), gear=str(coarse_gear))
         assert [one.name for one in node.statuses()] == ['discrepancy']
         node.finish_work()

@@ -4,10 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
-from trawl_ros.core.progress import OnProgress, ignore
+from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
+from trawl_ros.diagnosis.onset.knowledge import of_gear_file
+from trawl_ros.diagnosis.onset.tows import OnsetsInTow, by_estimate, onsets_in
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.repair import source
 from trawl_ros.diagnosis.report.writing import write_diagnosis
@@ -163,6 +166,7 @@ def diagnose(
     namespace: str = NAMESPACE,
     scheduler: str | None = None,
     force: bool = False,
+    onset: bool = False,
     on_note: OnNote = _silent,
     on_progress: OnProgress = ignore,
 ) -> Diagnosis:
@@ -176,6 +180,8 @@ def diagnose(
         Tows of when the gear was known to be in order.
     gear, out, namespace, scheduler, force, on_note, on_progress
         As in `identify`. Where an effect is named, ``out`` also takes ``model.yaml``.
+    onset
+        True if each of ``bags`` is watched for what begins in it, a minute for each hour of tow.
 
     Returns
     -------
@@ -208,6 +214,10 @@ def diagnose(
     else:
         in_order = frozenset(window.tow for window in known)
         result = diagnose_windows(record, windows, names, in_order, on_progress)
+        if onset:
+            result = replace(
+                result, onsets=_onsets(result, paths[len(baseline) :], namespace, on_progress)
+            )
     if out is not None:
         write_diagnosis(result, [source(path) for path in paths], Path(out))
     return result
@@ -264,6 +274,21 @@ def plan_trial(
     if out is not None:
         write_plan(plan, str(gear), Path(out))
     return plan
+
+
+def _onsets(
+    diagnosis: Diagnosis, paths: Sequence[Path], namespace: str, on_progress: OnProgress
+) -> tuple[OnsetsInTow, ...]:
+    """What began in each tow, by the boards as they were fitted, or else by the gear file."""
+    known = of_gear_file(diagnosis.gear)
+    if diagnosis.base is not None:
+        known = by_estimate(diagnosis.base.estimate)
+    found = []
+    for number, path in enumerate(paths):
+        on_progress(WorkProgress('watching for what begins', number, len(paths), 'tows'))
+        samples = (sample for _, sample in SampleStream([path], namespace))
+        found.append(onsets_in(diagnosis.gear, known, path.name, samples))
+    return tuple(found)
 
 
 def _gear(gear: str | Path | GearRecord) -> GearRecord:

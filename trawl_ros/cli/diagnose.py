@@ -36,6 +36,10 @@ EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_T
 @NAMESPACE_OPTION
 @SCHEDULER_OPTION
 @FORCE_OPTION
+@click.option(
+    '--onset', is_flag=True, help='Watch each of BAGS for what begins in it; a minute or more for '
+    'each hour of tow.',
+)  # fmt: skip
 @click.pass_context
 def command(
     context: click.Context,
@@ -46,6 +50,7 @@ def command(
     namespace: str,
     scheduler: str | None,
     force: bool,
+    onset: bool,
 ) -> None:
     """Find where model and BAGS disagree, and name what the model lacks.
 
@@ -63,6 +68,7 @@ def command(
             namespace=namespace,
             scheduler=scheduler,
             force=force,
+            onset=onset,
             on_note=lambda note: console.print(note, style='yellow', markup=False),
             on_progress=display,
         )

@@ -9,6 +9,7 @@ from trawl_ros.diagnosis.locating import Where
 from trawl_ros.diagnosis.mimicry import Mimic
 from trawl_ros.diagnosis.naming import Named
 from trawl_ros.diagnosis.next_tow import Proposal
+from trawl_ros.diagnosis.onset.tows import OnsetsInTow
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import Verdict
 from trawl_ros.diagnosis.score_test import ScoreTest
@@ -45,6 +46,8 @@ class Diagnosis:
     mimics
         Changes of the gear file that explain as much as the best effect, or where nothing is named
         more; the likeliest first.
+    onsets
+        What began in the tows; empty where that was not asked for.
 
     Examples
     --------
@@ -70,6 +73,7 @@ class Diagnosis:
     proposals: tuple[Proposal, ...] = ()
     empirical: Empirical | None = None
     mimics: tuple[Mimic, ...] = ()
+    onsets: tuple[OnsetsInTow, ...] = ()
 
     @property
     def best(self) -> Weighed | None:

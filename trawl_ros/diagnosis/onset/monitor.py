@@ -44,8 +44,8 @@ class OnsetOptions:
     settled
         Stretches since its onset after which a finding stays as it is.
     limit
-        Rarity beyond which a finding is raised. By `trawl study onset --tune`: at most one false
-        finding in 230 h, over all candidates and onsets.
+        Rarity beyond which a finding is raised. `trawl study onset --limit` draws what white
+        innovations exceed once in 230 h, over all candidates and onsets; this is above it.
     inflation
         Factor on the std of errors that are stated, as for steady windows.
     """
@@ -60,6 +60,7 @@ class OnsetOptions:
 class WatchedStretch:
     """Stretch as it was watched: the readings beside the model's, and the evidence after it.
 
+    ``marks`` (w, r, p) are what the candidates would leave in the innovations, by age.
     ``why_not`` is the reason where nothing was compared.
     """
 
@@ -67,7 +68,7 @@ class WatchedStretch:
     means: FloatArray
     towed: TowedStretch | None
     white: Whitened | None
-    signatures: FloatArray | None
+    marks: FloatArray | None
     evidence: tuple[OnsetEvidence, ...]
     why_not: str = ''
 
@@ -96,7 +97,7 @@ class _Watch:
     responses: OnsetResponses | None = None
     absorbed: list[_Absorbed] = field(default_factory=list)
     taken: int = 0
-    moving: bool = False
+    moving: tuple[bool, bool] = (False, False)
 
 
 class OnsetMonitor:
@@ -203,7 +204,7 @@ class OnsetMonitor:
         if watch.filter is None or watch.responses is None:
             self._tell(last, means, None, None, None, ())
             return
-        if last.moves and not watch.moving:
+        if any(now and not was for now, was in zip(last.moves, watch.moving, strict=True)):
             watch.filter.begin_state()
         watch.moving = last.moves
         lasting = None if model is None else model.by_values
@@ -215,9 +216,9 @@ class OnsetMonitor:
         if lasting is not None:
             ages = np.arange(self.options.window)
             signatures = watch.responses.since(lasting, ages, self._growing)
-        watch.bank.step(watch.filter, white, signatures)
+        marks = watch.bank.step(watch.filter, white, signatures)
         evidence = tuple(watch.bank.best()) if white is not None else ()
-        self._tell(last, means, model, white, signatures, evidence)
+        self._tell(last, means, model, white, marks, evidence)
         if evidence:
             yield from self._judge(last, evidence)
         if self.open is None and self._has_moved():
@@ -243,7 +244,7 @@ class OnsetMonitor:
 
     def _tell(
         self, last: LastStretch, means: FloatArray, towed: TowedStretch | None,
-        white: Whitened | None, signatures: FloatArray | None,
+        white: Whitened | None, marks: FloatArray | None,
         evidence: tuple[OnsetEvidence, ...],
     ) -> None:  # fmt: skip
         if white is None:
@@ -251,7 +252,7 @@ class OnsetMonitor:
         else:
             self.watched += 1
         self._on_stretch(
-            WatchedStretch(last.end_ns, means, towed, white, signatures, evidence, self.why_not)
+            WatchedStretch(last.end_ns, means, towed, white, marks, evidence, self.why_not)
         )
 
     def _judge(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:

@@ -82,7 +82,7 @@ class RatioBank:
 
     def step(
         self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None
-    ) -> None:
+    ) -> FloatArray | None:
         """Advance by a stretch, in which another onset may lie.
 
         Parameters
@@ -93,6 +93,11 @@ class RatioBank:
             Its innovations; None where there are none.
         signatures : (w, k, p) array
             Of the stretch, by age.
+
+        Returns
+        -------
+        array or None
+            Marks (w, r, p) of the signatures in the innovations, of unit size; None without any.
         """
         for array in (self._means, self.products, self.squares):
             array[1:] = array[:-1].copy()
@@ -101,13 +106,14 @@ class RatioBank:
         means = np.moveaxis(self._means, 1, 0)
         whitening.advance(means)
         if white is None or signatures is None:
-            return
+            return None
         own = signatures[:, white.rows] - white.model @ self._means
         marks = np.moveaxis(white.whitened(np.moveaxis(own, 1, 0)), 0, 1)
         self._means += white.gain @ own
         told = np.clip(white.whitened(white.residual), -MOST, MOST)
         self.products += np.einsum('wrp,r->wp', marks, told)
         self.squares += np.matmul(np.swapaxes(marks, 1, 2), marks)
+        return marks
 
     def best(self) -> list[OnsetEvidence]:
         """Evidence for each candidate at its likeliest onset; the rarest first."""

@@ -39,9 +39,8 @@ class LastStretch:
     """Newest stretch of a tow: the ``number``-th since it began.
 
     ``tow`` has it as its ``place``-th, behind those of the minutes before, and ``log_std`` (m/s) is
-    the standard error of the log's mean in it. ``moves`` is true where warps run or the speed
-    changes in it. The tow is None where there is no such stretch, with the reason
-    ``why_not``.
+    the standard error of the log's mean in it. ``moves`` is true where warps run, and where the
+    speed changes in it. The tow is None where there is no such stretch, and ``why_not`` the reason.
     """
 
     number: int
@@ -50,7 +49,7 @@ class LastStretch:
     tow: MovingTow | None = None
     place: int = 0
     log_std: float = UNHEARD_LOG
-    moves: bool = False
+    moves: tuple[bool, bool] = (False, False)
     why_not: str = ''
 
 
@@ -124,11 +123,12 @@ class StretchCutter:
         )
 
 
-def _moves(tow: MovingTow, place: int) -> bool:
+def _moves(tow: MovingTow, place: int) -> tuple[bool, bool]:
     steps = round(tow.stretch_s / tow.inputs.grid_s)
     own = slice(place * steps, (place + 1) * steps + 1)
     running = np.max(np.abs(tow.inputs.rates[own, :2])) > RUNNING_M_S
-    return bool(running or np.ptp(tow.inputs.values[own, 2]) > CHANGED_M_S)
+    first, *_, last = np.array_split(tow.inputs.values[own, 2], 3)
+    return bool(running), bool(abs(last.mean() - first.mean()) > CHANGED_M_S)
 
 
 def _from(read: TowReadings, begin: int) -> TowReadings:

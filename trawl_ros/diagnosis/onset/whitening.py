@@ -36,6 +36,11 @@ STATE_LEAP, LEAPS = 0.5, {'door_spread': 1.5}
 """Std of what a channel is wrong by more or less in the next state of a tow, in its bias: assumed,
 and of the spread as measured at a dock (0.6 m, `config/instruments/default.yaml`)."""
 
+COUNTER_LEAP, LEAP_STRETCHES = 1.7, 11
+"""Std of what a counter is wrong by more or less in the next state, in `COUNTER_STD_M` (0.85 m, as
+measured: 0.6 m in each), and the stretches over which its mean level, which the model follows,
+takes that in."""
+
 COUNTER_STD_M = LIVE.counter_std_m
 """Std of those of the counters, as for the fit in motion."""
 
@@ -90,6 +95,7 @@ class WhiteningFilter:
         self.mean = np.zeros(self.size)
         self.variance = np.eye(self.size)
         self.variance[self._absorbed, self._absorbed] = 0.0
+        self._leaping = 0
 
     @cached_property
     def _starts(self) -> tuple[int, ...]:
@@ -131,8 +137,7 @@ class WhiteningFilter:
         diagonal = np.einsum('ii->i', self.variance)
         leaps = [LEAPS.get(name, STATE_LEAP) for name in WATCHED]
         diagonal[self.calibrations] += np.square(leaps)
-        counters = self._part(2).start
-        diagonal[counters : counters + 2] += 1.0
+        self._leaping = LEAP_STRETCHES
 
     def absorb(self, number: int, scale: float) -> None:
         """Take a value along that has been found, of a size up to ``scale``."""
@@ -212,6 +217,10 @@ class WhiteningFilter:
         for number in (2, 5, 6):
             part = self._part(number)
             diagonal[part] += 1.0 - self._decay[part] ** 2
+        if self._leaping:
+            counters = self._part(2).start
+            diagonal[counters : counters + 2] += COUNTER_LEAP**2 / LEAP_STRETCHES
+            self._leaping -= 1
         diagonal[self._part(3).start] = (log_std * self._inflation) ** 2
 
     def _model(self, towed: TowedStretch, absorbed: FloatArray) -> FloatArray:

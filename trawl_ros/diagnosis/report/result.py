@@ -24,6 +24,7 @@ def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, obje
         'effects': _effects(diagnosis) if sure else [],
         'ambiguous_with': list(dict.fromkeys(ambiguous)) if sure else [],
         'mimics': _mimics(diagnosis),
+        'onsets': _onsets(diagnosis),
         'empirical': _empirical(diagnosis),
         'where': [
             {
@@ -85,6 +86,19 @@ def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
             },
         }
         for name, values in values_of(best.refit).items()
+    ]
+
+
+def _onsets(diagnosis: Diagnosis) -> list[dict[str, object]]:
+    return [
+        {
+            'tow': tow.tow,
+            'minutes_watched': 0.5 * tow.watched,
+            'minutes_without_a_prediction': 0.5 * tow.unwatched,
+            'why_not': tow.why_not,
+            'findings': [found.record() | {'minute': tow.minute(found)} for found in tow.findings],
+        }
+        for tow in diagnosis.onsets
     ]
 
 

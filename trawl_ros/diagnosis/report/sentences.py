@@ -43,6 +43,7 @@ def _headline(diagnosis: Diagnosis) -> str:
 def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
     """Remarks beside the verdict, one sentence each."""
     lines = list(diagnosis.remarks)
+    lines += [line for tow in diagnosis.onsets for line in tow.sentences()]
     best, named, holdout = diagnosis.best, diagnosis.named, diagnosis.holdout
     if diagnosis.verdict == 'NAMED' and named is not None and named.alike:
         lines.append(

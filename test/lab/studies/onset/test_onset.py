@@ -1,0 +1,71 @@
+"""The study of onsets counts what it says it counts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.diagnosis.onset.candidates import candidate_table
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.lab.studies.onset.limit import drawn_rarest
+from trawl_ros.lab.studies.onset.report import write_onset
+from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
+from trawl_ros.lab.studies.onset.study import OnsetPlan
+from trawl_ros.lab.studies.onset.trial import Beginning, OnsetTrial
+from trawl_ros.records.observables import OBSERVABLES
+
+FOUND = OnsetTrial(
+    0, 'kite', 0.35, 900.0, 960.0, 930.0, 'kite', (), 20.0, 0, 1800.0, 330.0, 20.0
+)  # fmt: skip
+CLEAN = OnsetTrial(0, '', 0.0, None, rarity=3.0, watched_s=3600.0, unwatched_s=0.0, seconds=36.0)
+
+
+def test_an_effect_that_begins_is_not_there_before():
+    cell = catalogue()['tension_cell']
+    begin = Beginning(
+        cell.name, cell.sentence, cell.parameters, cell.excited_by, of=cell, begin_h=0.5
+    )
+    shown = dict.fromkeys(OBSERVABLES, 1000.0)
+    values = cell.neutral + np.array([200.0, *np.zeros(len(cell.neutral) - 1)])
+    at = Situation((400.0, 400.0, 2.2), hours=0.49)
+    assert begin.apply_to_sensors(values, shown, at) == shown
+    later = begin.apply_to_sensors(values, shown, replace(at, hours=0.5))
+    assert later['port_tension'] == pytest.approx(1200.0)
+
+
+def test_every_size_of_the_table_is_possible_three_times_over():
+    for name, sizes in STEADY_SIZES.items():
+        own = {parameter.name: parameter for parameter in catalogue()[name].parameters}
+        ((parameter, size),) = sizes.items()
+        there = own[parameter]
+        way = [there.neutral + sign * TIMES * size for sign in (1.0, -1.0)]
+        assert any(there.low <= value <= there.high for value in way), name
+
+
+def test_delays_onsets_and_false_findings_are_counted(tmp_path):
+    missed = replace(FOUND, number=1, raised_s=None, onset_s=None, name='')
+    alarmed = replace(CLEAN, false=1)
+    trials = [FOUND, missed, CLEAN, alarmed]
+    rows = {row.what: row for row in write_onset(tmp_path, OnsetPlan(), trials)}
+    assert rows['effects that are detected'].value == 50.0
+    assert rows['delay, median'].value == pytest.approx(1.0)
+    assert rows['onsets within 3 min, of those detected'].value == 100.0
+    false = rows['false findings in 230 h']
+    # Two clean hours, and both tows with an effect up to it without their first minutes.
+    assert false.value == pytest.approx(230.0 / (2.0 + 2 * 570.0 / 3600.0))
+    assert false.low < false.value < false.high
+    assert not false.ok
+    assert (tmp_path / 'onset.md').exists()
+
+
+def test_candidates_without_a_mark_are_never_rare_and_one_that_has_some_is_as_chance_says():
+    table = candidate_table({})
+    number, chance = len(table.parameters), np.random.default_rng(4)
+    marks = np.zeros((4, 2, number))
+    assert not drawn_rarest(table, [marks] * 3, 10, chance).any()
+    (column,) = table.candidates[0].columns
+    # A mark far larger than its prior: the ratio of one onset is then χ² of one.
+    marks[:, 0, column] = 1e6 / table.scale[column]
+    rarest = drawn_rarest(table, [marks, marks], 4000, chance)
+    assert np.mean(rarest > 2.0) == pytest.approx(0.01, abs=0.006)

@@ -1,0 +1,77 @@
+"""Onsets in tows that are over: the monitor fed from recordings, as the node is from topics."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.knowledge import Knowledge
+from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.samples import Sample
+
+LESS_KNOWN = 2.0
+"""Factor on the std of an estimate that was made with what is looked for in its data."""
+
+
+@dataclass(frozen=True)
+class OnsetsInTow:
+    """What began in a tow.
+
+    Attributes
+    ----------
+    tow
+        Its name.
+    start_ns
+        Stamp of its first sample.
+    watched, unwatched
+        Stretches of 30 s that were compared with the model, and that could not be.
+    why_not
+        Reason why the last of these could not be.
+    findings
+        All that was not withdrawn.
+    """
+
+    tow: str
+    start_ns: int
+    watched: int
+    unwatched: int
+    why_not: str
+    findings: tuple[Finding, ...]
+
+    def sentences(self) -> list[str]:
+        """What began, one sentence each, or that nothing did."""
+        if not self.watched:
+            return [f'{self.tow}: could not be watched for what begins in it ({self.why_not}).']
+        if not self.findings:
+            return [f'{self.tow}: nothing was found to begin in {self.watched / 2:.0f} minutes.']
+        return [
+            f'{self.tow}, minute {self.minute(found):.1f}: {found.sentence()}.'
+            for found in self.findings
+        ]
+
+    def minute(self, found: Finding) -> float:
+        """Minutes from the tow's first sample to an onset."""
+        return (found.onset_ns - self.start_ns) / 60e9
+
+
+def by_estimate(estimate: Estimate) -> Knowledge:
+    """Knowledge of the boards by an estimate from the same tows."""
+    own = slice(0, len(COEFFICIENTS))
+    return Knowledge(estimate.values[own], LESS_KNOWN**2 * np.array(estimate.covariance)[own, own])
+
+
+def onsets_in(
+    gear: GearRecord, knowledge: Knowledge, tow: str, samples: Iterable[Sample]
+) -> OnsetsInTow:
+    """Watch a tow from its first sample to its last."""
+    monitor, start, last = OnsetMonitor(gear, knowledge), 0, ''
+    for sample in samples:
+        start = start or sample.stamp
+        monitor.feed(sample)
+        last = monitor.why_not or last
+    kept = (found for found in monitor.findings.values() if found.state != 'withdrawn')
+    return OnsetsInTow(tow, start, monitor.watched, monitor.unwatched, last, tuple(kept))

@@ -1,0 +1,1 @@
+"""The study of effects that begin during a tow: found or not, how soon, and false findings."""

@@ -1,0 +1,136 @@
+"""Report of the study of onsets: JSON, Markdown and HTML."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import chi2
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.diagnosis.onset.monitor import OnsetOptions
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
+from trawl_ros.lab.report.rates import rate
+from trawl_ros.lab.studies.onset.sizes import TIMES
+from trawl_ros.lab.studies.onset.study import OnsetPlan
+from trawl_ros.lab.studies.onset.trial import OnsetTrial
+
+REPORT = 'onset.md'
+
+NEAR_S = 180.0
+"""An onset is right that is told within so much."""
+
+ASKED_H = 230.0
+"""Hours of clean tows in which one false finding is allowed."""
+
+
+def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> list[MeasuredValue]:
+    """Write ``onset.json``, ``.md`` and ``.html`` into a folder; return all rows."""
+    options = OnsetOptions()
+    made = [trial for trial in trials if not trial.why_not]
+    hidden = [trial for trial in made if trial.effect]
+    found = [trial for trial in hidden if trial.raised_s is not None]
+    page = Page(
+        name='onset',
+        title='Effects that begin during a tow',
+        command=f'trawl study onset --trials {plan.trials} --clean {plan.clean} '
+        f'--minutes {plan.minutes:g} --seed {plan.seed}',
+        method='Tows with random hauling, veering and speed steps. The plant has warps and bridles '
+        'twice as fine as the model and no joined meshes, and is read by the default instruments; '
+        'the net has 12 meshes around. Boards are known to 0.2 of the std of the gear file. An '
+        f'effect of {TIMES:g} times what steady windows detect, by a frozen table, begins between '
+        'the 10th and the 20th minute. The class that watches in the node is fed with all samples. '
+        f'Findings are raised beyond a rarity of {options.limit:g}.',
+    )
+    delays = np.array([_delay(trial) / 60.0 for trial in found])
+    right = [abs(_late(trial)) <= NEAR_S for trial in found]
+    named = [trial.effect == trial.name or trial.effect in trial.alike for trial in found]
+    rows = [
+        rate(
+            'effects that are detected',
+            [trial.raised_s is not None for trial in hidden],
+            least=95.0,
+        ),
+        _quantile('delay, median', delays, 0.5, 5.0, 'delay_median'),
+        _quantile('delay, 90 %', delays, 0.9, 15.0, 'delay_90'),
+        rate('onsets within 3 min, of those detected', right, least=80.0),
+        rate('the effect is named or among those not told apart, of those detected', named),
+        _false(made),
+        _core(made),
+    ]
+    table = TextTable(
+        'Trials with an effect',
+        ('trial', 'effect', 'size', 'began, min', 'raised after, min', 'onset off by, min', 'name',
+         'not told from'),
+        tuple(_row(trial) for trial in hidden),
+    )  # fmt: skip
+    refused = [f'{trial.number} ({trial.effect or "clean"}): {trial.why_not}'
+               for trial in trials if trial.why_not]  # fmt: skip
+    text = f'Not made: {"; ".join(refused)}.' if refused else ''
+    record = {
+        'rows': [row.record() for row in rows],
+        'trials': [trial.record() for trial in trials],
+    }
+    section = Section('Findings', rows, tables=[table], text=text)
+    return write_page(folder, page, [section], record=record)
+
+
+def _delay(trial: OnsetTrial) -> float:
+    assert trial.raised_s is not None
+    assert trial.begin_s is not None
+    return trial.raised_s - trial.begin_s
+
+
+def _late(trial: OnsetTrial) -> float:
+    assert trial.onset_s is not None
+    assert trial.begin_s is not None
+    return trial.onset_s - trial.begin_s
+
+
+def _quantile(what: str, delays: FloatArray, part: float, most: float, key: str) -> MeasuredValue:
+    if not len(delays):
+        return MeasuredValue(what, np.nan, 'min', at_most(most), 'nothing was detected', key=key)
+    chance = np.random.default_rng(0)
+    again = [np.quantile(chance.choice(delays, len(delays)), part) for _ in range(1000)]
+    low, high = np.quantile(again, (0.025, 0.975))
+    note = f'of {len(delays)} that were detected; 95 % interval by drawing trials again'
+    value = float(np.quantile(delays, part))
+    return MeasuredValue(what, value, 'min', at_most(most), note, float(low), float(high), key)
+
+
+def _false(made: Sequence[OnsetTrial]) -> MeasuredValue:
+    """False findings per 230 h of what was watched before anything began."""
+    hours = count = 0.0
+    for trial in made:
+        clean = trial.watched_s
+        if trial.begin_s is not None:
+            # The first minutes are not watched.
+            clean = max(trial.begin_s - (trial.unwatched_s), 0.0)
+        hours, count = hours + clean / 3600.0, count + trial.false
+    low = 0.5 * chi2.ppf(0.025, 2 * count) if count else 0.0
+    high = 0.5 * chi2.ppf(0.975, 2 * count + 2)
+    part = ASKED_H / hours if hours else np.nan
+    note = f'{count:.0f} in {hours:.1f} h; 95 % interval of a Poisson rate'
+    return MeasuredValue(
+        'false findings in 230 h', count * part, '', at_most(1.0), note,
+        float(low * part), float(high * part), 'false_230_h',
+    )  # fmt: skip
+
+
+def _core(made: Sequence[OnsetTrial]) -> MeasuredValue:
+    seconds = sum(trial.seconds for trial in made)
+    towed = sum(trial.watched_s + trial.unwatched_s for trial in made)
+    part = 100.0 * seconds / towed if towed else np.nan
+    note = 'processor time of the monitor over the time towed; net of 12 meshes around'
+    return MeasuredValue('of a core in real time', part, '%', at_most(15.0), note, key='core')
+
+
+def _row(trial: OnsetTrial) -> tuple[str, ...]:
+    assert trial.begin_s is not None
+    head = str(trial.number), trial.effect, f'{trial.size:.3g}', f'{trial.begin_s / 60.0:.1f}'
+    if trial.raised_s is None:
+        return *head, 'not detected', '', '', ''
+    return (
+        *head, f'{_delay(trial) / 60.0:.1f}', f'{_late(trial) / 60.0:.1f}', trial.name,
+        ', '.join(trial.alike),
+    )  # fmt: skip

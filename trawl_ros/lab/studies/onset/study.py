@@ -1,0 +1,59 @@
+"""Study of onsets: trials in files of their own, so that it goes on where it was."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from trawl_ros.core.files import made_folder, write_json
+from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.lab.studies.onset.trial import OnsetTrial, make_trial
+
+SEED = 2200
+"""Of the study as it is reported; limits and errors were chosen by tows of other seeds."""
+
+
+@dataclass(frozen=True)
+class OnsetPlan:
+    """Plan: gear, trials with an effect and without, minutes of each, seed, and shard."""
+
+    gear: str = 'kaifuha'
+    trials: int = 18
+    clean: int = 10
+    minutes: float = 35.0
+    seed: int = SEED
+    shard: int = 1
+    shards: int = 1
+
+
+def run_onset(plan: OnsetPlan, folder: Path, on_progress: OnProgress) -> list[OnsetTrial]:
+    """Make the trials that are not there yet; return all that are there.
+
+    A clean tow and one with an effect take turns, so that a study that was stopped has both.
+    """
+    made_folder(folder)
+    wanted = [
+        (number, clean)
+        for number in range(max(plan.trials, plan.clean))
+        for clean, of in ((False, plan.trials), (True, plan.clean))
+        if number < of
+    ]
+    own = wanted[plan.shard - 1 :: plan.shards]
+    for done, (number, clean) in enumerate(own):
+        path = _path(plan, folder, number, clean)
+        if path.exists():
+            continue
+        on_progress(WorkProgress('trials', done, len(own), 'trials'))
+        trial = make_trial(plan.gear, plan.seed, number, plan.minutes, clean)
+        write_json(path, trial.record(), indent=1)
+    paths = (_path(plan, folder, number, clean) for number, clean in wanted)
+    return [_read(path) for path in paths if path.exists()]
+
+
+def _path(plan: OnsetPlan, folder: Path, number: int, clean: bool) -> Path:
+    kind = 'clean' if clean else 'effect'
+    return folder / f'trial_{plan.seed}_{kind}_{number:04d}.json'
+
+
+def _read(path: Path) -> OnsetTrial:
+    record = json.loads(path.read_text(encoding='utf-8'))
+    return OnsetTrial(**{**record, 'alike': tuple(record['alike'])})
