@@ -14,8 +14,8 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import Factor, factorised
 from trawl_ros.solver.first_guess import at_velocity
+from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.relax import LIMIT_METRES, LIMIT_RADIANS, TOLERANCE
 
 ITERATIONS = 12

@@ -13,7 +13,7 @@ from trawl_ros.model.gear_model import OUTWARD, GearModel, build_model
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.linear.factor import factorised
 
 ATTACK = np.radians(20.0)
 LEAN = np.radians(14.0)

@@ -11,8 +11,8 @@ from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.arnoldi import RitzPairs, ritz_pairs
-from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.linear.arnoldi import RitzPairs, ritz_pairs
+from trawl_ros.solver.linear.factor import Factor, factorised
 
 MOST = 60
 """Vectors among which modes are sought: with the default gear, six take 24 of them."""

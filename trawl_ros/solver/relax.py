@@ -11,7 +11,7 @@ from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.linear.factor import Factor, factorised
 
 TOLERANCE = 1e-4
 """Largest force (N) or moment (N m) left at a root; the last Newton step goes far below."""

@@ -12,7 +12,7 @@ from functools import cached_property
 from trawl_ros.model.assembly import LinearisedForces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.linear.factor import Factor, factorised
 
 REMEMBERED = 2
 """A known state and one found from it. Each takes some 4 MB with the default gear."""

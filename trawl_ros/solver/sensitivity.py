@@ -16,7 +16,7 @@ from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.model.state import TowSlopes, held_boundary
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import Equilibrium
-from trawl_ros.solver.factor import solve_refined
+from trawl_ros.solver.linear.factor import solve_refined
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 from trawl_ros.solver.warm_start import Tangent
 

@@ -16,7 +16,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.patches import NO_PATCH, ImplicitStep, balanced, grown_patch
 
 SPECTRAL_RADIUS = 0.4

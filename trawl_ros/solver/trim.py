@@ -20,8 +20,8 @@ from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import held_shape
 from trawl_ros.solver.equilibrium import SteadyState, steady_state, with_effects
-from trawl_ros.solver.factor import factorised_part
 from trawl_ros.solver.first_guess import first_guess
+from trawl_ros.solver.linear.factor import factorised_part
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.relax import relax, without_attitude
 

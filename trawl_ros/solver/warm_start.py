@@ -21,8 +21,8 @@ from trawl_ros.model.compiled import compiled
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, length, stepped
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import Factor, factorised
 from trawl_ros.solver.first_guess import at_velocity
+from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.relax import TOLERANCE, step_size
 from trawl_ros.solver.rest_linearisation import nearly_linearised
 

@@ -17,7 +17,7 @@ from trawl_ros.lab.running.timing import median_s, timed
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state
-from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
 from trawl_ros.solver.stability import SWINGING, stability

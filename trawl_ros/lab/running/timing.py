@@ -8,7 +8,7 @@ from typing import TypeVar
 from trawl_ros.model.assembly import linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised
+from trawl_ros.solver.linear.factor import factorised
 
 Result = TypeVar('Result')
 

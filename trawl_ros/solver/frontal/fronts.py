@@ -1,8 +1,8 @@
 """Numerical factorisation front by front, and solution with the factors: compiled.
 
 Fronts are dense and row-major. Pivots are exchanged within the pivot rows of a front alone, so the
-order found for the pattern stands; `trawl_ros.solver.factor` looks whether that was good enough.
-All takes real matrices, and complex ones.
+order found for the pattern stands; `trawl_ros.solver.linear.factor` looks whether that was good
+enough. All takes real matrices, and complex ones.
 """
 
 import numpy as np

@@ -21,7 +21,7 @@ from trawl_ros.model.slopes.along import (
     subtract_rigging_inertia,
 )
 from trawl_ros.model.state import State, Tow, TowSlopes
-from trawl_ros.solver.factor import Factor, factorised
+from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.motion.products import BOARDS, carry_on, subtract_history
 from trawl_ros.solver.stepper import SCHEME, SolvedStep
 

@@ -6,7 +6,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow, TowSlopes
-from trawl_ros.solver.factor import solve_refined
+from trawl_ros.solver.linear.factor import solve_refined
 from trawl_ros.solver.modes import linearised_motion
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.slopes import MotionSlopes

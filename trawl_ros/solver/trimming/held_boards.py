@@ -17,7 +17,7 @@ from trawl_ros.model.compiled import alike
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, outer, skew, stepped
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.factor import factorised_part
+from trawl_ros.solver.linear.factor import factorised_part
 
 MIRROR = np.array([-1.0, 1.0, -1.0])
 """Signs of the starboard board's turn when the port board turns by a vector, in mirrored axes."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.solver.factor import MANY, factorised, factorised_part, solve_refined
+from trawl_ros.solver.linear.factor import MANY, factorised, factorised_part, solve_refined
 
 
 @pytest.fixture(scope='module')

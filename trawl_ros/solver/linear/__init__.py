@@ -1,0 +1,1 @@
+"""Linear algebra of the solver: factors of sparse matrices, and eigenvalues of operators."""
