@@ -266,8 +266,15 @@ class OnsetMonitor:
         if rarest.rarity < 0.5 * limit:
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
             return
-        age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
         found = self._finding(before.number, last, evidence, before.raised_ns)
+        if found.onset_ns >= before.raised_ns:
+            # What explains the evidence began after the finding was raised: that is another one.
+            yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
+            if rarest.rarity > limit:
+                self._newest += 1
+                yield self._put(self._finding(self._newest, last, evidence, last.end_ns))
+            return
+        age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
         if age >= self.options.settled:
             found = replace(found, state='settled')
             self._take_along(found)
