@@ -25,7 +25,7 @@ BELOW = {
 
 STAGES = (
     ('api/trials.py', 'diagnose'),
-    ('bags/reader.py', 'messages'),
+    ('bags/reader.py', 'passing'),
     ('estimation/windows/finder.py', 'feed'),
     ('diagnosis/procedure.py', 'diagnose_windows'),
     ('estimation/fit/line_search.py', 'line_search'),

@@ -279,7 +279,7 @@ def plan_trial(
 def _onsets(
     diagnosis: Diagnosis, paths: Sequence[Path], namespace: str, on_progress: OnProgress
 ) -> tuple[OnsetsInTow, ...]:
-    """What began in each tow, by the boards as they were fitted, or else by the gear file."""
+    """Onsets in each tow, by the boards as they were fitted, or else by the gear file."""
     known = of_gear_file(diagnosis.gear)
     if diagnosis.base is not None:
         known = by_estimate(diagnosis.base.estimate)

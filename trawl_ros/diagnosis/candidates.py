@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.effects.base.effect import Effect
+from trawl_ros.effects.base.effect import WIDE, Effect
 from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
@@ -17,9 +17,6 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 SIDES = ('port', 'starboard')
-
-WIDE = 5.0
-"""So many times further than is common an effect is taken to go where it is estimated."""
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class Diagnosis:
         Changes of the gear file that explain as much as the best effect, or where nothing is named
         more; the likeliest first.
     onsets
-        What began in the tows; empty where that was not asked for.
+        Onsets in the tows; empty where that was not asked for.
 
     Examples
     --------

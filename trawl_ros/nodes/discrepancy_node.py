@@ -47,7 +47,7 @@ ACKNOWLEDGE = 'discrepancy/acknowledge'
 DISMISS = 'discrepancy/dismiss'
 
 OPERATOR = 'operator'
-"""Who acknowledges and dismisses, in the log book: a service does not know by whom it is called."""
+"""Name in the log book of the one who decides: a service does not know by whom it is called."""
 
 MOST_TOLD = 5
 """Newest findings of what has begun that are published with each."""

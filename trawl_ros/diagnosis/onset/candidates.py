@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
-from trawl_ros.diagnosis.candidates import WIDE
 from trawl_ros.diagnosis.mimics.drift import Drift, drifts
-from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
+from trawl_ros.effects.base.effect import WIDE, Effect, Parameter, Readings, Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.motion.stretches import NOT_USED
 from trawl_ros.model.gear_model import GearModel
@@ -52,7 +51,7 @@ class OnsetCandidate:
     name
         Of the effect, or of the pattern.
     words
-        What it is, in words.
+        Meaning of the name.
     columns
         Places of its values among those of all candidates.
     """
@@ -69,9 +68,9 @@ class CandidateTable:
     Attributes
     ----------
     effects
-        Whose values the columns are, one behind the other.
+        Those whose values the columns are, one behind the other.
     candidates
-        What may be named.
+        Effects and patterns that may be named.
     """
 
     effects: tuple[Effect, ...]

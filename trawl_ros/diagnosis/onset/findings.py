@@ -33,7 +33,7 @@ class Finding:
     raised_ns, updated_ns
         Ends of the stretches by which it was raised, and by which it is as it stands.
     onset_ns, onset_low_ns, onset_high_ns
-        When it began, with the ends of its 95 % interval.
+        Onset, with the ends of its 95 % interval.
     name, words
         The likeliest, and that in words.
     values

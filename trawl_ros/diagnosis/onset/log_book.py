@@ -59,7 +59,7 @@ class LogBook:
         Parameters
         ----------
         event, stamp, who
-            What happened, the stamp (ns) that the data had come to, and whose doing it was.
+            Event, the stamp (ns) that the data had come to, and whose doing it was.
         finding
             The finding that it is about.
         to

@@ -268,7 +268,7 @@ class OnsetMonitor:
             return
         found = self._finding(before.number, last, evidence, before.raised_ns)
         if found.onset_ns >= before.raised_ns:
-            # What explains the evidence began after the finding was raised: that is another one.
+            # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
             if rarest.rarity > limit:
                 self._newest += 1
@@ -310,7 +310,7 @@ class OnsetMonitor:
             raised_ns=raised_ns,
             updated_ns=last.end_ns,
             onset_ns=onset,
-            # What begins within a stretch may be taken for what begins with the next.
+            # An onset within a stretch may be taken for one with the next.
             onset_low_ns=last.end_ns - (int(best.ages.max()) + 1) * length - length // 2,
             onset_high_ns=last.end_ns - int(best.ages.min()) * length,
             name=candidate.name,

@@ -40,8 +40,8 @@ class OnsetResponses:
     Attributes
     ----------
     fading : (a, k, p) array
-        What is still missing to an effect long there in the means of the stretches since, by
-        the values of all effects.
+        Part of an effect long there that is still missing in the means of the stretches since,
+        by the values of all effects.
     grown : (a, k, p) array
         Integral of that over time, in hours, up to the middle of each stretch.
     log : (t, k) array
@@ -63,7 +63,7 @@ class OnsetResponses:
         Parameters
         ----------
         lasting : (k, p) array
-            What effects change that have been there for long.
+            Change by effects that have been there for long.
         ages
             0 in the stretch with whose beginning the effect begins.
         growing : (p,) array
@@ -88,7 +88,7 @@ def onset_responses(
     Parameters
     ----------
     gear, coefficients
-        That is towed.
+        Gear that is towed.
     inputs
         Warp lengths (m) and speed (m/s) of the state.
     oldest
@@ -123,7 +123,7 @@ def onset_responses(
     missing = lasting.slopes - np.array(towed)
     at = Situation(inputs, hours=1.0)
     shown = [gear.by_values(one[:, own[0]], lasting.values, at) for one in missing]
-    # What sensors show at once is not missing, and came in with each.
+    # Errors of sensors show at once: they are not missing, and came in with each.
     nothing = gear.by_values(np.zeros_like(missing[0][:, own[0]]), lasting.values, at)
     fading = _with_tail(np.array(shown) - nothing, oldest)
     hours = LIVE.stretch_s / 3600.0

@@ -128,7 +128,7 @@ class ModelTow:
     Parameters
     ----------
     gear
-        That is towed.
+        Gear that is towed.
     coefficients
         Of its boards (12,).
     """
@@ -162,7 +162,7 @@ class ModelTow:
         Returns
         -------
         TowedStretch or str
-            What the model shows, or the reason why there is no prediction.
+            Readings of the model, or the reason why there is no prediction.
         """
         if last.tow is None:
             self._motion = None

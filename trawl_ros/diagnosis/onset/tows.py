@@ -19,7 +19,7 @@ LESS_KNOWN = 2.0
 
 @dataclass(frozen=True)
 class OnsetsInTow:
-    """What began in a tow.
+    """Onsets in a tow.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class OnsetsInTow:
     findings: tuple[Finding, ...]
 
     def sentences(self) -> list[str]:
-        """What began, one sentence each, or that nothing did."""
+        """Sentence for each onset, or that there was none."""
         if not self.watched:
             return [f'{self.tow}: could not be watched for what begins in it ({self.why_not}).']
         if not self.findings:

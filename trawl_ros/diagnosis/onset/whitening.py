@@ -224,7 +224,7 @@ class WhiteningFilter:
         diagonal[self._part(3).start] = (log_std * self._inflation) ** 2
 
     def _model(self, towed: TowedStretch, absorbed: FloatArray) -> FloatArray:
-        """What each state of unit size changes in the watched channels (k, s)."""
+        """Change of the watched channels (k, s) by each state of unit size."""
         k = len(WATCHED)
         bias = np.array(
             [

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 Readings = dict[str, float]
 """Readings by the name of the observable, SI."""
 
+WIDE = 5.0
+"""So many times further than is common an effect is taken to go where it is estimated."""
+
 
 @dataclass(frozen=True)
 class Parameter:

@@ -38,7 +38,7 @@ FRICTION = 0.5
 """Friction of the tank's floor, as a share of what it carries, of which one row is made."""
 
 BESIDES = {'lower_spread': 'between lower wing tips', 'wing_height': 'upper wing tips, height'}
-"""What the table prints besides and nothing counts, in m."""
+"""Columns of the table of which nothing counts, in m."""
 
 
 @dataclass(frozen=True)

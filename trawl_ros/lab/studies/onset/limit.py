@@ -28,7 +28,7 @@ class DrawnLimit:
     Attributes
     ----------
     hours
-        That were drawn.
+        Hours drawn.
     largest
         Rarest in all of them.
     limit

@@ -83,7 +83,7 @@ class OnsetTrial:
     number
         Of the trial.
     effect, size, begin_s
-        What begins, how large, and when; '' and None in a clean tow.
+        Effect that begins, its size, and the time; '' and None in a clean tow.
     raised_s, onset_s, name, alike, rarity
         First finding that is raised: when, its onset, likeliest name at last and others; None or
         empty where there is none. The largest rarity in the tow.
@@ -142,7 +142,7 @@ def make_trial(gear: str, seed: int, number: int, minutes: float, clean: bool) -
     with TemporaryDirectory() as folder:
         record = coarse_gear(gear)
         scenario = _scenario(Path(folder), record, minutes, chance)
-        # What begins is no effect of a file: it takes the place of what the plant's would say.
+        # An effect that begins is none of a file: it takes the place of the plant's own.
         vars(scenario)['effect_set'] = acting
         raised: list[Finding] = []
         watched = [0.0]
