@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 from collections.abc import Mapping, Sequence
-from importlib import import_module
 from io import TextIOWrapper
 from pathlib import Path
 from types import FrameType, MappingProxyType
@@ -12,6 +11,7 @@ from typing import Any
 
 import click
 
+from trawl_ros.cli.loaded_group import LoadedGroup
 from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.version import __version__
 
@@ -42,32 +42,11 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'plot': ('cli.plot', 'Draw the tow in a bag: gear, histories, sonar, track, film.'),
     }
 )
-"""Name → module of `trawl_ros` (its ``command``), and what the list of commands says.
-
-The sentences stand here so that the list needs none of the modules.
-"""
+"""Modules and sentences, as `LoadedGroup` has them."""
 
 
-class Trawl(click.Group):
-    """Group of commands that are imported when called; errors of input end in one sentence."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names in the order of a sea trial."""
-        return list(COMMANDS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load one command."""
-        if cmd_name not in COMMANDS:
-            return None
-        module, _ = COMMANDS[cmd_name]
-        command = import_module(f'trawl_ros.{module}').command
-        assert isinstance(command, click.Command)
-        return command
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the commands without loading them."""
-        with formatter.section('Commands'):
-            formatter.write_dl([(name, sentence) for name, (_, sentence) in COMMANDS.items()])
+class Trawl(LoadedGroup):
+    """All commands, in the order of a sea trial; errors of input end in one sentence."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; an error of the input ends with one sentence and exit code 1."""
@@ -115,7 +94,7 @@ def _forget_output() -> None:
         os.close(nowhere)
 
 
-@click.group(cls=Trawl, context_settings={'help_option_names': ['-h', '--help']})
+@click.group(cls=Trawl, modules=COMMANDS, context_settings={'help_option_names': ['-h', '--help']})
 @click.version_option(__version__, prog_name='trawl')
 def trawl() -> None:
     """Tow an emulated mid-water trawl, record it, and refit the model of its gear.

@@ -16,7 +16,6 @@ from trawl_ros.api.tows import tow
 from trawl_ros.api.trials import DEFAULT_GEAR
 from trawl_ros.cli.diagnose import EXIT
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.parallel import cores
 from trawl_ros.core.resources import share_path
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.estimation.bag_windows import BagTask, read_tow
@@ -120,9 +119,8 @@ def _of_diagnosis(bags: Sequence[Path], baselines: int) -> str:
     known = frozenset(window.tow for window in numbered(read[:baselines])[0])
     taken = shares(lambda: diagnose_windows(gear, windows, names, known), PARTS)
     return (
-        f'{started:.1f} s to start a process, of which there are up to {1 + cores()}, '
-        f'{reading:.1f} s to read the bags, the rest for figures, page and the diagnosis, '
-        f'of which {taken}'
+        f'{started:.1f} s to start, {reading:.1f} s to read the bags, the rest for figures, page '
+        f'and the diagnosis, of which {taken}'
     )
 
 

@@ -1,13 +1,13 @@
 """Progress and outcome of the lab's commands on the terminal."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
 from rich.console import Console
 
-from trawl_ros.cli.interruption import INTERRUPTED
+from trawl_ros.cli.interruption import INTERRUPTED, Interruption
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.lab.report.measured import MeasuredValue
 
@@ -22,6 +22,15 @@ def stoppable(left: str = 'no report is written') -> Iterator[tuple[ProgressDisp
     except KeyboardInterrupt:
         console.print(f'stopped; {left}')
         raise SystemExit(INTERRUPTED) from None
+
+
+@contextmanager
+def until_stopped() -> Iterator[Callable[[], bool]]:
+    """Let Ctrl-C end a tow early, and the command once its report is written."""
+    with Interruption() as interruption:
+        yield lambda: interruption.requested
+    if interruption.requested:
+        raise SystemExit(INTERRUPTED)
 
 
 def print_missed(rows: Iterable[MeasuredValue], console: Console) -> None:

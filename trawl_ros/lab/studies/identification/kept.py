@@ -1,13 +1,17 @@
-"""File of finished trials, from which a study resumes."""
+"""Trials of a study: their tasks, and the file of those done, from which it resumes."""
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+import numpy as np
+
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import appending, empty_folder, write_json, write_text
+from trawl_ros.core.progress import OnProgress, ignore, step_counter
+from trawl_ros.lab.studies.identification.plant import Cut
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -27,8 +31,43 @@ if TYPE_CHECKING:
 
 
 TrialT = TypeVar('TrialT', bound='KeptTrial')
+TaskT = TypeVar('TaskT', bound='TrialTask')
 
 FILE = 'trials.jsonl'
+
+
+@dataclass(frozen=True)
+class TrialTask:
+    """Task of one trial.
+
+    Attributes
+    ----------
+    series
+        The series it belongs to, which is part of the seed.
+    number
+        Within the series.
+    seed
+        Of the study.
+    gear
+        File or name.
+    cut
+        Meshes of model and plant.
+    """
+
+    series: str
+    number: int
+    seed: int
+    gear: str
+    cut: Cut
+
+    @property
+    def name(self) -> str:
+        """Name in files and sentences."""
+        return f'{self.series} {self.number}'
+
+    def chance(self) -> np.random.Generator:
+        """Random generator of this trial alone, wherever and whenever it is made."""
+        return np.random.default_rng([self.seed, self.number, *self.series.encode()])
 
 
 class KeptTrials(Generic[TrialT]):
@@ -91,6 +130,37 @@ class KeptTrials(Generic[TrialT]):
             # A study that was killed may leave a line without its end.
             kept = '\n'.join((first, *whole)) + '\n'
             write_text(self._path, kept)
+
+    def run_missing(
+        self,
+        run: Callable[[TaskT], TrialT],
+        tasks: Iterable[TaskT],
+        on_progress: OnProgress = ignore,
+        *,
+        scheduler: str | None = None,
+        workers: int | None = None,
+    ) -> None:
+        """Run the tasks whose trials are not there, and keep each as it ends.
+
+        Parameters
+        ----------
+        run
+            Function of a module, which runs in other processes.
+        tasks
+            Of all trials that are wanted.
+        on_progress
+            Called after each trial.
+        scheduler, workers
+            As in `trawl_ros.core.parallel.run_tasks`.
+        """
+        # Dask takes a second to import, for which other commands need not wait.
+        from trawl_ros.core.parallel import run_tasks
+
+        missing = {task.name: task for task in tasks if not self.has(task.series, task.number)}
+        done = step_counter('trials', len(missing), on_progress)
+        for _, trial in run_tasks(run, missing, scheduler=scheduler, workers=workers):
+            self.add(trial)
+            done()
 
     def add(self, trial: TrialT) -> None:
         """Append a trial."""

@@ -185,15 +185,8 @@ def run_trials(
     TrawlError
         If trials of another plan are kept there, or one cannot be made.
     """
-    # Dask takes a second to import, for which other commands need not wait.
-    from trawl_ros.core.parallel import run_tasks
-
     kept = KeptTrials(folder, plan.asked(), EstimationTrial, force=force)
-    tasks = {task.name: task for task in _tasks(plan) if not kept.has(task.series, task.number)}
-    done = step_counter('trials', len(tasks), on_progress)
-    for _, trial in run_tasks(run_trial, tasks, scheduler=scheduler, workers=workers):
-        kept.add(trial)
-        done()
+    kept.run_missing(run_trial, _tasks(plan), on_progress, scheduler=scheduler, workers=workers)
     return kept
 
 

@@ -13,7 +13,8 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.lab.studies.identification.bound import information
-from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, Cut, TowedBoard, draw_board
+from trawl_ros.lab.studies.identification.kept import TrialTask
+from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, TowedBoard, draw_board
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows, wrong_by
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import INPUTS
@@ -25,21 +26,11 @@ WRONG_BY = 0.3
 
 
 @dataclass(frozen=True)
-class Task:
+class Task(TrialTask):
     """Task of one trial.
 
     Attributes
     ----------
-    series
-        The series it belongs to, which is part of the seed.
-    number
-        Within the series.
-    seed
-        Of the study.
-    gear
-        File or name.
-    cut
-        Meshes of model and plant.
     tows
         Number of `TOWS` that are fitted.
     stated
@@ -47,22 +38,8 @@ class Task:
         a bound on the spread presumes.
     """
 
-    series: str
-    number: int
-    seed: int
-    gear: str
-    cut: Cut
     tows: int
     stated: bool
-
-    @property
-    def name(self) -> str:
-        """Name in files and sentences."""
-        return f'{self.series} {self.number}'
-
-    def chance(self) -> np.random.Generator:
-        """Random generator of this trial alone, wherever and whenever it is made."""
-        return np.random.default_rng([self.seed, self.number, *self.series.encode()])
 
 
 @dataclass(frozen=True)

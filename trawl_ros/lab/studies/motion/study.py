@@ -5,17 +5,17 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from trawl_ros.core.progress import OnProgress, ignore, step_counter
+from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.estimation.bag_motion import STRETCHES, WIDENED
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, Section, write_page
-from trawl_ros.lab.studies.identification.kept import KeptTrials
+from trawl_ros.lab.studies.identification.kept import KeptTrials, TrialTask
 from trawl_ros.lab.studies.identification.plant import Cut
 from trawl_ros.lab.studies.motion.plant import HELD_OUT
 from trawl_ros.lab.studies.motion.rows import motion_rows
-from trawl_ros.lab.studies.motion.trial import MotionTrial, Task, run_motion_trial
+from trawl_ros.lab.studies.motion.trial import MotionTrial, run_motion_trial
 
 SEED = 43
 """Of the study as it is reported; what was chosen by looking at tows was chosen with others, 41
@@ -97,15 +97,10 @@ def run_motion_study(
     TrawlError
         If trials of another plan are kept there, or one cannot be made.
     """
-    # Dask takes a second to import, for which other commands need not wait.
-    from trawl_ros.core.parallel import run_tasks
-
     kept = KeptTrials(folder, plan.asked(), MotionTrial, force=force)
-    tasks = {task.name: task for task in _tasks(plan) if not kept.has(task.series, task.number)}
-    done = step_counter('trials', len(tasks), on_progress)
-    for _, trial in run_tasks(run_motion_trial, tasks, scheduler=scheduler, workers=workers):
-        kept.add(trial)
-        done()
+    kept.run_missing(
+        run_motion_trial, _tasks(plan), on_progress, scheduler=scheduler, workers=workers
+    )
     sections = [
         Section(words[0].upper() + words[1:], motion_rows(
             kept.series(series)[: plan.numbers()[series]], words, asked=series == FINER))
@@ -121,10 +116,10 @@ def run_motion_study(
     return write_page(folder, page, sections)
 
 
-def _tasks(plan: MotionStudyPlan) -> Iterator[Task]:
+def _tasks(plan: MotionStudyPlan) -> Iterator[TrialTask]:
     for series, number in plan.numbers().items():
         for trial in range(number):
-            yield Task(series, trial, plan.seed, plan.gear, plan.cut(series))
+            yield TrialTask(series, trial, plan.seed, plan.gear, plan.cut(series))
 
 
 def _options(plan: MotionStudyPlan) -> str:

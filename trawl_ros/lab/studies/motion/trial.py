@@ -13,7 +13,7 @@ from trawl_ros.estimation.from_gear import board_prior, identification_for
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.series import tow_readings
 from trawl_ros.estimation.motion.stretches import moving_tow
-from trawl_ros.lab.studies.identification.plant import Cut
+from trawl_ros.lab.studies.identification.kept import TrialTask
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
 from trawl_ros.lab.studies.motion.plant import COURSE, draw_tow
 from trawl_ros.model.water import build_water
@@ -21,40 +21,6 @@ from trawl_ros.scenario.scenario import load_scenario
 
 KINDS = ('noise', 'drift', 'model', 'state')
 """Kinds of errors whose sizes a fit in motion finds for each quantity."""
-
-
-@dataclass(frozen=True)
-class Task:
-    """Task of one trial.
-
-    Attributes
-    ----------
-    series
-        The series it belongs to, which is part of the seed.
-    number
-        Within the series.
-    seed
-        Of the study.
-    gear
-        File or name.
-    cut
-        Meshes of model and plant.
-    """
-
-    series: str
-    number: int
-    seed: int
-    gear: str
-    cut: Cut
-
-    @property
-    def name(self) -> str:
-        """Name in files and sentences."""
-        return f'{self.series} {self.number}'
-
-    def chance(self) -> np.random.Generator:
-        """Random generator of this trial alone, wherever and whenever it is made."""
-        return np.random.default_rng([self.seed, self.number, *self.series.encode()])
 
 
 @dataclass(frozen=True)
@@ -111,7 +77,7 @@ class MotionTrial:
     cpu_s: float
 
 
-def run_motion_trial(task: Task) -> MotionTrial:
+def run_motion_trial(task: TrialTask) -> MotionTrial:
     """Run a trial.
 
     Raises

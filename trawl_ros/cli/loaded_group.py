@@ -1,0 +1,42 @@
+"""Group of commands that are imported when they are called."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import click
+
+
+class LoadedGroup(click.Group):
+    """Group of commands, each loaded when it is called.
+
+    Parameters
+    ----------
+    modules
+        Name → module of `trawl_ros` (its ``command``), and the sentence in the list of commands,
+        which so needs none of the modules; in the order of the list.
+    options
+        As of `click.Group`.
+    """
+
+    def __init__(self, modules: Mapping[str, tuple[str, str]], **options: Any) -> None:
+        super().__init__(**options)
+        self.modules = modules
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names in their order."""
+        return list(self.modules)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Load one command."""
+        if cmd_name not in self.modules:
+            return None
+        module, _ = self.modules[cmd_name]
+        command = import_module(f'trawl_ros.{module}').command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without loading them."""
+        with formatter.section('Commands'):
+            formatter.write_dl([(name, said) for name, (_, said) in self.modules.items()])
