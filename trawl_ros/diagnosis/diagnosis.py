@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from trawl_ros.diagnosis.empirical import Empirical
 from trawl_ros.diagnosis.holdout import HoldoutComparison, Split
@@ -9,12 +10,14 @@ from trawl_ros.diagnosis.locating import Where
 from trawl_ros.diagnosis.mimicry import Mimic
 from trawl_ros.diagnosis.naming import Named
 from trawl_ros.diagnosis.next_tow import Proposal
-from trawl_ros.diagnosis.onset.tows import OnsetsInTow
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import Verdict
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.gear.records import GearRecord
+
+if TYPE_CHECKING:
+    from trawl_ros.diagnosis.onset.tows import OnsetsInTow
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,7 @@ class Diagnosis:
     proposals: tuple[Proposal, ...] = ()
     empirical: Empirical | None = None
     mimics: tuple[Mimic, ...] = ()
-    onsets: tuple[OnsetsInTow, ...] = ()
+    onsets: 'tuple[OnsetsInTow, ...]' = ()
 
     @property
     def best(self) -> Weighed | None:

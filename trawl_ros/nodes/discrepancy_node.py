@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
@@ -14,7 +14,6 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.knowledge import of_identification
 from trawl_ros.diagnosis.onset.log_book import Event, LogBook
-from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.estimation.from_gear import finder_for
@@ -38,6 +37,9 @@ from trawl_ros.nodes.workers.finding_status import (
 )
 from trawl_ros.nodes.workers.onset_worker import OnsetThread
 from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
+
+if TYPE_CHECKING:
+    from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.samples import Sample
 
@@ -124,7 +126,10 @@ class DiscrepancyNode(TrawlNode):
         self._book_trouble = ''
         self._log('begun')
 
-    def _new_monitor(self) -> OnsetMonitor:
+    def _new_monitor(self) -> 'OnsetMonitor':
+        # Its libraries are loaded where a tow is watched alone.
+        from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+
         estimate = self.parameters['estimate']
         knowledge = of_identification(Path(estimate)) if estimate else None
         last = self._book.last_number() if self._book is not None else 0

@@ -1,6 +1,6 @@
 """Quasi-steady states: usable roots of the forces, and the reasons why there is none."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from trawl_ros.model.observables import (
     observe,
     outward_normal_lift,
 )
+from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.cold_start import cold_start
@@ -238,7 +239,19 @@ def steady_state(
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
     model, point = with_effects(model, (port, starboard), speed, heading)
-    return require_usable(model, find_equilibrium(model, point, start, near=near))
+    found = find_equilibrium(model, point, start, near=near)
+    try:
+        return require_usable(model, found)
+    except NoSteadyState as refusal:
+        if not (model.paired and refusal.reason == 'unstable'):
+            raise
+        # Plates between two backstrops that meet again balance on edge and lying, stable in one.
+        return require_usable(model, find_equilibrium(model, point, near=_rolled(found.state)))
+
+
+def _rolled(state: State) -> State:
+    """The same nodes, with boards or plates turned by a quarter about their long axes."""
+    return replace(state, board_rotations=state.board_rotations @ about_axis(0, np.pi / 2.0))
 
 
 def with_effects(

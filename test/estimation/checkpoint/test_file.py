@@ -296,7 +296,10 @@ NAMES_OF_0_1_0 = (
 
 
 def with_names_alone(tree):
-    """A packed object; of a prior of 0.1.0, which had no groups."""
+    """A packed object of 0.1.0: priors had no groups, and nothing knew the water's depth."""
+    tree.pop('_sounder', None)
+    if 'track' in tree:
+        tree.pop('seabed')
     if set(tree) == {'start', 'std', 'low', 'high', 'groups'}:
         (group,) = tree.pop('groups')['tuple']
         tree['names'] = group['has']['names']

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from trawl_ros.estimation.windows.sounder import KEPT
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 MODULES: Mapping[str, str] = MappingProxyType(
@@ -51,6 +52,22 @@ FIELDS: Mapping[str, str] = MappingProxyType(
 )
 
 
+ADDED: Mapping[str, Mapping[str, Any]] = MappingProxyType(
+    {
+        'SteadyWindow': {'seabed': None},
+        'SteadyWindowFinder': {
+            '_sounder': {
+                'number': -5,
+                'object': 'trawl_ros.estimation.windows.sounder.Sounder',
+                'has': {'_soundings': {'number': -4, 'deque': [], 'most': KEPT}},
+            }
+        },
+    }
+)
+"""Attributes, packed, of what was not known of the water's depth. No packer gives a negative
+number."""
+
+
 def present(name: str, has: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
     """Give the name that a class has now, and its attributes as they are called now.
 
@@ -62,7 +79,7 @@ def present(name: str, has: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
     now = {FIELDS.get(key, key): value for key, value in has.items()}
     if own == 'BoardPrior' and 'names' in now:
         now['groups'] = _groups(now.pop('names'))
-    return f'{MODULES[module]}.{CLASSES.get(own, own)}', now
+    return f'{MODULES[module]}.{CLASSES.get(own, own)}', {**ADDED.get(own, {}), **now}
 
 
 def _groups(names: Any) -> Any:

@@ -46,7 +46,6 @@ class ChannelBuffer:
     ) -> None:
         self._capacity = capacity
         self.channel = channel
-        self._low, self._high, self._noise = channel.low, channel.high, channel.noise
         self.order = order
         self.first: int | None = None
         self.delay = round(channel.delay * NANO)
@@ -75,8 +74,8 @@ class ChannelBuffer:
         return count
 
     def _plausible(self, reading: Reading) -> bool:
-        value = reading.value
-        if self._low <= value <= self._high and reading.low <= value <= reading.high:
+        value, channel = reading.value, self.channel
+        if channel.low <= value <= channel.high and reading.low <= value <= reading.high:
             return True
         if not math.isfinite(reading.value):
             self._rejections.add('not finite', f'{self._where} reads {reading.value}')
@@ -105,7 +104,9 @@ class ChannelBuffer:
             return False
         stamps.insert(place, stamp)
         self._values.insert(place, reading.value)
-        self._stds.insert(place, reading.std if 0.0 < reading.std < math.inf else self._noise)
+        self._stds.insert(
+            place, reading.std if 0.0 < reading.std < math.inf else self.channel.noise
+        )
         if self.first is None or stamp < self.first:
             self.first = stamp
         if len(stamps) > self._capacity:

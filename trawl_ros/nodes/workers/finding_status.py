@@ -1,12 +1,16 @@
 """Diagnostic statuses of a diagnosis and of what begins, for ``discrepancy/findings``."""
 
+from typing import TYPE_CHECKING
+
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
+
+if TYPE_CHECKING:
+    from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 
 NAME = 'discrepancy'
 CALM = ('NO_DISCREPANCY', 'NOT_TESTABLE')
@@ -84,7 +88,7 @@ def onset_status(finding: Finding, acknowledged: bool) -> Status:
     return Status(f'{NAME}: onset {finding.number}', level, finding.sentence(), values)
 
 
-def onset_watch_status(monitor: OnsetMonitor, trouble: str) -> Status:
+def onset_watch_status(monitor: 'OnsetMonitor', trouble: str) -> Status:
     """Status of the watch for what begins; without a prediction it says why."""
     watched, unwatched = monitor.watched, monitor.unwatched
     values = {

@@ -4,12 +4,15 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from queue import SimpleQueue
 from threading import Event, Lock, Thread
+from typing import TYPE_CHECKING
 
 from trawl_ros.core.errors import sentence_of
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.nodes.workers.identification_worker import POLL_S
 from trawl_ros.records.samples import Sample
+
+if TYPE_CHECKING:
+    from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class OnsetThread(Thread):
 
     def __init__(
         self,
-        monitor: OnsetMonitor,
+        monitor: 'OnsetMonitor',
         on_finding: Callable[[Finding], None],
         dealt_with: Callable[[Sample], None],
     ) -> None:

@@ -7,7 +7,6 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Situation
-from trawl_ros.model.gear_model import OUTWARD
 
 if TYPE_CHECKING:
     from trawl_ros.model.gear_model import GearModel
@@ -25,6 +24,9 @@ class NetDamage(Effect):
 
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Gear model with more or less drag on this side of the net."""
+        # Instruments load the catalogue too, but not the model.
+        from trawl_ros.model.gear_model import OUTWARD
+
         on = _front(model) & (_sideways(model) * OUTWARD[self.side] > 0.0)
         factor = np.where(on, 1.0 + values[0], 1.0)
         bars = replace(
