@@ -103,6 +103,8 @@ def hidden_effect(folder: Path, console: Console) -> None:
             found = commands.run(*_shown(*diagnose, FOUND), expected=DISCREPANCY)
         click.echo(found)
         model = folder / FOUND / MODEL
+        if not model.is_file():
+            raise TrawlError(f'{model.parent}: no effect has a name there, expected the current')
         tow_repaired(f'hidden_{TOWS[0]}', model, folder / TOWS[0], folder / REPAIRED, console)
         repaired = ('--gear', f'{FOUND}/{MODEL}')
         with console.status('diagnosing with the repaired gear'):
