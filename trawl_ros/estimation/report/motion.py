@@ -12,7 +12,7 @@ from trawl_ros.records.coefficients import COEFFICIENTS
 
 CAUTION = (
     'Intervals in motion are those of errors twice as large as found, for a plant that is not the '
-    'model; no trials have scored them yet (docs/identification/motion.md).'
+    'model; in nine tows of such plants they were too wide (docs/identification/motion.md).'
 )
 
 MOST_NAMED = 3
