@@ -246,7 +246,10 @@ def steady_state(
         if not (model.paired and refusal.reason == 'unstable'):
             raise
         # Plates between two backstrops that meet again balance on edge and lying, stable in one.
-        return require_usable(model, find_equilibrium(model, point, near=_rolled(found.state)))
+        try:
+            return require_usable(model, find_equilibrium(model, point, near=_rolled(found.state)))
+        except NoSteadyState:
+            raise refusal from None
 
 
 def _rolled(state: State) -> State:
