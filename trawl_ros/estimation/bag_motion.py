@@ -1,6 +1,6 @@
 """Learning from all of the tow in bags, from what their steady windows tell on."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
@@ -16,7 +16,7 @@ from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.parts import parts_of
 from trawl_ros.estimation.motion.records import MovingTow
-from trawl_ros.estimation.motion.series import tow_readings
+from trawl_ros.estimation.motion.series import TowReadings, tow_readings
 from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.stretches import FEWEST, StretchOptions, moving_tow
 from trawl_ros.estimation.motion.towing import TowedGear
@@ -165,24 +165,36 @@ def moving_tows(
     numbers: list[tuple[int, ...]] = []
     refused: list[str] = []
     depth, first = build_water(gear).depth, 0
-    shortest = STRETCHES.settling_s + FEWEST * STRETCHES.stretch_s
     for number, recording in enumerate(recordings):
         on_progress(WorkProgress('reading all of it', number, len(recordings), 'bags'))
         own = 1 + max((window.tow for window in recording.windows), default=-1)
         samples = (sample for _, sample in SampleStream([Path(recording.name)], namespace))
         try:
             read = tow_readings(samples, depth, recording.name)
-            parts = parts_of(read, shortest)
-            if not parts:
-                raise TrawlError(
-                    f'{recording.name}: counters, log or winches fall silent so often that no '
-                    f'part of {shortest:.0f} s is left'
-                )
-            for place, part in enumerate(parts, start=1):
-                several = f', part {place}' if len(parts) > 1 else ''
-                tows.append(moving_tow(part, recording.name + several, STRETCHES))
+            for part in moving_parts(read, recording.name):
+                tows.append(part)
                 numbers.append(tuple(range(first, first + own)))
         except TrawlError as error:
             refused.append(str(error))
         first += own
     return tows, numbers, refused
+
+
+def moving_parts(read: TowReadings, name: str) -> Iterator[MovingTow]:
+    """Divide a tow into parts along which the model can be towed, and these into stretches.
+
+    Raises
+    ------
+    TrawlError
+        If no part is long enough, or one is too long.
+    """
+    shortest = STRETCHES.settling_s + FEWEST * STRETCHES.stretch_s
+    parts = parts_of(read, shortest)
+    if not parts:
+        raise TrawlError(
+            f'{name}: counters, log or winches fall silent so often that no part of '
+            f'{shortest:.0f} s is left'
+        )
+    for place, part in enumerate(parts, start=1):
+        several = f', part {place}' if len(parts) > 1 else ''
+        yield moving_tow(part, name + several, STRETCHES)

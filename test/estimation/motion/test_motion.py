@@ -13,13 +13,18 @@ from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, on_grid
 from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
-from trawl_ros.estimation.motion.towing import TowedGear, TowedPoint, linearise_tow
+from trawl_ros.estimation.motion.towing import (
+    TowedGear,
+    TowedPoint,
+    TowLineariser,
+    linearise_tow,
+)
 from trawl_ros.lab.benchmark.motion import BAND, course_tow, narrowed, run_motion_trial
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial
 from trawl_ros.model.gear_model import build_model
 
 SHORT_S = 120.0
-NO_ERRORS = np.zeros(len(INPUT_ERRORS))
+NO_ERRORS, NO_DRIFTS = np.zeros(len(INPUT_ERRORS)), np.zeros(0)
 
 
 @pytest.fixture(scope='module')
@@ -80,6 +85,20 @@ def test_an_error_of_the_log_is_forgotten_when_another_takes_its_column(towed):
     assert towed.by_knots[last - 1, :, 0].any()
     assert not towed.by_knots[last:, :, 0].any()
     assert towed.by_knots[last, :, knots.columns].any()
+
+
+def test_a_tow_that_grows_is_linearised_as_if_it_had_been_there_from_the_beginning(towed, coarse):
+    tow = towed.tow
+    growing = TowLineariser(TowedGear(coarse), tow.channels, replace(towed.point, drifts=NO_DRIFTS))
+    for number in (2, 5, len(tow)):
+        so_far = replace(
+            tow, means=tow.means[:number], noise=tow.noise[:number], weights=tow.weights[:number]
+        )
+        growing.extend(so_far, towed.point.drifts)
+        assert len(growing) == number
+    for name, values in vars(growing.linearised(tow)).items():
+        if name.startswith('by_') or name == 'values':
+            np.testing.assert_array_equal(values, getattr(towed, name))
 
 
 @pytest.mark.parametrize('error', range(len(INPUT_ERRORS)))

@@ -50,7 +50,7 @@ OnTow = Callable[[int, int, int], None]
 
 
 @dataclass
-class _Search:
+class MotionSearch:
     """Search for the place of least cost: where it is, and the tows as they are there."""
 
     gear: TowedGear
@@ -66,6 +66,7 @@ class _Search:
     towings: int = 0
 
     def linearise(self, at: Place, iteration: int) -> tuple[LinearisedTow, ...]:
+        """Tow all tows at a place, and linearise."""
         found = []
         self.towings += 1
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
@@ -75,7 +76,38 @@ class _Search:
         return tuple(found)
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
+        """Rows of linearised tows, by the weights as they are."""
         return linear_data(linear, self.layouts, at, self.prior, self.options, self.noise)
+
+    def target(self, sizes: ErrorSizes) -> list[FloatArray]:
+        """Place to which the step without damping leads."""
+        data = self.data(self.linear, self.here)
+        return step(data, self.here, self.prior, sizes, self.options.largest_step)
+
+    def fit(
+        self, sizes: ErrorSizes, place: Place, iterations: int, *, converged: bool, reason: str
+    ) -> MotionFit:
+        """Record of the fit at a place, by the tows as they are linearised."""
+        data, prior = self.data(self.linear, self.here), self.prior
+        wide = sizes.tempered(self.options.widened)
+        told = joined(data.information(wide), data.precisions(wide.log), data.shared)
+        covariance = np.linalg.inv(told.matrix + np.eye(data.shared))[:12, :12]
+        return MotionFit(
+            values=prior.start + prior.std * place[0][:12],
+            matrix=told.matrix,
+            covariance=covariance * np.outer(prior.std, prior.std),
+            parameters=tuple(place),
+            linear=self.linear,
+            data=data,
+            layouts=self.layouts,
+            sizes=sizes,
+            readings=sum(len(group.residual) for groups in data.tows for group in groups),
+            misfit=misfit(data, place, sizes),
+            cost=cost(data, place, sizes),
+            iterations=iterations,
+            converged=converged,
+            reason=reason,
+        )
 
     def find(self, sizes: ErrorSizes) -> ErrorSizes:
         """Find weights of the means and sizes of the errors where the step will lead to.
@@ -83,9 +115,8 @@ class _Search:
         Nothing is towed for it, so both are found until they stay before the next towing.
         """
         for _ in range(ROUNDS):
-            data, last = self.data(self.linear, self.here), sizes
-            there = step(data, self.here, self.prior, sizes, self.options.largest_step)
-            self.weigh(there, sizes)
+            last = sizes
+            self.weigh(self.target(sizes), sizes)
             if not self.options.estimate_sizes:
                 break
             data = self.data(self.linear, self.here)
@@ -167,7 +198,7 @@ def fit_motion(
     """
     layouts = tuple(layout_of(tow, gear.motions, options.model) for tow in tows)
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
-    search = _Search(gear, tows, layouts, prior, options, on_stretch, here)
+    search = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
     search.noise = tuple(tow.noise for tow in tows)
     search.linear = search.linearise(here, 0)
     sizes = options.sizes
@@ -199,29 +230,10 @@ def fit_motion(
             converged = size < NEAR
             reason = f'no step lowers the cost, {size:.2g} std from rest'
             break
-    data = search.data(search.linear, search.here)
     place: Place = search.here
-    wide = sizes.tempered(options.widened)
     if converged:
-        place = step(data, search.here, prior, wide, options.largest_step)
-    told = joined(data.information(wide), data.precisions(wide.log), data.shared)
-    covariance = np.linalg.inv(told.matrix + np.eye(data.shared))[:12, :12]
-    return MotionFit(
-        values=prior.start + prior.std * place[0][:12],
-        matrix=told.matrix,
-        covariance=covariance * np.outer(prior.std, prior.std),
-        parameters=tuple(place),
-        linear=search.linear,
-        data=data,
-        layouts=layouts,
-        sizes=sizes,
-        readings=sum(len(group.residual) for groups in data.tows for group in groups),
-        misfit=misfit(data, place, sizes),
-        cost=cost(data, place, sizes),
-        iterations=iteration,
-        converged=converged,
-        reason=reason,
-    )
+        place = search.target(sizes.tempered(options.widened))
+    return search.fit(sizes, place, iteration, converged=converged, reason=reason)
 
 
 def only(tow: LinearisedTow, flags: BoolArray) -> LinearisedTow:

@@ -121,6 +121,93 @@ def _inliers(values: FloatArray, stated: float, limit: float) -> BoolArray:
     return np.asarray(away <= limit * spread, np.bool_)
 
 
+class TowRecorder:
+    """Recorder of a tow's readings as its samples come.
+
+    Parameters
+    ----------
+    pressure_to_depth
+        Depth (m) for an absolute pressure (Pa).
+    """
+
+    def __init__(self, pressure_to_depth: Callable[[float], float]) -> None:
+        self._depth = pressure_to_depth
+        options, rejections, winch = WindowOptions(), Rejections(), Watermark()
+        self._buffers = {
+            name: ChannelBuffer(
+                channel,
+                TimestampCheck(channel, options, winch, rejections),
+                rejections,
+                MOST_READINGS,
+            )
+            for name, channel in CHANNELS.items()
+        }
+        self._payout: dict[int, tuple[float, float]] = {}
+
+    @property
+    def start_ns(self) -> int | None:
+        """Stamp at which all inputs have been read; None before."""
+        first = [self._buffers[name].first for name in INPUTS]
+        return None if None in first else max(stamp for stamp in first if stamp is not None)
+
+    @property
+    def newest_ns(self) -> int:
+        """Newest stamp of the winches that can be believed, 0 before any."""
+        return self._buffers[INPUTS[0]].newest or 0
+
+    def feed(self, sample: Sample) -> None:
+        """Take a sample of any instrument."""
+        for reading in readings(sample, self._depth):
+            self._buffers[reading.channel].add(reading)
+        if isinstance(sample, WinchSample) and np.all(np.isfinite(sample.speeds)):
+            self._payout[sample.stamp] = sample.speeds
+
+    def readings(self, name: str, until_ns: int | None = None) -> TowReadings:
+        """Readings so far.
+
+        Parameters
+        ----------
+        name
+            Of the tow, for errors.
+        until_ns
+            Stamp of the last reading that counts; all do where None.
+
+        Raises
+        ------
+        TrawlError
+            If counters or log are missing.
+        """
+        known, payout = {}, self._payout
+        for channel, buffer in self._buffers.items():
+            stamps, values, stds = buffer.all_readings()
+            own = slice(until_ns and int(np.searchsorted(stamps, until_ns, 'right')))
+            known[channel] = stamps[own], values[own], stds[own]
+        if until_ns is not None:
+            payout = {stamp: speeds for stamp, speeds in payout.items() if stamp <= until_ns}
+        missing = [name for name in INPUTS if len(known[name][0]) < WIDE]
+        if missing:
+            topics = ', '.join(f'{name} ({CHANNELS[name].topic})' for name in missing)
+            raise TrawlError(
+                f'{name}: fewer than {WIDE} usable readings of {topics}, so the model cannot be '
+                'towed along'
+            )
+        start = max(int(known[name][0][0]) for name in INPUTS)
+        series = {
+            channel: series_of(
+                CHANNELS[channel], (stamps - start) / SECOND, values, float(np.median(stds))
+            )
+            for channel, (stamps, values, stds) in known.items()
+            if len(stamps) >= WIDE
+        }
+        if len(payout) < WIDE:
+            told = payout_by_counter(series[INPUTS[0]]), payout_by_counter(series[INPUTS[1]])
+            return TowReadings(start, series, told)
+        told_at = sorted(payout)
+        times = (np.array(told_at, dtype=np.int64) - start) / SECOND
+        port, starboard = np.array([payout[stamp] for stamp in told_at]).T
+        return TowReadings(start, series, (Series(times, port), Series(times, starboard)))
+
+
 def tow_readings(
     samples: Iterable[Sample], pressure_to_depth: Callable[[float], float], name: str
 ) -> TowReadings:
@@ -140,44 +227,10 @@ def tow_readings(
     TrawlError
         If counters or log are missing.
     """
-    options, rejections, winch = WindowOptions(), Rejections(), Watermark()
-    buffers = {
-        name: ChannelBuffer(
-            channel,
-            TimestampCheck(channel, options, winch, rejections),
-            rejections,
-            MOST_READINGS,
-        )
-        for name, channel in CHANNELS.items()
-    }
-    payout: dict[int, tuple[float, float]] = {}
+    recorder = TowRecorder(pressure_to_depth)
     for sample in samples:
-        for reading in readings(sample, pressure_to_depth):
-            buffers[reading.channel].add(reading)
-        if isinstance(sample, WinchSample) and np.all(np.isfinite(sample.speeds)):
-            payout[sample.stamp] = sample.speeds
-    for buffer in buffers.values():
-        buffer.order.give_up()
-    known = {name: buffer.all_readings() for name, buffer in buffers.items()}
-    missing = [name for name in INPUTS if len(known[name][0]) < WIDE]
-    if missing:
-        topics = ', '.join(f'{name} ({CHANNELS[name].topic})' for name in missing)
-        raise TrawlError(
-            f'{name}: fewer than {WIDE} usable readings of {topics}, so the model cannot be towed '
-            'along'
-        )
-    start = max(int(known[name][0][0]) for name in INPUTS)
-    series = {
-        name: series_of(CHANNELS[name], (stamps - start) / SECOND, values, float(np.median(stds)))
-        for name, (stamps, values, stds) in known.items()
-        if len(stamps) >= WIDE
-    }
-    if len(payout) < WIDE:
-        told = payout_by_counter(series[INPUTS[0]]), payout_by_counter(series[INPUTS[1]])
-        return TowReadings(start, series, told)
-    times = (np.array(sorted(payout), dtype=np.int64) - start) / SECOND
-    port, starboard = np.array([payout[stamp] for stamp in sorted(payout)]).T
-    return TowReadings(start, series, (Series(times, port), Series(times, starboard)))
+        recorder.feed(sample)
+    return recorder.readings(name)
 
 
 def payout_by_counter(counter: Series) -> Series:

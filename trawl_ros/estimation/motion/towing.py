@@ -1,7 +1,7 @@
 """Linearised tow in motion: means of its stretches, with derivatives by all that is towed."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,8 +11,8 @@ from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, CorrectedInputs
 from trawl_ros.estimation.motion.records import LeftOut, MovingTow
+from trawl_ros.estimation.motion.under_way import InputsUnderWay, MotionUnderWay
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import fallen_boards
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.readings import MotionPrediction
@@ -29,9 +29,6 @@ SETTLING_S = 300.0
 motion, which is unknown there, has faded."""
 
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
-
-HIGHEST_M = 0.0
-"""Height above which a node has broken the surface."""
 
 
 @dataclass(frozen=True)
@@ -108,57 +105,166 @@ class LinearisedTow:
         return self.tow.means - self.values
 
 
-@dataclass
-class _Motion:
-    """Motion under way: the tow, when (s) it began, and when its stretches begin to count."""
+@dataclass(frozen=True)
+class _TowedMeans:
+    """Predicted means (k,) of a stretch with their derivatives; those by knots are each input's
+    first knot that acts, and the derivatives (k, c) by it and those behind.
+    """
 
-    towed: DifferentiatedTow
-    inputs: CorrectedInputs
-    counts_from: float
-    _newest: dict[str, int] = field(default_factory=dict)
-    _newest_from: dict[str, float] = field(default_factory=dict)
+    values: FloatArray
+    by_coefficients: FloatArray
+    by_added_mass: FloatArray
+    by_errors: FloatArray
+    by_knots: tuple[tuple[int, FloatArray], ...]
+    by_motions: FloatArray
 
-    def __post_init__(self) -> None:
-        for knots in self.inputs.inputs.knots:
-            self._newest[knots.channel] = knots.acting(self.time).stop - 1
 
-    @property
-    def time(self) -> float:
-        """Time of the tow, s."""
-        return self.inputs.begin + self.towed.time
+class TowLineariser:
+    """Tow of the gear along inputs, linearised stretch by stretch; a tow may grow between.
 
-    def advance(self, h: float) -> None:
-        """Advance by a step; knots that begin to act take the columns of those forgotten."""
-        for knots, _, first in self.inputs.inputs.knot_places:
-            newest = knots.acting(self.time + 0.5 * h).stop - 1
-            if newest > self._newest[knots.channel]:
-                self._newest[knots.channel] = newest
-                self._newest_from[knots.channel] = self.time
-                column = self._of_inputs + first + newest % knots.columns
-                self.towed.forget(slice(column, column + 1))
-        self.towed.advance(h)
+    Where the motion cannot be computed, a board falls over or the gear breaks the surface,
+    stretches are left out. Behind the former two the tow is begun anew, in the equilibrium of the
+    inputs there.
 
-    def begun_since(self, begin: float) -> list[int]:
-        """Columns of the knots that have begun to act since a time (s)."""
-        return [
-            self._of_inputs + first + self._newest[knots.channel] % knots.columns
-            for knots, _, first in self.inputs.inputs.knot_places
-            if self._newest_from.get(knots.channel, -np.inf) >= begin - 1e-6
-        ]
+    Parameters
+    ----------
+    gear
+        The gear that is towed.
+    channels
+        Measured channels (k).
+    point
+        Point of linearisation.
+    on_stretch
+        Called after each stretch, with its number.
+    """
 
-    @property
-    def _of_inputs(self) -> int:
-        return self.towed.parameters.of_inputs.start
+    def __init__(
+        self,
+        gear: TowedGear,
+        channels: tuple[str, ...],
+        point: TowedPoint,
+        on_stretch: Callable[[int], None] = lambda number: None,
+    ) -> None:
+        self._gear, self._point, self._on_stretch = gear, point, on_stretch
+        self.channels = channels
+        self._rows = [OBSERVABLES.index(name) for name in channels]
+        self._motion: MotionUnderWay | None = None
+        self._seen: list[MotionPrediction] = []
+        self._again = 0.0
+        self._means: list[_TowedMeans | None] = []
+        self._left_out: list[LeftOut] = []
 
-    @property
-    def fallen(self) -> bool:
-        """True where a board lies on its face or back."""
-        return any(fallen_boards(self.towed.motion.state))
+    def __len__(self) -> int:
+        return len(self._means)
 
-    @property
-    def surfaced(self) -> bool:
-        """True where a node has broken the surface."""
-        return bool(np.max(self.towed.motion.state.nodes[:, 2]) > HIGHEST_M)
+    def extend(
+        self,
+        tow: MovingTow,
+        drifts: FloatArray,
+        most: int | None = None,
+        required: BoolArray | None = None,
+    ) -> int:
+        """Tow on along a tow that has grown.
+
+        Parameters
+        ----------
+        tow
+            Inputs and stretches, of which the first have been towed along before.
+        drifts
+            Errors (knots,) of its inputs at all knots; those so far as they were.
+        most
+            Number of stretches that are towed along at most.
+        required
+            Flags (n,) of stretches that may not be left out, none where None.
+
+        Returns
+        -------
+        int
+            Number of stretches that were towed along.
+
+        Raises
+        ------
+        NoSteadyState
+            If a stretch that is required must be left out.
+        """
+        first = len(self)
+        last = len(tow) if most is None else min(len(tow), first + most)
+        self._point = replace(self._point, drifts=drifts)
+        if self._motion is not None:
+            self._motion.follow(tow.inputs, drifts)
+        for stretch in range(first, last):
+            found = self._towed(tow, stretch)
+            if isinstance(found, str):
+                begin = stretch * tow.stretch_s
+                if required is not None and required[stretch]:
+                    raise NoSteadyState(f'{begin:.0f} s after the beginning {found}')
+                self._left_out.append(LeftOut(begin, begin + tow.stretch_s, found))
+            self._means.append(None if isinstance(found, str) else found)
+            if self._motion is not None:
+                self._on_stretch(stretch)
+        return max(last - first, 0)
+
+    def linearised(self, tow: MovingTow) -> LinearisedTow:
+        """Tow as it is linearised so far, of which all has been towed along."""
+        n, k, number = len(tow), len(tow.channels), tow.inputs.number_of_knots
+        result = LinearisedTow(
+            tow, self._point,
+            np.full((n, k), np.nan), np.zeros((n, k, 12)), np.zeros((n, k, 1)),
+            np.zeros((n, k, len(INPUT_ERRORS))), np.zeros((n, k, number)),
+            np.zeros((n, k, self._gear.motions)), tuple(self._left_out),
+        )  # fmt: skip
+        places = tow.inputs.knot_places
+        for stretch, means in enumerate(self._means[:n]):
+            if means is None:
+                continue
+            result.values[stretch] = means.values
+            result.by_coefficients[stretch] = means.by_coefficients
+            result.by_added_mass[stretch] = means.by_added_mass
+            result.by_errors[stretch] = means.by_errors
+            for (_, own, _), (knot, slopes) in zip(places, means.by_knots, strict=True):
+                at = own.start + knot
+                result.by_knots[stretch][:, at : at + slopes.shape[1]] = slopes
+            result.by_motions[stretch][:, : means.by_motions.shape[1]] = means.by_motions
+        return result
+
+    def _towed(self, tow: MovingTow, stretch: int) -> _TowedMeans | str:
+        """Tow along a stretch; the means, or the reason for which it is left out."""
+        begin = stretch * tow.stretch_s
+        if self._motion is None and begin < self._again:
+            return AFTER_A_STOP
+        try:
+            if self._motion is None:
+                self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0)
+                self._seen = [self._observed(self._motion)]
+            taken = list(self._towed_on(self._motion, tow, stretch))
+        except (NoSteadyState, StepFailed) as error:
+            self._stop(begin)
+            return f'the model cannot be towed: {error}'
+        motion = self._motion
+        instants, self._seen = [self._seen[-1], *taken], taken
+        if motion.fallen and not self._gear.model.paired:
+            self._stop(begin)
+            return 'a board of the model falls over'
+        if motion.surfaced:
+            return 'the gear of the model breaks the surface'
+        if begin < motion.counts_from:
+            return AFTER_A_STOP
+        return _average(tow, stretch, motion, instants)
+
+    def _stop(self, begin: float) -> None:
+        self._motion, self._again = None, begin + AGAIN_S
+
+    def _towed_on(
+        self, motion: MotionUnderWay, tow: MovingTow, stretch: int
+    ) -> Iterator[MotionPrediction]:
+        every = tow.every(stretch)
+        for _ in range(0, tow.steps, every):
+            motion.advance(every * tow.step_s)
+            yield self._observed(motion)
+
+    def _observed(self, motion: MotionUnderWay) -> MotionPrediction:
+        observed = motion.towed.observed()
+        return MotionPrediction(observed.values[self._rows], observed.slopes[self._rows])
 
 
 def linearise_tow(
@@ -168,11 +274,7 @@ def linearise_tow(
     required: BoolArray | None = None,
     on_stretch: Callable[[int], None] = lambda number: None,
 ) -> LinearisedTow:
-    """Tow the gear along a tow's inputs, and linearise.
-
-    Where the motion cannot be computed, a board falls over or the gear breaks the surface,
-    stretches are left out. Behind the former two the tow is begun anew, in the equilibrium of the
-    inputs there.
+    """Tow the gear along a tow's inputs from beginning to end, and linearise.
 
     Parameters
     ----------
@@ -192,101 +294,47 @@ def linearise_tow(
     NoSteadyState
         If a stretch that is required must be left out.
     """
-    rows = [OBSERVABLES.index(name) for name in tow.channels]
-    n, k, number = len(tow), len(tow.channels), tow.inputs.number_of_knots
-    result = LinearisedTow(
-        tow, point,
-        np.full((n, k), np.nan), np.zeros((n, k, 12)), np.zeros((n, k, 1)),
-        np.zeros((n, k, len(INPUT_ERRORS))), np.zeros((n, k, number)),
-        np.zeros((n, k, gear.motions)), (),
-    )  # fmt: skip
-    left_out: list[LeftOut] = []
-    needed = np.zeros(n, bool) if required is None else required
-    motion: _Motion | None = None
-    again = 0.0
-
-    def leave_out(stretch: int, why: str) -> None:
-        begin = stretch * tow.stretch_s
-        if needed[stretch]:
-            raise NoSteadyState(f'{begin:.0f} s after the beginning {why}')
-        left_out.append(LeftOut(begin, begin + tow.stretch_s, why))
-
-    for stretch in range(n):
-        begin = stretch * tow.stretch_s
-        try:
-            if motion is None and begin < again:
-                leave_out(stretch, AFTER_A_STOP)
-                continue
-            if motion is None:
-                motion = _begin(gear, tow, point, begin, stretch > 0)
-                seen = [_observed(motion.towed, rows)]
-            taken = list(_towed_on(motion, tow, stretch, rows))
-        except (NoSteadyState, StepFailed) as error:
-            leave_out(stretch, f'the model cannot be towed: {error}')
-            motion, again = None, begin + AGAIN_S
-            continue
-        instants, seen = [seen[-1], *taken], taken
-        if motion.fallen and not gear.model.paired:
-            leave_out(stretch, 'a board of the model falls over')
-            motion, again = None, begin + AGAIN_S
-            continue
-        if motion.surfaced:
-            leave_out(stretch, 'the gear of the model breaks the surface')
-        elif begin < motion.counts_from:
-            leave_out(stretch, AFTER_A_STOP)
-        else:
-            _average(result, stretch, motion, instants)
-        on_stretch(stretch)
-    return LinearisedTow(**{**vars(result), 'left_out': tuple(left_out)})
+    lineariser = TowLineariser(gear, tow.channels, point, on_stretch)
+    lineariser.extend(tow, point.drifts, required=required)
+    return lineariser.linearised(tow)
 
 
-def _begin(gear: TowedGear, tow: MovingTow, point: TowedPoint, begin: float, anew: bool) -> _Motion:
-    inputs = CorrectedInputs(tow.inputs, point.errors, point.drifts, begin)
+def _begin(
+    gear: TowedGear, tow: MovingTow, point: TowedPoint, begin: float, anew: bool
+) -> MotionUnderWay:
+    course = InputsUnderWay(CorrectedInputs(tow.inputs, point.errors, point.drifts, begin))
     parameters = MotionParameters(
         coefficients=True,
         effects=(ADDED_MASS,),
-        inputs=inputs.names,
+        inputs=course.inputs.names,
         motions=0 if anew else gear.motions,
     )
     model = gear.model.with_coefficients(point.coefficients)
-    towed = DifferentiatedTow(model, parameters, inputs, gear.with_added_mass(point.added_mass))
-    return _Motion(towed, inputs, begin + SETTLING_S if anew else 0.0)
-
-
-def _towed_on(
-    motion: _Motion, tow: MovingTow, stretch: int, rows: list[int]
-) -> Iterator[MotionPrediction]:
-    every = tow.every(stretch)
-    for _ in range(0, tow.steps, every):
-        motion.advance(every * tow.step_s)
-        yield _observed(motion.towed, rows)
-
-
-def _observed(towed: DifferentiatedTow, rows: list[int]) -> MotionPrediction:
-    observed = towed.observed()
-    return MotionPrediction(observed.values[rows], observed.slopes[rows])
+    towed = DifferentiatedTow(model, parameters, course, gear.with_added_mass(point.added_mass))
+    return MotionUnderWay(towed, course, begin + SETTLING_S if anew else 0.0)
 
 
 def _average(
-    result: LinearisedTow, stretch: int, motion: _Motion, instants: list[MotionPrediction]
-) -> None:
-    """Fill in a stretch from its instants."""
-    weights, towed = result.tow.weights_of(stretch), motion.towed
+    tow: MovingTow, stretch: int, motion: MotionUnderWay, instants: list[MotionPrediction]
+) -> _TowedMeans:
+    """Means of a stretch from its instants."""
+    weights, parameters = tow.weights_of(stretch), motion.towed.parameters
     values = np.array([instant.values for instant in instants])
     slopes = np.array([instant.slopes for instant in instants])
-    for column in motion.begun_since(stretch * result.tow.stretch_s):
+    for column in motion.begun_since(stretch * tow.stretch_s):
         # The column of the newest knot was another's until this stretch began.
         slopes[0, :, column] = 0.0
-    result.values[stretch] = np.einsum('ki,ik->k', weights, values)
     mean = np.einsum('ki,ikm->km', weights, slopes)
-    parameters = towed.parameters
-    result.by_coefficients[stretch] = mean[:, parameters.of_coefficients]
-    result.by_added_mass[stretch] = mean[:, parameters.of_effects]
     of_inputs = mean[:, parameters.of_inputs]
-    result.by_errors[stretch] = of_inputs[:, : len(INPUT_ERRORS)]
-    for knots, own, first in result.tow.inputs.knot_places:
-        for knot in knots.acting(motion.time - 1e-6):
-            column = of_inputs[:, first + knot % knots.columns]
-            result.by_knots[stretch][:, own.start + knot] = column
-    motions = mean[:, parameters.of_motions]
-    result.by_motions[stretch][:, : motions.shape[1]] = motions
+    by_knots = []
+    for knots, _, first in tow.inputs.knot_places:
+        acting = knots.acting(motion.time - 1e-6)
+        by_knots.append((acting.start, of_inputs[:, [first + k % knots.columns for k in acting]]))
+    return _TowedMeans(
+        values=np.einsum('ki,ik->k', weights, values),
+        by_coefficients=mean[:, parameters.of_coefficients],
+        by_added_mass=mean[:, parameters.of_effects],
+        by_errors=of_inputs[:, : len(INPUT_ERRORS)],
+        by_knots=tuple(by_knots),
+        by_motions=mean[:, parameters.of_motions],
+    )

@@ -1,0 +1,171 @@
+"""Learning from all of a tow while it goes on; at its end as from a bag, by the same functions.
+
+What is done depends on the stamps of the samples alone: an estimate is the same at any rate of a
+replay.
+"""
+
+from dataclasses import dataclass
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.progress import OnProgress, ignore
+from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.bag_motion import STRETCHES, WIDENED, fit_tows, moving_parts
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.fit.objective import stack
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.series import TowRecorder
+from trawl_ros.estimation.motion.stretches import LONGEST_S
+from trawl_ros.estimation.motion.towing import TowedGear
+from trawl_ros.estimation.motion.tracking import MotionTracker
+from trawl_ros.estimation.pipeline import Identification
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.water import build_water
+from trawl_ros.records.samples import Sample, WinchSample
+
+WAIT_S, BEHIND_S = 4.0, 2.0
+"""Time behind the end of a stretch at which it is cut, and to which readings are used then: those
+of all topics, whichever comes first, have arrived."""
+
+
+@dataclass(frozen=True)
+class MotionUpdate:
+    """Estimate from all of a tow so far.
+
+    Attributes
+    ----------
+    stamp
+        End (ns) of its newest stretch.
+    outcome
+        Of the fit, linearised where the model was towed last.
+    moved
+        Largest distance of a coefficient from there, in std.
+    towings
+        Times that all of the tow was towed along.
+    """
+
+    stamp: int
+    outcome: MotionOutcome
+    moved: float
+    towings: int
+
+    @property
+    def holds(self) -> bool:
+        """True if the estimate may be used."""
+        return self.outcome.fit.converged
+
+
+class LiveMotion:
+    """Learning from all of a tow while it goes on.
+
+    Parameters
+    ----------
+    gear
+        The gear as the model has it.
+    options
+        Of the fit.
+
+    Attributes
+    ----------
+    why_not
+        Reason for which nothing is learned at present; '' where it is.
+    """
+
+    def __init__(self, gear: GearRecord, options: MotionOptions | None = None) -> None:
+        self._gear, self._prior = gear, board_prior(gear)
+        self._options = options or MotionOptions(widened=WIDENED)
+        self._towed = TowedGear(build_model(gear))
+        self._depth = build_water(gear).depth
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew with no tow."""
+        self._recorder = TowRecorder(self._depth)
+        self._tracker = MotionTracker(self._towed, self._prior, self._options)
+        self._number = 0
+        self.why_not = 'the tow has just begun'
+
+    def feed(self, sample: Sample, windows: Estimate | None = None) -> MotionUpdate | None:
+        """Take a sample.
+
+        Parameters
+        ----------
+        sample
+            Of any instrument.
+        windows
+            Estimate of the steady windows so far.
+
+        Returns
+        -------
+        MotionUpdate or None
+            With the first winch reading behind each stretch, where there is an estimate.
+        """
+        if not self.record(sample) or not isinstance(sample, WinchSample):
+            return None
+        start = self._recorder.start_ns
+        if start is None:
+            return None
+        length = round(STRETCHES.stretch_s * SECOND)
+        number = (self._recorder.newest_ns - round(WAIT_S * SECOND) - start) // length
+        if number <= self._number:
+            return None
+        self._number = number
+        return self._update(start + number * length, windows)
+
+    def record(self, sample: Sample) -> bool:
+        """Take a sample without an estimate; tell whether it belongs to the time learned from."""
+        start = self._recorder.start_ns
+        if start is not None and sample.stamp > start + round(LONGEST_S * SECOND):
+            self.why_not = f'learned from the first {LONGEST_S / 3600:g} h, which is the most'
+            return False
+        self._recorder.feed(sample)
+        return True
+
+    def finish(
+        self, identification: Identification | None, on_progress: OnProgress = ignore
+    ) -> MotionOutcome:
+        """Fit all of the tow as if it were read from a bag.
+
+        Parameters
+        ----------
+        identification
+            At rest, of the same samples; None where there is no steady window.
+        on_progress
+            As of `fit_tows`.
+
+        Raises
+        ------
+        TrawlError
+            If it cannot be learned from.
+        """
+        tows, refused = self._tows(None)
+        if not tows:
+            raise TrawlError('; '.join(refused))
+        windows = () if identification is None else identification.estimator.windows
+        own = tuple(range(1 + max((window.tow for window in windows), default=-1)))
+        numbers = [own] * len(tows)
+        return fit_tows(self._gear, identification, tows, numbers, refused, on_progress)
+
+    def _tows(self, until_ns: int | None) -> tuple[list[MovingTow], list[str]]:
+        tows: list[MovingTow] = []
+        refused: list[str] = []
+        try:
+            tows += moving_parts(self._recorder.readings('the tow', until_ns), 'the tow')
+        except TrawlError as reason:
+            refused.append(str(reason))
+        return tows, refused
+
+    def _update(self, end_ns: int, windows: Estimate | None) -> MotionUpdate | None:
+        tows, refused = self._tows(end_ns + round(BEHIND_S * SECOND))
+        self.why_not = '; '.join(refused)
+        if not tows:
+            return None
+        found = self._tracker.update(tows, windows)
+        if found is None:
+            self.why_not = self.why_not or 'the model is towed along the tow so far'
+            return None
+        outcome = MotionOutcome(found.fit, self._prior, windows, tuple(refused), stack(()))
+        return MotionUpdate(end_ns, outcome, found.moved, found.towings)

@@ -1,0 +1,248 @@
+"""Fit of tows that grow: solved anew with each stretch, linearised anew where it has moved.
+
+The model is towed along each stretch of the tows once, as it comes, and what is linearised so far
+is solved anew. Where the estimate has moved from the place of that linearisation, all so far is
+towed again there, some stretches with each new one, so that no estimate waits for it. At the end
+of the tows a fit from beginning to end (`fit`) has the last word.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.motion.fit import (
+    COOLER,
+    DAMPING,
+    LOST,
+    NEAR,
+    STIFFER,
+    MotionSearch,
+    only,
+)
+from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
+from trawl_ros.estimation.motion.growing import GrowingLinearisation
+from trawl_ros.estimation.motion.information import own_values
+from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.processes import ErrorSizes
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.sizes import LinearData
+from trawl_ros.estimation.motion.start import starting_point
+from trawl_ros.estimation.motion.steps import Place, cost, misfit, shared_std, step
+from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear
+from trawl_ros.records.coefficients import COEFFICIENTS
+
+AHEAD = 8
+"""Stretches that are towed along again, at most, with each new one."""
+
+FAR = 1.0
+"""Part of every std from the place of the linearisation from which an estimate does not hold."""
+
+GROWN = 1.5
+"""Factor by which a tow grows before sizes of the errors are found anew, or a step is tried again
+that was refused."""
+
+OF_GEAR = len(COEFFICIENTS) + 1
+"""Parameters of the gear itself, the first of all: coefficients and added mass."""
+
+MOST_FOUND = 240
+"""Stretches of a tow for which sizes are found, at most: it takes the longer the more these are."""
+
+
+@dataclass(frozen=True)
+class TrackedFit:
+    """Fit of tows as they are so far.
+
+    Attributes
+    ----------
+    fit
+        Linearised where the model was towed last; converged where it holds.
+    moved
+        Largest distance of a coefficient from there, in std.
+    towings
+        Times that all of the tows was towed along.
+    """
+
+    fit: MotionFit
+    moved: float
+    towings: int
+
+
+class MotionTracker:
+    """Fit of tows that grow.
+
+    Parameters
+    ----------
+    gear, prior
+        The gear that is towed, and the prior of its coefficients.
+    options
+        Of the fit.
+    """
+
+    def __init__(self, gear: TowedGear, prior: ParameterVector, options: MotionOptions) -> None:
+        self._towed, self._prior, self._options = gear, prior, options
+        self._here: GrowingLinearisation | None = None
+        self._next: GrowingLinearisation | None = None
+        self._sizes, self._temper = options.sizes, np.inf
+        self._weights: dict[int, FloatArray] = {}
+        self._damping, self._refused, self._again = 0.0, 0, 0.0
+        self._found_at, self._started_with = 0, 0
+        self._towings, self._held = 0, False
+
+    def update(self, tows: Sequence[MovingTow], windows: Estimate | None) -> TrackedFit | None:
+        """Take tows as they are now, and the estimate of their steady windows, where there is one.
+
+        Returns
+        -------
+        TrackedFit or None
+            None as long as the model is towed along them for the first time.
+        """
+        search = self._search(tows)
+        found = self._solved(search)
+        if self._next is None:
+            self._next = self._candidate(search, found, windows)
+        if self._next is not None and self._next.extend(tows, AHEAD):
+            accepted, self._next = self._compare(search, self._next), None
+            if accepted:
+                found = self._solved(search)
+        return found
+
+    def _search(self, tows: Sequence[MovingTow]) -> MotionSearch:
+        """Search with the linearisation as it is, where there is one."""
+        layouts = tuple(layout_of(tow, 0, self._options.model) for tow in tows)
+        search = MotionSearch(
+            self._towed, tows, layouts, self._prior, self._options, lambda *_: None,
+            [np.zeros(len(layout)) for layout in layouts],
+        )  # fmt: skip
+        search.noise = tuple(self._weighted(tow) for tow in tows)
+        if self._here is not None:
+            self._here.extend(tows)
+            self._take(search, self._here)
+        return search
+
+    @staticmethod
+    def _take(search: MotionSearch, linearisation: GrowingLinearisation) -> None:
+        search.linear = linearisation.linearised(search.tows)
+        search.here = linearisation.place(search.tows, search.layouts)
+
+    def _weighted(self, tow: MovingTow) -> FloatArray:
+        """Noise (n, k) of a tow's means by the weights that were found last."""
+        known, noise = self._weights.get(tow.start_ns), np.array(tow.noise)
+        if known is not None and known.shape[1] == noise.shape[1]:
+            rows = min(len(known), len(noise))
+            noise[:rows] *= known[:rows]
+        return noise
+
+    def _solved(self, search: MotionSearch) -> TrackedFit | None:
+        """Fit where the tows are linearised, and how far from there it leads."""
+        if self._here is None:
+            return None
+        sizes = self._sized(search)
+        data = search.data(search.linear, search.here)
+        place = search.target(sizes.tempered(self._options.widened))
+        away = np.abs(search.target(sizes)[0][:12] - search.here[0][:12])
+        moved = float(np.max(away / shared_std(data, sizes)[:12]))
+        self._held = self._temper == 1.0 and moved < (FAR if self._held else NEAR)
+        reason = f'{moved:.2g} std from where the model was towed'
+        if self._temper > 1.0:
+            reason += f', all errors taken for {self._temper:.2g} times as large'
+        fit = search.fit(sizes, place, self._towings, converged=self._held, reason=reason)
+        return TrackedFit(fit, moved, self._towings) if fit.readings else None
+
+    def _sized(self, search: MotionSearch) -> ErrorSizes:
+        """Sizes of the errors, found anew where the tow has grown."""
+        stretches = sum(map(len, search.tows))
+        grown = stretches > GROWN * self._found_at and stretches <= MOST_FOUND
+        if self._temper == 1.0 and grown:
+            self._found_at = stretches
+            self._sizes = search.find(self._sizes)
+            for tow, noise in zip(search.tows, search.noise, strict=True):
+                self._weights[tow.start_ns] = np.nan_to_num(noise / tow.noise, nan=1.0)
+        return self._sizes.tempered(self._temper)
+
+    def _candidate(
+        self,
+        search: MotionSearch,
+        found: TrackedFit | None,
+        windows: Estimate | None,
+    ) -> GrowingLinearisation | None:
+        """Place to tow all of it along again at, if there is reason to."""
+        known = 0 if windows is None else windows.windows
+        if self._here is None or (known > self._started_with and not self._held):
+            self._started_with = known
+            return self._linearisation(search, self._start(search, windows))
+        if found is None or sum(map(len, search.tows)) < self._again:
+            return None
+        if found.moved < NEAR:
+            self._temper = max(1.0, COOLER * self._temper)
+            return None
+        data, sizes = search.data(search.linear, search.here), self._sizes.tempered(self._temper)
+        largest = self._options.largest_step
+        there = step(data, search.here, self._prior, sizes, largest, self._damping)
+        return self._linearisation(search, there)
+
+    def _linearisation(self, search: MotionSearch, place: Place) -> GrowingLinearisation:
+        return GrowingLinearisation(
+            self._towed, self._prior, search.tows, search.layouts, list(place)
+        )
+
+    def _start(self, search: MotionSearch, windows: Estimate | None) -> Place:
+        if windows is None:
+            return search.here
+        numbers = sorted({bias.tow for bias in windows.tow_biases})
+        return [
+            starting_point(windows, self._prior, tow, layout, numbers)
+            for tow, layout in zip(search.tows, search.layouts, strict=True)
+        ]
+
+    def _compare(self, search: MotionSearch, tried: GrowingLinearisation) -> bool:
+        """Take a linearisation for that in use if its cost is lower; tell whether it is."""
+        self._towings += 1
+        sizes = self._sizes.tempered(self._temper)
+        linear, there = tried.linearised(search.tows), tried.place(search.tows, search.layouts)
+        if self._here is not None and not self._lower(search, linear, there, sizes):
+            self._refused += 1
+            self._damping = max(DAMPING, STIFFER * self._damping)
+            if self._refused >= self._options.attempts:
+                self._refused, self._damping = 0, 0.0
+                self._temper = max(1.0, COOLER * self._temper)
+                self._again = GROWN * sum(map(len, search.tows))
+            return False
+        self._here, self._refused, self._damping = tried, 0, 0.0
+        self._take(search, tried)
+        data = search.data(linear, there)
+        rest = misfit(data, _eliminated(data, there, self._sizes), self._sizes)
+        self._temper = max(1.0, min(COOLER * self._temper, rest))
+        return True
+
+    @staticmethod
+    def _lower(
+        search: MotionSearch, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes
+    ) -> bool:
+        """True if the cost is lower there, and hardly a stretch is lost."""
+        both = [old.towed & new.towed for old, new in zip(search.linear, tried, strict=True)]
+        before = sum(int(np.sum(old.towed)) for old in search.linear)
+        if before - sum(int(np.sum(flags)) for flags in both) > LOST * before:
+            return False
+        costs = []
+        for linear, place in ((search.linear, search.here), (tried, there)):
+            kept = [only(tow, flags) for tow, flags in zip(linear, both, strict=True)]
+            data = search.data(kept, place)
+            costs.append(cost(data, _eliminated(data, place, sizes), sizes))
+        return costs[1] <= costs[0] * (1.0 + 1e-9)
+
+
+def _eliminated(data: LinearData, place: Place, sizes: ErrorSizes) -> list[FloatArray]:
+    """Place with all that is no coefficient or added mass as it fits best there.
+
+    Stretches that came after a linearisation began were towed without errors of their own.
+    """
+    parts = zip(data.information(sizes), data.precisions(sizes.log), place, strict=True)
+    kept = OF_GEAR
+    return [
+        np.concatenate((z[:kept], own_values(tow, precision, z[:kept])))
+        for tow, precision, z in parts
+    ]
