@@ -166,59 +166,70 @@ def solve(
     exchanged: IntArray,
     solutions: FloatArray,
 ) -> None:
-    """Solve for right-hand sides (k, dof) with the factors, of which each part serves for all of
-    them while it is at hand.
+    """Solve for right-hand sides (k, dof) with the factors, one after another.
+
+    Pivots are taken in threes, which is one block of unknowns: rows of L and U are read side by
+    side.
     """
     largest = 0
     for number in range(len(fronts)):
         largest = max(largest, fronts[number, SIZE])
-    inner, beyond = np.empty_like(rights), np.empty(largest, rights.dtype)
+    x, beyond = np.empty(len(order), rights.dtype), np.empty(largest, rights.dtype)
     for right in range(len(rights)):
         for k in range(len(order)):
-            inner[right, k] = rights[right, order[k]]
-    first = 0
-    for number in range(len(fronts)):
-        pivots, size, at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, FACTORS]
-        edge, begin = size - pivots, fronts[number, BORDER]
-        upper = factors[at : at + pivots * size].reshape(pivots, size)
-        at += pivots * size
-        lower = factors[at : at + pivots * edge].reshape(pivots, edge)
-        rest = beyond[:edge]
-        for right in range(len(rights)):
-            x = inner[right]
-            y = x[first : first + pivots]
-            rest[:] = 0.0
+            x[k] = rights[right, order[k]]
+        first = 0
+        for number in range(len(fronts)):
+            pivots, size = fronts[number, PIVOTS], fronts[number, SIZE]
+            edge, begin, at = size - pivots, fronts[number, BORDER], fronts[number, FACTORS]
+            upper = factors[at : at + pivots * size].reshape(pivots, size)
+            at += pivots * size
+            y, rest = x[first : first + pivots], beyond[:edge]
             for k in range(pivots):
                 other = exchanged[first + k]
                 y[k], y[other] = y[other], y[k]
-            for k in range(pivots):
-                value = y[k]
+            rest[:] = 0.0
+            for k in range(0, pivots, 3):
+                u, v, w = upper[k], upper[k + 1], upper[k + 2]
+                a, b, c = y[k], y[k + 1], y[k + 2]
                 for j in range(k):
-                    value -= upper[k, j] * y[j]
-                y[k] = value
+                    a -= u[j] * y[j]
+                    b -= v[j] * y[j]
+                    c -= w[j] * y[j]
+                b -= v[k] * a
+                c -= w[k] * a + w[k + 1] * b
+                y[k], y[k + 1], y[k + 2] = a, b, c
+                u, v, w = factors[at:], factors[at + edge :], factors[at + 2 * edge :]
+                at += 3 * edge
                 for i in range(edge):
-                    rest[i] += lower[k, i] * value
+                    rest[i] += u[i] * a + v[i] * b + w[i] * c
+            rows = border[begin : begin + edge]
             for i in range(edge):
-                x[border[begin + i]] -= rest[i]
-        first += pivots
-    for number in range(len(fronts) - 1, -1, -1):
-        pivots, size, at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, FACTORS]
-        edge, begin = size - pivots, fronts[number, BORDER]
-        upper = factors[at : at + pivots * size].reshape(pivots, size)
-        rest = beyond[:edge]
-        first -= pivots
-        for right in range(len(rights)):
-            x = inner[right]
-            y = x[first : first + pivots]
+                x[rows[i]] -= rest[i]
+            first += pivots
+        for number in range(len(fronts) - 1, -1, -1):
+            pivots, size = fronts[number, PIVOTS], fronts[number, SIZE]
+            edge, begin, at = size - pivots, fronts[number, BORDER], fronts[number, FACTORS]
+            upper = factors[at : at + pivots * size].reshape(pivots, size)
+            first -= pivots
+            y, rest, rows = x[first : first + pivots], beyond[:edge], border[begin : begin + edge]
             for i in range(edge):
-                rest[i] = x[border[begin + i]]
-            for k in range(pivots - 1, -1, -1):
-                value = y[k]
-                for j in range(k + 1, pivots):
-                    value -= upper[k, j] * y[j]
+                rest[i] = x[rows[i]]
+            for k in range(pivots - 3, -1, -3):
+                u, v, w = upper[k], upper[k + 1], upper[k + 2]
+                a, b, c = y[k], y[k + 1], y[k + 2]
+                for j in range(k + 3, pivots):
+                    a -= u[j] * y[j]
+                    b -= v[j] * y[j]
+                    c -= w[j] * y[j]
+                u, v, w = upper[k, pivots:], upper[k + 1, pivots:], upper[k + 2, pivots:]
                 for i in range(edge):
-                    value -= upper[k, pivots + i] * rest[i]
-                y[k] = value * upper[k, k]
-    for right in range(len(rights)):
+                    a -= u[i] * rest[i]
+                    b -= v[i] * rest[i]
+                    c -= w[i] * rest[i]
+                c *= upper[k + 2, k + 2]
+                b = (b - upper[k + 1, k + 2] * c) * upper[k + 1, k + 1]
+                a = (a - upper[k, k + 1] * b - upper[k, k + 2] * c) * upper[k, k]
+                y[k], y[k + 1], y[k + 2] = a, b, c
         for k in range(len(order)):
-            solutions[right, order[k]] = inner[right, k]
+            solutions[right, order[k]] = x[k]

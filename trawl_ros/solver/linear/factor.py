@@ -27,7 +27,7 @@ ROUNDING = 1e-14
 
 keep_freed_memory()
 
-MANY = 6
+MANY = 5
 """So many right-hand sides are solved faster side by side than one after another."""
 
 
