@@ -11,9 +11,7 @@ from trawl_ros.model.board import (
     coefficients_at,
     flow_at,
     hydrodynamics,
-    inclination,
     own_load,
-    pitch_and_roll,
 )
 from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_board
@@ -219,9 +217,3 @@ def test_turning_strips_resist_a_spin(board: Board) -> None:
         0.5 * DENSITY * 2.0**2 * 2.13 * width * board.rotary_slope * (0.1 * strip / 2.0) * strip
     )
     np.testing.assert_allclose(spun - calm, [expected, 0.0, 0.0], rtol=1e-3, atol=1e-6)
-
-
-def test_inclination_pitch_and_roll() -> None:
-    turn = about_axis(2, 0.4) @ about_axis(1, 0.2) @ about_axis(0, -0.3)
-    assert inclination(turn) == pytest.approx(math.acos(math.cos(0.2) * math.cos(0.3)))
-    np.testing.assert_allclose(pitch_and_roll(turn), (0.2, -0.3), rtol=1e-12)

@@ -154,41 +154,27 @@ def gathered(
 
 
 def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Force (..., 2, 3) of each warp on its towing block, N; states and boundaries may be many.
+    """Force (2, 3) of each warp on its towing block, N.
 
     With the half segment of load that a lumped line hangs on its fixed end, so that the
     tension at the block does not depend on how finely the warp is cut.
     """
-    top, segments = model.layout.top_warp_bars, model.warp_segments
-    side, (block, upper) = model.warp_side[top], model.ends[top].T
+    top = model.layout.top_warp_bars
+    block, upper = model.ends[top].T
     block = block - model.nodes - 6
-    given = (
-        _both_ends(tow.blocks[..., block, :], state.nodes[..., upper, :]),
-        _both_ends(tow.block_velocities[..., block, :], state.node_velocities[..., upper, :]),
-        np.where(side >= 0, tow.lengths[..., side] / segments, model.rest[top]),
-        np.where(side >= 0, tow.length_rates[..., side] / segments, 0.0),
-    )
-    x, v, rest, rate = alike(*given)
-    bars = len(x.reshape(-1, 2, 3))
-    rest, rate = (np.broadcast_to(values, x.shape[:-2]).reshape(-1) for values in (rest, rate))
-    columns = tuple(np.tile(column[top], bars // len(top)) for column in model.bars.columns)
-    total = np.zeros((2 * bars, 3), x.dtype)
-    add_bar_forces(
-        np.arange(2 * bars).reshape(-1, 2),
-        x.reshape(-1, 3),
-        v.reshape(-1, 3),
+    rest, rate = (values[top] for values in rest_lengths(model, tow))
+    x, v, rest, rate = alike(
+        np.concatenate([tow.blocks[block], state.nodes[upper]]),
+        np.concatenate([tow.block_velocities[block], state.node_velocities[upper]]),
         rest,
         rate,
-        columns,
-        water_of(model.water),
-        total,
     )
-    return total[0::2].reshape(*x.shape[:-2], 3)
-
-
-def _both_ends(block: FloatArray, node: FloatArray) -> FloatArray:
-    """Values (..., bars, 2, 3) of both ends of the highest bars, one or both of them for many."""
-    return np.stack(np.broadcast_arrays(block, node), axis=-2)
+    ends, total = np.arange(2 * len(top)).reshape(2, -1).T, np.zeros_like(x)
+    columns = model.bars.chosen(top).columns
+    add_bar_forces(
+        np.ascontiguousarray(ends), x, v, rest, rate, columns, water_of(model.water), total
+    )
+    return total[: len(top)]
 
 
 def bar_tensions(model: GearModel, state: State, tow: Tow) -> FloatArray:

@@ -23,7 +23,7 @@ from trawl_ros.model.board_law import (
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.compiled import as_kind, stepped_among
 from trawl_ros.model.hooks import CoefficientModifier
-from trawl_ros.model.numerics import STEP, angle, transpose
+from trawl_ros.model.numerics import STEP, transpose
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.water import Water
 
@@ -361,19 +361,3 @@ def _flat(array: FloatArray, shape: tuple[int, ...], *tail: int) -> FloatArray:
     if np.shape(array) != whole:
         array = np.broadcast_to(array, whole)
     return array.reshape(-1, *tail)
-
-
-def inclination(rotation: FloatArray) -> FloatArray:
-    """Inclination δ (rad, unsigned) of the board's z axis against the vertical (eq. 38)."""
-    upright = rotation[..., 2, 2]
-    flat = np.sqrt(rotation[..., 0, 2] ** 2 + rotation[..., 1, 2] ** 2)
-    return angle(flat, upright)
-
-
-def pitch_and_roll(rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Pitch (nose down positive) and roll (top to starboard positive), rad, as
-    R = Rz(yaw) Ry(pitch) Rx(roll) in the right-handed door frame.
-    """
-    nose = -rotation[..., 2, 0]
-    level = np.sqrt(rotation[..., 0, 0] ** 2 + rotation[..., 1, 0] ** 2)
-    return angle(nose, level), angle(rotation[..., 2, 1], rotation[..., 2, 2])

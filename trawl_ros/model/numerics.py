@@ -30,24 +30,9 @@ def length(a: FloatArray, floor: float = 0.0) -> FloatArray:
     return np.sqrt(dot(a, a) + floor * floor)
 
 
-def distance(a: FloatArray, b: FloatArray) -> float:
-    """Distance of two points (3,)."""
-    return cast(float, length(a - b))
-
-
 def outer(a: FloatArray, b: FloatArray) -> FloatArray:
     """Dyadic product along the last axis, shape (..., 3, 3)."""
     return a[..., :, None] * b[..., None, :]
-
-
-def angle(y: FloatArray, x: FloatArray) -> FloatArray:
-    """``arctan2`` that carries an infinitesimal imaginary part along."""
-    real: FloatArray = np.arctan2(np.real(y), np.real(x))
-    if not (np.iscomplexobj(y) or np.iscomplexobj(x)):
-        return real
-    square = np.real(x) ** 2 + np.real(y) ** 2
-    slope = (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
-    return cast(FloatArray, real + 1j * slope)
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:

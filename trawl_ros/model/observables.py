@@ -1,16 +1,18 @@
-"""Observation: the observables of a state of the gear."""
+"""Observation: the observables of a state of the gear.
 
-from typing import cast
+Their loop is compiled for complex numbers, for a complex step, as that of the boards' law.
+"""
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.assembly import block_forces
-from trawl_ros.model.board import flow_at, inclination, pitch_and_roll
+from trawl_ros.model.bar_pass import WaterTable, add_bar_forces, water_of
+from trawl_ros.model.board_law import angle_at, fill_flow
+from trawl_ros.model.compiled import as_kind, compiled, inner, stepped_among
+from trawl_ros.model.current import current_at
 from trawl_ros.model.gear_model import OUTWARD, GearModel
-from trawl_ros.model.numerics import angle, distance, length
 from trawl_ros.model.state import State, Tow
-from trawl_ros.records.observables import Observables
+from trawl_ros.records.observables import OBSERVABLES, Observables
 
 COLLAPSED_NORMAL, LYING_SPAN = -0.35, 0.5
 """Vertical parts of a board's outward normal, below which it has fallen on its face, and of its
@@ -21,72 +23,153 @@ LYING = np.sin(np.radians(50.0))
 """Vertical part of a board's outward normal, up or down, from which it lies over."""
 
 
+TOP_ENDS = np.array([[0, 2], [1, 3]])
+"""Ends of the highest bars of both warps among the blocks and the nodes below them."""
+
+
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:
-    """Compute the observables of a state; complex states give complex values, and states whose
-    arrays have dimensions in front give as many values of each.
-    """
-    port, starboard = state.board_positions[..., 0, :], state.board_positions[..., 1, :]
-    flow = flow_at(
-        model.board,
-        OUTWARD,
+    """Compute the observables of a state; complex states give complex values."""
+    at = observed_nodes(model)
+    parts = (
+        state.nodes[at],
         state.board_positions,
         state.board_rotations,
+        state.node_velocities[at],
         state.board_velocities,
         state.board_rates,
-        model.water,
     )
-    pitch, roll = pitch_and_roll(state.board_rotations)
-    lean = inclination(state.board_rotations)
-    pull = block_forces(model, state, tow)
-    tension = length(pull)
-    # Warps leave over the stern: their angles count from straight astern.
-    to_port = tow.blocks[..., 0, :2] - tow.blocks[..., 1, :2]
-    to_port = (to_port / length(to_port)[..., None])[..., None, :]
-    astern = pull[..., 1] * to_port[..., 0] - pull[..., 0] * to_port[..., 1]
-    aside = pull[..., 0] * to_port[..., 0] + pull[..., 1] * to_port[..., 1]
-    divergence = angle(aside * OUTWARD, astern)
-    declination = angle(-pull[..., 2], length(pull[..., :2]))
-    ends, centre, below = _mouth_nodes(model)
-    top = state.nodes[..., centre, :]
-    values = {
-        'door_spread': distance(port, starboard),
-        'port_door_depth': -port[..., 2],
-        'starboard_door_depth': -starboard[..., 2],
-        'port_tension': tension[..., 0],
-        'starboard_tension': tension[..., 1],
-        'net_depth': -top[..., 2],
-        'vertical_opening': top[..., 2] - state.nodes[..., below, 2],
-        'horizontal_opening': distance(state.nodes[..., ends[0], :], state.nodes[..., ends[1], :]),
-        'port_pitch': pitch[..., 0],
-        'starboard_pitch': pitch[..., 1],
-        'port_roll': roll[..., 0],
-        'starboard_roll': roll[..., 1],
-        'port_divergence': divergence[..., 0],
-        'starboard_divergence': divergence[..., 1],
-        'port_declination': declination[..., 0],
-        'starboard_declination': declination[..., 1],
-        'port_attack': flow.attack[..., 0],
-        'starboard_attack': flow.attack[..., 1],
-        'port_slip': flow.slip[..., 0],
-        'starboard_slip': flow.slip[..., 1],
-        'port_inclination': lean[..., 0],
-        'starboard_inclination': lean[..., 1],
-    }
-    # Numbers of one state, arrays of many.
-    return Observables(**cast(dict[str, float], values))
+    there = tow.blocks, tow.block_velocities, tow.lengths, tow.length_rates
+    given = [part[None] for part in (*parts, *there)]
+    values = observed_values(model, State(*given[:6]), Tow(*given[6:]))[0]
+    found = values if stepped_among(*given) else values.real
+    return Observables(*found.tolist())
 
 
-def _mouth_nodes(model: GearModel) -> tuple[tuple[int, int], int, int]:
-    """Both ends of the headrope, its centre, and the footrope's."""
-    head, foot = model.layout.headrope, model.layout.footrope
-    ends = int(head[0]), int(head[-1])
-    return ends, int(head[len(head) // 2]), int(foot[len(foot) // 2])
+def observed_values(model: GearModel, states: State, tows: Tow) -> FloatArray:
+    """Observables (m, 22), complex, of m states whose nodes are the `observed_nodes` alone."""
+    top, segments = model.layout.top_warp_bars, float(model.warp_segments)
+    given = as_kind(
+        complex,
+        *vars(states).values(),
+        tows.blocks,
+        tows.block_velocities,
+        tows.lengths / segments,
+        tows.length_rates / segments,
+    )
+    values = np.empty((len(given[0]), len(OBSERVABLES)), complex)
+    bars = model.bars.chosen(top).columns
+    middles, outward = as_kind(complex, model.board.middles, OUTWARD)
+    fill_observables(*given, TOP_ENDS, bars, middles, outward, water_of(model.water), values)
+    return values
 
 
 def observed_nodes(model: GearModel) -> IntArray:
-    """Nodes (k,) that the observables depend on: of the mouth, and the highest of the warps."""
-    ends, centre, below = _mouth_nodes(model)
-    return np.unique([*ends, centre, below, *model.ends[model.layout.top_warp_bars, 1]])
+    """Nodes (6,) that the observables depend on: both ends of the headrope, its centre, the
+    footrope's, and the highest of both warps.
+    """
+    head, foot = model.layout.headrope, model.layout.footrope
+    mouth = head[0], head[-1], head[len(head) // 2], foot[len(foot) // 2]
+    return np.array([*mouth, *model.ends[model.layout.top_warp_bars, 1]])
+
+
+@inner
+def _length(vector: FloatArray) -> float:
+    """Length of a vector (3,), without conjugation."""
+    size: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    return size
+
+
+@compiled
+def fill_attitude(rotation: FloatArray, angles: FloatArray) -> None:
+    """Fill in pitch (nose down positive), roll (top to starboard positive) and inclination δ of the
+    board's z axis against the vertical (eq. 38, unsigned), rad, of one board (3, 3).
+
+    Pitch and roll are those of R = Rz(yaw) Ry(pitch) Rx(roll) in the right-handed door frame.
+    """
+    level = np.sqrt(rotation[0, 0] ** 2 + rotation[1, 0] ** 2)
+    flat = np.sqrt(rotation[0, 2] ** 2 + rotation[1, 2] ** 2)
+    angles[0] = angle_at(-rotation[2, 0], level)
+    angles[1] = angle_at(rotation[2, 1], rotation[2, 2])
+    angles[2] = angle_at(flat, rotation[2, 2])
+
+
+@compiled
+def fill_observables(
+    nodes: FloatArray,
+    boards: FloatArray,
+    rotations: FloatArray,
+    node_velocities: FloatArray,
+    board_velocities: FloatArray,
+    rates: FloatArray,
+    blocks: FloatArray,
+    block_velocities: FloatArray,
+    rest: FloatArray,
+    rest_rate: FloatArray,
+    ends: IntArray,
+    bars: tuple[FloatArray, ...],
+    middles: FloatArray,
+    outward: FloatArray,
+    water: WaterTable,
+    values: FloatArray,
+) -> None:
+    """Fill in the observables (m, 22) in the order of `OBSERVABLES`.
+
+    Parameters
+    ----------
+    nodes, node_velocities
+        Of the nodes `observed_nodes`, (m, 6, 3).
+    boards, rotations, board_velocities, rates, blocks, block_velocities
+        As `State` and `Tow` have them, m in front.
+    rest, rest_rate
+        Unstretched lengths of the highest bar of either warp and their rates, (m, 2).
+    ends, bars
+        Ends of these among both blocks and the nodes below them, and their properties.
+    middles, outward
+        Means (2, 3) of the boards' fastening points in their outward frames, whose signs are (2,).
+    """
+    x, v, pull = np.empty((3, 4, 3), values.dtype)
+    relative, flow = np.empty((2, 2, 3), values.dtype)
+    attack, slip = np.empty((2, 2), values.dtype)
+    angles, between = np.empty((2, 3), values.dtype)
+    shear = np.empty(3)
+    for case in range(len(values)):
+        seen = values[case]
+        head, other, centre, below = nodes[case, 0], nodes[case, 1], nodes[case, 2], nodes[case, 3]
+        for i in range(3):
+            between[i] = boards[case, 0, i] - boards[case, 1, i]
+        seen[0] = _length(between)
+        seen[1], seen[2] = -boards[case, 0, 2], -boards[case, 1, 2]
+        seen[5], seen[6] = -centre[2], centre[2] - below[2]
+        for i in range(3):
+            between[i] = head[i] - other[i]
+        seen[7] = _length(between)
+        for side in range(2):
+            for i in range(3):
+                x[side, i], x[2 + side, i] = blocks[case, side, i], nodes[case, 4 + side, i]
+                v[side, i] = block_velocities[case, side, i]
+                v[2 + side, i] = node_velocities[case, 4 + side, i]
+        pull[:] = 0.0
+        add_bar_forces(ends, x, v, rest[case], rest_rate[case], bars, water, pull)
+        # Warps leave over the stern: their angles count from straight astern.
+        across, ahead = x[0, 0] - x[1, 0], x[0, 1] - x[1, 1]
+        wide = np.sqrt(across**2 + ahead**2)
+        across, ahead = across / wide, ahead / wide
+        for side in range(2):
+            tension = pull[side]
+            level = np.sqrt(tension[0] ** 2 + tension[1] ** 2)
+            astern = tension[1] * across - tension[0] * ahead
+            aside = tension[0] * across + tension[1] * ahead
+            seen[3 + side] = _length(tension)
+            seen[12 + side] = angle_at(aside * outward[side], astern)
+            seen[14 + side] = angle_at(-tension[2], level)
+            current_at(water[3], water[4], boards[case, side, 2], relative[side], shear)
+            for i in range(3):
+                relative[side, i] -= board_velocities[case, side, i]
+            fill_attitude(rotations[case, side], angles)
+            seen[8 + side], seen[10 + side], seen[20 + side] = angles[0], angles[1], angles[2]
+        fill_flow(middles, outward, rotations[case], relative, rates[case], flow, attack, slip)
+        for side in range(2):
+            seen[16 + side], seen[18 + side] = attack[side], slip[side]
 
 
 def outward_normal_lift(state: State) -> FloatArray:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.rotations import rotation, rotation_vector
 
 
@@ -35,28 +35,6 @@ class TowSlopes:
     block_velocities: FloatArray
     lengths: FloatArray
     length_rates: FloatArray
-
-    @property
-    def moving(self) -> BoolArray:
-        """Flags (m,) of the parameters that the boundary depends on."""
-        parts = (self.blocks, self.block_velocities, self.lengths, self.length_rates)
-        flags: BoolArray = np.array(
-            [
-                any(bool(part[number].any()) for part in parts)
-                for number in range(len(self.lengths))
-            ],
-            bool,
-        )
-        return flags
-
-    def chosen(self, parameters: IntArray) -> 'TowSlopes':
-        """Derivatives by some of the parameters."""
-        return TowSlopes(
-            self.blocks[parameters],
-            self.block_velocities[parameters],
-            self.lengths[parameters],
-            self.length_rates[parameters],
-        )
 
 
 def held_boundary(number: int) -> TowSlopes:

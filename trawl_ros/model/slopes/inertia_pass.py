@@ -1,5 +1,4 @@
-"""One pass over bars for M a, the force that accelerates them, and its slopes, and passes over
-many cases of a few bars; compiled.
+"""One pass over bars for M a, the force that accelerates them, and its slopes; compiled.
 
 Ends, properties, water and slots are those of `trawl_ros.model.bar_pass`.
 """
@@ -8,7 +7,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.model.bar import mass_at
-from trawl_ros.model.bar_pass import WaterTable, add_bar_forces
+from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled
 
 
@@ -39,39 +38,6 @@ def add_bar_inertia(
             for j in range(3):
                 total[start, i] += matrix[i, j] * a[start, j]
                 total[end, i] += matrix[i, j] * a[end, j]
-
-
-@compiled
-def add_inertia_of_many(
-    ends: IntArray,
-    x: FloatArray,
-    a: FloatArray,
-    rest: FloatArray,
-    bars: tuple[FloatArray, ...],
-    water: WaterTable,
-    total: FloatArray,
-) -> None:
-    """The same for many cases, each with points (m, p, 3) and unstretched lengths (m, n)."""
-    for case in range(len(x)):
-        add_bar_inertia(ends, x[case], a[case], rest[case], bars, water, total[case])
-
-
-@compiled
-def add_forces_of_many(
-    ends: IntArray,
-    x: FloatArray,
-    v: FloatArray,
-    rest: FloatArray,
-    rest_rate: FloatArray,
-    bars: tuple[FloatArray, ...],
-    water: WaterTable,
-    total: FloatArray,
-) -> None:
-    """Forces of bars, `trawl_ros.model.bar_pass.add_bar_forces`, for as many cases."""
-    for case in range(len(x)):
-        add_bar_forces(
-            ends, x[case], v[case], rest[case], rest_rate[case], bars, water, total[case]
-        )
 
 
 @compiled

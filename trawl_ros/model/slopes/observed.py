@@ -5,7 +5,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, stepped
-from trawl_ros.model.observables import observe, observed_nodes
+from trawl_ros.model.observables import observe, observed_nodes, observed_values
 from trawl_ros.model.rotations import rotation
 from trawl_ros.model.state import State, Tow, TowSlopes, held_boundary
 
@@ -43,27 +43,24 @@ def observed_slopes(
         stepped(tow.lengths, boundary.lengths),
         stepped(tow.length_rates, boundary.length_rates),
     )
-    found = observe(model, _stepped_state(model, state, places, velocities), there).array()
-    return found[:, 0].real, found.imag / STEP
+    found = observed_values(model, _stepped_states(model, state, places, velocities), there)
+    return found[0].real, found.T.imag / STEP
 
 
-def _stepped_state(
+def _stepped_states(
     model: GearModel, state: State, places: FloatArray, velocities: FloatArray
 ) -> State:
-    """State stepped along all directions at once; nodes that nothing is read of stay at nought."""
-    n, number = model.nodes, places.shape[1]
-    nodes, going = np.zeros((2, number, n, 3), complex)
-    for node in observed_nodes(model):
-        own = slice(3 * node, 3 * node + 3)
-        nodes[:, node] = stepped(state.nodes[node], places[own].T)
-        going[:, node] = stepped(state.node_velocities[node], velocities[own].T)
+    """States stepped along all directions, with the `observed_nodes` alone."""
+    n, number, at = model.nodes, places.shape[1], observed_nodes(model)
+    rows = (3 * at[:, None] + np.arange(3)).ravel()
+    shifted, going = (part[rows].T.reshape(number, -1, 3) for part in (places, velocities))
     moved, rates = (part[3 * n :].T.reshape(number, 2, 6) for part in (places, velocities))
     turns = rotation(stepped(np.zeros(3), moved[..., 3:]))
     return State(
-        nodes=nodes,
+        nodes=stepped(state.nodes[at], shifted),
         board_positions=stepped(state.board_positions, moved[..., :3]),
         board_rotations=turns @ state.board_rotations,
-        node_velocities=going,
+        node_velocities=stepped(state.node_velocities[at], going),
         board_velocities=stepped(state.board_velocities, rates[..., :3]),
         board_rates=stepped(state.board_rates, rates[..., 3:]),
     )
