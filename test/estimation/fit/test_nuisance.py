@@ -11,7 +11,7 @@ from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import linearise
-from trawl_ros.estimation.fit.nuisance import ROUNDS, reweighted
+from trawl_ros.estimation.fit.nuisance import ALIKE, ROUNDS, reweighted
 
 NORMAL = 1e9
 """A limit that no error reaches, so that the loss is that of normal errors."""
@@ -112,6 +112,10 @@ def test_a_wild_reading_loses_weight_and_its_neighbours_do_not(fit):
     (first, _) = robust.elimination.tows
     assert first.weights[2, 0] < 0.02
     assert np.median(first.weights) == 1.0
+    for tow, weights in zip(
+        robust.elimination.tows, reweighted(robust.elimination, robust.options.huber), strict=True
+    ):
+        np.testing.assert_allclose(tow.weights, weights, atol=2.0 * ALIKE)
 
 
 def test_what_an_instrument_reads_too_high_is_found_per_tow(sea, model, prior):

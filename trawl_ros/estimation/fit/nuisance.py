@@ -20,7 +20,7 @@ from trawl_ros.estimation.fit.error_stack import ErrorStack, stacked
 from trawl_ros.estimation.fit.error_terms import TowErrors
 
 ROUNDS = 50
-"""Reweighting converges fast; this is a guard, not a setting."""
+"""Eliminations, the last with the weights that are kept: a guard, not a setting."""
 
 ALIKE = 1e-5
 """Weights that change by less are the last; they err the cost by the square of that."""
@@ -120,18 +120,13 @@ def eliminate_nuisance(
     if not tows:
         return _nothing(jacobian.shape[2])
     stack = stacked(tows, scales, residual, jacobian)
-    if weights is not None:
-        return _solved(stack, tows, weights, huber)
-    guess: Sequence[FloatArray] = [np.ones(tow.noise.shape) for tow in tows]
-    before: Sequence[FloatArray] | None = None
-    for _ in range(ROUNDS):
-        elimination = _solved(stack, tows, guess, huber)
-        updated = reweighted(elimination, huber)
-        steps = [a - b for a, b in zip(updated, guess, strict=True)]
-        if max((float(np.max(np.abs(step))) for step in steps), default=0.0) < ALIKE:
-            break
-        guess, before = _extrapolated(updated, steps, before)
-    return elimination
+    if weights is None:
+        every = _robust_weights(stack, tows, huber)
+    else:
+        every = np.ones(stack.std.shape)
+        for place, weight in enumerate(weights):
+            every[place, : len(weight)] = weight
+    return _solved(stack, tows, every, huber)
 
 
 def _nothing(q: int) -> NuisanceElimination:
@@ -140,43 +135,74 @@ def _nothing(q: int) -> NuisanceElimination:
     return NuisanceElimination((), np.zeros((q, q)), np.zeros(q), np.zeros((0, q)), none, 0.0)
 
 
+def _robust_weights(stack: ErrorStack, tows: Sequence[TowErrors], huber: float) -> FloatArray:
+    """Huber weights (t, n, k) that belong to the readings' own errors with them."""
+    p, m = tows[0].calibration.shape[2], tows[0].model.shape[2]
+    known = np.concatenate((stack.columns[..., : p + m], stack.columns[..., -1:]), axis=-1)
+    weights, before = np.ones(stack.std.shape), None
+    for _ in range(1, ROUNDS):
+        updated = _huber_weights(_own_errors(stack, known, p, weights), huber)
+        step = updated - weights
+        if float(np.max(np.abs(step))) < ALIKE:
+            break
+        weights, before = _extrapolated(updated, step, before)
+    return weights
+
+
+def _own_errors(stack: ErrorStack, known: FloatArray, p: int, weights: FloatArray) -> FloatArray:
+    """The readings' own errors (t, n, k), in std, beside the most likely ν and μ.
+
+    From normal equations: for weights that are found to `ALIKE` they are exact enough, and the
+    coefficients take no part. ``known`` (t, n, k, p + m + 1) are U, M and r.
+    """
+    t, n, k, width = known.shape
+    m = width - p - 1
+    variances = stack.shared + (stack.std**2 / weights)[..., None] * np.eye(k)
+    solved = np.linalg.solve(variances, known)
+    flat = known.reshape(t, n * k, width)
+    normal = flat.swapaxes(1, 2) @ solved.reshape(t, n * k, width)
+    of_tow = np.linalg.solve(normal[:, :p, :p] + np.eye(p), normal[:, :p, p:])
+    rest = np.sum(normal[:, p:, p:] - normal[:, p:, :p] @ of_tow, axis=0)
+    model = np.linalg.solve(rest[:m, :m] + np.eye(m), rest[:m, m])
+    without = np.ones((t, 1, width, 1))
+    without[:, 0, :p, 0] = of_tow[..., :m] @ model - of_tow[..., m]
+    without[:, 0, p:-1, 0] = -model
+    own: FloatArray = stack.std / weights * (solved @ without)[..., 0] * stack.present
+    return own
+
+
 def _extrapolated(
-    updated: Sequence[FloatArray], steps: Sequence[FloatArray], before: Sequence[FloatArray] | None
-) -> tuple[Sequence[FloatArray], Sequence[FloatArray] | None]:
+    updated: FloatArray, step: FloatArray, before: FloatArray | None
+) -> tuple[FloatArray, FloatArray | None]:
     """Weights at the end of steps that fall by one factor (Aitken 1926), after two such; and the
-    steps that the next are compared with.
+    step that the next is compared with.
     """
     if before is None:
-        return updated, steps
-    square = sum(float(np.vdot(old, old)) for old in before)
-    along = sum(float(np.vdot(new, old)) for new, old in zip(steps, before, strict=True))
+        return updated, step
+    square, along = float(np.vdot(before, before)), float(np.vdot(step, before))
     if not 0.0 < along < STEADY * square:
-        return updated, steps
+        return updated, step
     beyond = along / (square - along)
-    ends = [
-        np.clip(weight + beyond * step, 0.5 * weight, 1.0)
-        for weight, step in zip(updated, steps, strict=True)
-    ]
-    return ends, None
+    return np.clip(updated + beyond * step, 0.5 * updated, 1.0), None
 
 
 def reweighted(elimination: NuisanceElimination, huber: float) -> tuple[FloatArray, ...]:
     """Huber weights (n, k) of each tow for the readings' own errors."""
-    return tuple(huber / np.maximum(np.abs(tow.own), huber) for tow in elimination.tows)
+    return tuple(_huber_weights(tow.own, huber) for tow in elimination.tows)
+
+
+def _huber_weights(own: FloatArray, huber: float) -> FloatArray:
+    weights: FloatArray = huber / np.maximum(np.abs(own), huber)
+    return weights
 
 
 def _solved(
-    stack: ErrorStack,
-    tows: Sequence[TowErrors],
-    weights: Sequence[FloatArray],
-    huber: float,
+    stack: ErrorStack, tows: Sequence[TowErrors], every: FloatArray, huber: float
 ) -> NuisanceElimination:
+    """Elimination with Huber weights ``every`` (t, n, k)."""
     t, n, k, width = stack.columns.shape
     p, m = tows[0].calibration.shape[2], tows[0].model.shape[2]
     q = width - p - m - 1
-    every = np.ones(stack.std.shape)
-    for place, weight in enumerate(weights):
-        every[place, : len(weight)] = weight
     diagonal = (stack.std**2 / every)[..., None] * np.eye(k)
     roots = np.asarray(np.linalg.cholesky(diagonal + stack.shared), np.float64)
     inverse = np.asarray(np.linalg.inv(roots), np.float64)
@@ -188,9 +214,7 @@ def _solved(
     padded = np.vstack((of_coefficients, np.zeros((q + 1, q + 1))))
     last = triangular(padded)
     model = solve_triangular(of_model[:, :m], of_model[:, -1])
-    tow_parts = _explained(
-        stack, tows, weights, roots, inverse, every, triangles[:, :p], model, huber
-    )
+    tow_parts = _explained(stack, tows, roots, inverse, every, triangles[:, :p], model, huber)
     return NuisanceElimination(
         tows=tow_parts,
         triangle=last[:q, :q],
@@ -216,7 +240,6 @@ def triangular(rows: FloatArray) -> FloatArray:
 def _explained(
     stack: ErrorStack,
     tows: Sequence[TowErrors],
-    weights: Sequence[FloatArray],
     roots: FloatArray,
     inverse: FloatArray,
     every: FloatArray,
@@ -242,7 +265,7 @@ def _explained(
         TowPart(
             errors=tow,
             std=stack.std[place, : len(tow.rows)],
-            weights=weights[place],
+            weights=every[place, : len(tow.rows)],
             roots=roots[place, : len(tow.rows)],
             triangle=triangles[place, :, :-1],
             own=own[place, : len(tow.rows)],
