@@ -89,6 +89,25 @@ def test_ropes_change_on_one_side_alone_and_say_so():
     assert change.words(0.5) == 'thicker bridles on the starboard side, by about 50 %'
 
 
+def test_a_change_on_one_side_is_made_of_the_gear_with_that_on_both(monkeypatch):
+    gear = load_gear('kaifuha').refined(net=0.25)
+    by_name = {own.name: own for own in changes_of(gear)}
+    model, at, built = build_model(gear), Situation((500.0, 500.0, 2.0)), []
+    monkeypatch.setattr(
+        'trawl_ros.diagnosis.mimics.gear_file_change.build_model',
+        lambda own: built.append(own) or build_model(own),
+    )
+    names = 'bridle_diameter', 'port_bridle_diameter', 'starboard_bridle_diameter'
+    both, port, starboard = (by_name[name].gear(np.array([0.5]), model, at) for name in names)
+    assert len(built) == 1
+    own = port.bars.normal_area != model.bars.normal_area
+    other = starboard.bars.normal_area != model.bars.normal_area
+    assert own.any()
+    assert other.any()
+    assert not (own & other).any()
+    np.testing.assert_array_equal(own | other, both.bars.normal_area != model.bars.normal_area)
+
+
 def test_only_the_numbers_at_the_keys_change():
     gear = load_gear('kaifuha')
     thicker = changed(gear, record('front_twine'), 0.5)

@@ -38,11 +38,14 @@ class GearFileChange(Change):
         Gear file that is changed.
     side
         0 for ropes of the port side alone, 1 for those of starboard; None for both.
+    both
+        The change on both sides, whose gears one on a side is made of.
     """
 
     record: MimicRecord
     believed: GearRecord
     side: int | None = None
+    both: 'GearFileChange | None' = field(default=None, repr=False, compare=False)
     _built: dict[float, GearModel] = field(default_factory=dict, repr=False, compare=False)
 
     def words(self, size: float) -> str:
@@ -59,9 +62,10 @@ class GearFileChange(Change):
         if size not in self._built:
             while len(self._built) >= KEPT:
                 self._built.pop(next(iter(self._built)))
-            built = build_model(changed(self.believed, self.record, size))
-            if self.side is not None:
-                built = _on_side(self.side, built, build_model(self.believed))
+            if self.side is None or self.both is None:
+                built = build_model(changed(self.believed, self.record, size))
+            else:
+                built = _on_side(self.side, self.both.gear(values, model, at), model)
             self._built[size] = built
         return self._built[size].with_coefficients(model.coefficients)
 
@@ -88,9 +92,11 @@ def _changes(gear: GearRecord) -> Iterator[GearFileChange]:
     for record in mimic_table():
         if changed(gear, record, 0.5 * (record.high or record.low)) == gear:
             continue
-        yield _change(gear, record, None)
+        both = _change(gear, record, None)
+        yield both
         if record.one_sided:
-            yield from (_change(gear, record, side) for side in range(len(SIDES)))
+            for side in range(len(SIDES)):
+                yield replace(_change(gear, record, side), both=both)
 
 
 def _change(gear: GearRecord, record: MimicRecord, side: int | None) -> GearFileChange:

@@ -63,10 +63,11 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
         for k, row in enumerate([*wings, *rows], -wing_rows)
     }
 
+    # Half of the column of a bar on a wing's edge is cut away.
+    halves = {k: {key: 0.5 * value for key, value in own.items()} for k, own in columns.items()}
+
     def sums(k: int, row: NettingRow, j: int, other: int) -> dict[str, float]:
-        # Half of the column of a bar on a wing's edge is cut away.
-        share = 0.5 if _on_edge(k, j, other, n, wing_rows) else 1.0
-        return {key: share * value for key, value in columns[k].items()}
+        return (halves if _on_edge(k, j, other, n, wing_rows) else columns)[k]
 
     made = weave(net, body, wings, rows, lambda k, j: _in_wing(k, j, n, wing_rows), sums)
     index, last = made.index, rows[-1]

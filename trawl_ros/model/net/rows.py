@@ -1,5 +1,6 @@
 """Netting along its length: the profile of the real one, and the rows of bars grouped from it."""
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -48,19 +49,19 @@ class Profile:
 
     def __init__(self, sections: tuple[SectionRecord, ...]) -> None:
         self.sections = sections
-        self.edges = np.cumsum([0.0, *(s.length_m for s in sections)])
+        self.edges: list[float] = np.cumsum([0.0, *(s.length_m for s in sections)]).tolist()
 
     @property
     def length(self) -> float:
         """Stretched length of the netting, m."""
-        return float(self.edges[-1])
+        return self.edges[-1]
 
     def behind(self, x: float) -> tuple[SectionRecord, ...]:
         """Sections behind ``x``, the first one cut there."""
         left = []
         for section, front, back in zip(self.sections, self.edges, self.edges[1:], strict=False):
             if back > x:
-                start = max(x, float(front))
+                start = max(x, front)
                 _, circumference = self.at(start)
                 changes = {'length_m': back - start, 'front_circumference_m': circumference}
                 left.append(section.model_copy(update=changes))
@@ -68,9 +69,7 @@ class Profile:
 
     def at(self, x: float) -> tuple[SectionRecord, float]:
         """Section at ``x`` and its stretched circumference there."""
-        k = int(
-            np.clip(np.searchsorted(self.edges, x, side='right') - 1, 0, len(self.sections) - 1)
-        )
+        k = min(max(bisect_right(self.edges, x) - 1, 0), len(self.sections) - 1)
         s = self.sections[k]
         share = max(x - self.edges[k], 0.0) / s.length_m
         return s, s.front_circumference_m + share * (
