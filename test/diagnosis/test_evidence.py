@@ -47,6 +47,18 @@ def test_with_some_values_free_the_others_explain_the_rest(case):
     assert found.without([0]).chi2([0]) == pytest.approx(0.0, abs=1e-9)
 
 
+def test_another_draw_of_the_noise_is_read_with_the_same_information(case):
+    seen, chance = case
+    found = gathered(seen, chance.normal(size=60))
+    assert found.degrees_of_freedom([1, 2]) == len([1, 2])
+    assert found.chi2([1, 2]) > 0.0
+    drawn = found.with_noise(np.random.default_rng(3))
+    alone = Evidence(drawn.information, drawn.score, drawn.root)
+    for block in BLOCKS:
+        assert drawn.chi2(block) == alone.chi2(block) != found.chi2(block)
+        assert drawn.degrees_of_freedom(block) == alone.degrees_of_freedom(block)
+
+
 def test_a_threshold_is_exceeded_as_often_as_it_says(case):
     seen, chance = case
     limit = threshold(gathered(seen, np.zeros(60)), BLOCKS, 0.05, seed=1)

@@ -6,7 +6,7 @@ evidence for each is a χ², and so are rivalry and what a trial could have show
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import chdtrc, ndtri
@@ -37,11 +37,17 @@ class Evidence:
         Its product with the values most likely, had each no rival.
     root : (r, n) array
         T; the score of data without any effect is its transpose times standard normal numbers.
+    inverses, ranks
+        Of blocks of the information as they were asked for; other draws of the noise share them.
     """
 
     information: FloatArray
     score: FloatArray
     root: FloatArray
+    inverses: dict[tuple[int, ...], FloatArray] = field(
+        default_factory=dict, repr=False, compare=False
+    )
+    ranks: dict[tuple[int, ...], int] = field(default_factory=dict, repr=False, compare=False)
 
     def chi2(self, block: Sequence[int]) -> float:
         """Score statistic: decrease of the χ² of all data with these values free."""
@@ -55,7 +61,9 @@ class Evidence:
         """Degrees of freedom: rank of the information on these values."""
         if len(block) == 1:
             return int(abs(self.information[block[0], block[0]]) > BLIND)
-        return int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
+        if (key := tuple(block)) not in self.ranks:
+            self.ranks[key] = int(np.linalg.matrix_rank(self._of(block), BLIND, hermitian=True))
+        return self.ranks[key]
 
     def strength(self, block: Sequence[int], doubt: float = 1.0) -> float:
         """-log₁₀ of the probability of as large a χ² where these values are not there.
@@ -67,7 +75,7 @@ class Evidence:
 
     def values(self, block: Sequence[int]) -> FloatArray:
         """Most likely values, relative to their linearisation point, in units of the columns."""
-        return np.linalg.pinv(self._of(block), 1e-10, hermitian=True) @ self.score[list(block)]
+        return self._inverse(block) @ self.score[list(block)]
 
     def std(self, block: Sequence[int]) -> FloatArray:
         """Standard deviations of values, each alone; infinite where they are unobservable."""
@@ -82,13 +90,13 @@ class Evidence:
         if size <= BLIND:
             return 0.0
         shared = self.information[np.ix_(columns, rows)] @ values
-        inverse = np.linalg.pinv(self._of(other), 1e-10, hermitian=True)
+        inverse = self._inverse(other)
         return float(np.sqrt(np.clip(shared @ inverse @ shared / size, 0.0, 1.0)))
 
     def without(self, block: Sequence[int]) -> 'Evidence':
         """Conditional evidence with some values free in any case; theirs is 0 then."""
         rows = list(block)
-        inverse = np.linalg.pinv(self._of(block), 1e-10, hermitian=True)
+        inverse = self._inverse(block)
         gain = self.information[:, rows] @ inverse
         taken = self.root[:, rows] @ inverse @ self.root[:, rows].T
         return Evidence(
@@ -101,6 +109,13 @@ class Evidence:
         """Evidence of the same data with as much noise again, drawn by chance."""
         drawn = chance.standard_normal(len(self.root)) @ self.root
         return replace(self, score=self.score + drawn)
+
+    def _inverse(self, block: Sequence[int]) -> FloatArray:
+        """Pseudo-inverse of the information on these values."""
+        if (key := tuple(block)) not in self.inverses:
+            inverse = np.linalg.pinv(self._of(block), 1e-10, hermitian=True)
+            self.inverses[key] = np.asarray(inverse, np.float64)
+        return self.inverses[key]
 
     def _of(self, block: Sequence[int]) -> FloatArray:
         return self.information[np.ix_(list(block), list(block))]
