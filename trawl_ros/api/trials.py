@@ -1,35 +1,33 @@
-"""Sea trials: identification and diagnosis from their bags, and the plan of a next one."""
+"""Sea trials: identification and diagnosis from their bags, and the plan of a next one.
+
+What one of them does without is imported in the others: figures, motion and onsets take their time.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
-from trawl_ros.diagnosis.onset.knowledge import of_gear_file
-from trawl_ros.diagnosis.onset.tows import OnsetsInTow, by_estimate, onsets_in
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.repair import source
-from trawl_ros.diagnosis.report.writing import write_diagnosis
-from trawl_ros.estimation.bag_motion import learn_from_motion, why_windows_alone
 from trawl_ros.estimation.bag_windows import read_tows
 from trawl_ros.estimation.from_gear import estimator_options, identification_for
 from trawl_ros.estimation.pipeline import NO_WINDOW
-from trawl_ros.estimation.planning.plan import TrialPlan
-from trawl_ros.estimation.planning.plan import plan_for as plan_for
-from trawl_ros.estimation.planning.states import Limits
-from trawl_ros.estimation.planning.writing import write_plan
-from trawl_ros.estimation.report.in_motion import report_in_motion
-from trawl_ros.estimation.report.page import write_report
-from trawl_ros.estimation.report.report import Report, report
 from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.topics import NAMESPACE
-from trawl_ros.scenario.scenario import true_coefficients
+
+if TYPE_CHECKING:
+    from trawl_ros.diagnosis.onset.tows import OnsetsInTow
+    from trawl_ros.estimation.planning.plan import TrialPlan
+    from trawl_ros.estimation.planning.states import Limits
+    from trawl_ros.estimation.report.report import Report
 
 DEFAULT_GEAR = 'kaifuha'
 
@@ -55,7 +53,7 @@ def identify(
     force: bool = False,
     on_note: OnNote = _silent,
     on_progress: OnProgress = ignore,
-) -> Report:
+) -> 'Report':
     """Refit the twelve board coefficients of eq. 14 from bags, each of them a tow.
 
     Each tow is left out in turn and predicted from the others; with one, its steady states are.
@@ -114,6 +112,12 @@ def identify(
     >>> report.estimate.values.shape, len(report.windows)
     ((12,), 2)
     """
+    from trawl_ros.estimation.bag_motion import learn_from_motion, why_windows_alone
+    from trawl_ros.estimation.report.in_motion import report_in_motion
+    from trawl_ros.estimation.report.page import write_report
+    from trawl_ros.estimation.report.report import report
+    from trawl_ros.scenario.scenario import true_coefficients
+
     if out is not None:
         empty_folder(Path(out), force=force)
     known = None if truth is None else true_coefficients(truth)
@@ -219,6 +223,8 @@ def diagnose(
                 result, onsets=_onsets(result, paths[len(baseline) :], namespace, on_progress)
             )
     if out is not None:
+        from trawl_ros.diagnosis.report.writing import write_diagnosis
+
         write_diagnosis(result, [source(path) for path in paths], Path(out))
     return result
 
@@ -227,11 +233,11 @@ def plan_trial(
     gear: str | Path = DEFAULT_GEAR,
     *,
     hours: float = 6.0,
-    limits: Limits | None = None,
+    limits: 'Limits | None' = None,
     out: str | Path | None = None,
     force: bool = False,
     on_progress: OnProgress = ignore,
-) -> TrialPlan:
+) -> 'TrialPlan':
     """Plan the trial that tells most about the boards in a given time at sea.
 
     Parameters
@@ -268,18 +274,25 @@ def plan_trial(
     >>> len(plan.gains)
     5
     """
+    from trawl_ros.estimation.planning.plan import plan_for
+
     if out is not None:
         empty_folder(Path(out), force=force)
     plan = plan_for(load_gear(gear), hours=hours, limits=limits, on_progress=on_progress)
     if out is not None:
+        from trawl_ros.estimation.planning.writing import write_plan
+
         write_plan(plan, str(gear), Path(out))
     return plan
 
 
 def _onsets(
     diagnosis: Diagnosis, paths: Sequence[Path], namespace: str, on_progress: OnProgress
-) -> tuple[OnsetsInTow, ...]:
+) -> 'tuple[OnsetsInTow, ...]':
     """Onsets in each tow, by the boards as they were fitted, or else by the gear file."""
+    from trawl_ros.diagnosis.onset.knowledge import of_gear_file
+    from trawl_ros.diagnosis.onset.tows import by_estimate, onsets_in
+
     known = of_gear_file(diagnosis.gear)
     if diagnosis.base is not None:
         known = by_estimate(diagnosis.base.estimate)

@@ -19,7 +19,6 @@ from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
-from trawl_ros.diagnosis.report.writing import MODEL
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
 """Exit codes by verdict; 1 and 2 are for errors of input and usage."""
@@ -77,6 +76,9 @@ def command(
 
 
 def _print(diagnosis: Diagnosis, out: Path) -> None:
+    # Figures take their time to load, for which a command that is refused need not wait.
+    from trawl_ros.diagnosis.report.writing import MODEL
+
     console = Console(highlight=False, soft_wrap=True)
     console.print(f'{diagnosis.verdict}. {headline(diagnosis)}', style='bold', markup=False)
     for sentence in sentences(diagnosis):

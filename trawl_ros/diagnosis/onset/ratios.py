@@ -8,7 +8,7 @@ are correlated with these, for each onset.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc, chdtri
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
@@ -16,6 +16,9 @@ from trawl_ros.diagnosis.onset.whitening import MOST, Whitened, WhiteningFilter
 
 FEWEST = 2
 """Stretches since an onset, at least, before it counts."""
+
+NEAR = float(chdtri(1, 0.05))
+"""Difference from the largest ratio that 95 % of the likelihood do not exclude."""
 
 
 @dataclass(frozen=True)
@@ -134,12 +137,18 @@ class RatioBank:
                 'wp,wpq,wq->w', values, informed, values
             )
             best = int(np.argmax(ratios))
-            near = ages[ratios >= ratios[best] - chi2.ppf(0.95, 1)]
+            near = ages[ratios >= ratios[best] - NEAR]
             found.append(
                 OnsetEvidence(
                     number, int(ages[best]), float(ratios[best]),
-                    float(-chi2.logsf(ratios[best], len(own)) / np.log(10.0)),
+                    _rarity(ratios[best], len(own)),
                     values[best], np.linalg.inv(informed[best]), near,
                 )
             )  # fmt: skip
         return sorted(found, key=lambda one: -one.rarity)
+
+
+def _rarity(ratio: float, freedom: int) -> float:
+    # Beyond the smallest number it is infinite.
+    with np.errstate(divide='ignore'):
+        return float(-np.log(chdtrc(freedom, ratio)) / np.log(10.0))
