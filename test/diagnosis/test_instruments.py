@@ -7,7 +7,9 @@ import pytest
 
 from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, without
 from trawl_ros.diagnosis.procedure import diagnose_windows
-from trawl_ros.diagnosis.report.sentences import sentences
+from trawl_ros.diagnosis.report.result import result
+from trawl_ros.diagnosis.report.sentences import headline, sentences
+from trawl_ros.diagnosis.report.what_to_do import what_to_do
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 
@@ -73,8 +75,17 @@ def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):
     assert [window.tow for window in left if 'net_depth' in window.means] == [0] * 5
     assert without(stuck, []) == tuple(stuck)
     said = diagnose_windows(coarse, stuck, ['first', 'second'], frozenset({0}))
-    assert said.verdict == 'NO_DISCREPANCY'
-    assert 'the other readings' in said.reason
+    assert said.verdict == 'NAMED'
+    assert said.repair is None
+    (effect,) = result(said, ())['effects']
+    assert (effect['name'], effect['tow'], effect['channel']) == (
+        'frozen_sensor', 'second', 'net_depth',
+    )  # fmt: skip
+    value = effect['parameters']['value']
+    assert value['low'] < 120.0 < value['high']
+    assert 'A sensor is frozen (net depth in tow 2, 120 m throughout)' in headline(said)
+    assert 'the other readings' in headline(said)
+    assert what_to_do(said).startswith('Frozen sensor: a blocked port')
     assert said.remarks == (found.sentence,)
     assert frozen(stuck[:6], ['first', 'second']) == ()
 

@@ -20,7 +20,7 @@ PROMISED = {
     'port_bridle_length', 'starboard_bridle_length', 'floats', 'kite', 'port_clump',
     'starboard_clump', 'swapped_doors', 'swapped_cells', 'attitude_mount', 'leeway',
     'current_along_track', 'current_in_time', 'other_wire', 'port_net_damage',
-    'starboard_net_damage',
+    'starboard_net_damage', 'frozen_sensor',
 }  # fmt: skip
 
 FOREIGN = Effect(

@@ -46,7 +46,7 @@ def test_where_it_is_neutral_it_does_nothing(model, coefficients, plain, name):
     np.testing.assert_allclose(same, plain.jacobian, rtol=1e-4, atol=1e-5)
 
 
-@pytest.mark.parametrize('name', [name for name in NAMES if not catalogue()[name].dynamic])
+@pytest.mark.parametrize('name', [name for name in NAMES if catalogue()[name].fitted])
 def test_it_has_the_derivatives_it_claims(model, coefficients, plain, name):
     effect = catalogue()[name]
     predictor = Predictor(model, free=(effect,), at=AT)
@@ -77,7 +77,7 @@ def test_what_shows_in_motion_alone_does_not_show_in_steady_tows(model, coeffici
 
 
 def test_signatures_of_all_at_once_are_those_of_each(model, coefficients, plain):
-    effects = [effect for effect in catalogue().values() if not effect.dynamic]
+    effects = [effect for effect in catalogue().values() if effect.fitted]
     predictor = Predictor(model, at=AT)
     wanted = [ActiveEffect(effect, effect.neutral) for effect in effects]
     together = predictor.signatures(coefficients, INPUTS, plain.state, wanted)

@@ -30,7 +30,8 @@ def _print(effect: Effect, console: Console) -> None:
     table = plain_table('   parameter', 'unit', 'not there', 'from', 'to', right=('not there',))
     for parameter in effect.parameters:
         table.add_row(f'   {parameter.name}', parameter.unit or '–', *map(_number, _of(parameter)))
-    console.print(table)
+    if effect.parameters:
+        console.print(table)
     console.print(f'  Shown by {effect.excited_by}.', soft_wrap=True)
     if effect.causes:
         console.print(f'  Looks like this: {effect.causes}', soft_wrap=True)

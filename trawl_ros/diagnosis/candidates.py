@@ -67,7 +67,7 @@ def candidates(
     """
     wanted = []
     for effect in effects.values():
-        if effect.dynamic:
+        if not effect.fitted:
             continue
         present = predictor.fixed.of(effect)
         starts = effect.starts(depths)

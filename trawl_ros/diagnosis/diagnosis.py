@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from trawl_ros.diagnosis.empirical import Empirical
 from trawl_ros.diagnosis.holdout import HoldoutComparison, Split
+from trawl_ros.diagnosis.instruments import FrozenSensor
 from trawl_ros.diagnosis.locating import Where
 from trawl_ros.diagnosis.mimicry import Mimic
 from trawl_ros.diagnosis.naming import Named
@@ -41,6 +42,8 @@ class Diagnosis:
         kept back. None, or empty, where it did not come to that.
     remarks
         On instruments that need no model to be seen at fault.
+    frozen
+        Sensors that show one value throughout a tow, whose readings were left out.
     checks, proposals
         Next steps where something cannot be told apart: without towing, in sentences, and
         tows.
@@ -72,6 +75,7 @@ class Diagnosis:
     where: tuple[Where, ...] = ()
     holdout: HoldoutComparison | None = None
     remarks: tuple[str, ...] = ()
+    frozen: tuple[FrozenSensor, ...] = ()
     checks: tuple[str, ...] = ()
     proposals: tuple[Proposal, ...] = ()
     empirical: Empirical | None = None

@@ -47,11 +47,22 @@ def over_ground(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[s
 
 @dataclass(frozen=True)
 class FrozenSensor:
-    """Frozen sensor: the tow and the channel in which it shows one value, and a sentence on it."""
+    """Frozen sensor: the tow and the channel in which it shows one value, and a sentence on it.
+
+    ``value`` and ``std`` are mean and scatter of what it shows, in the channel's unit.
+    """
 
     tow: int
     channel: str
+    value: float
+    std: float
     sentence: str
+
+    def __str__(self) -> str:
+        return (
+            f'{self.channel.replace("_", " ")} in tow {self.tow + 1}, {self.value:.4g} '
+            f'{CHANNELS[self.channel].unit} throughout'
+        )
 
 
 def frozen(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[FrozenSensor, ...]:
@@ -72,13 +83,14 @@ def frozen(windows: Sequence[SteadyWindow], tows: Sequence[str]) -> tuple[Frozen
             noise = float(np.median([window.noise[name] for window in shown]))
             same = float(np.ptp(values)) < FROZEN_NOISE * noise
             if same and max(lengths) > FROZEN_LENGTHS * min(lengths):
+                value = float(np.mean(values))
                 sentence = (
                     f'{tows[tow]}: {name.replace("_", " ")} ({CHANNELS[name].topic}) stays at '
-                    f'{np.mean(values):.4g} {CHANNELS[name].unit} from {min(lengths):.0f} to '
-                    f'{max(lengths):.0f} m of warp: the sensor seems to be frozen, and its '
-                    'readings of this tow are left out. Look at its port, cable and battery.'
+                    f'{value:.4g} {CHANNELS[name].unit} from {min(lengths):.0f} to '
+                    f'{max(lengths):.0f} m of warp: the sensor is frozen, and its '
+                    'readings of this tow are left out.'
                 )
-                found.append(FrozenSensor(tow, name, sentence))
+                found.append(FrozenSensor(tow, name, value, float(np.std(values)), sentence))
     return tuple(found)
 
 

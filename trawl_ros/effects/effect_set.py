@@ -102,6 +102,11 @@ def _active(number: int, record: EffectRecord) -> ActiveEffect:
         listed = ', '.join(catalogue())
         raise GearError(f'{key}.name: found {record.name}, expected one of {listed}')
     effect = known[record.name]
+    if not effect.parameters:
+        raise GearError(
+            f'{key}.name: {effect.name} is told from readings and has no values, expected it among '
+            'the faults of a scenario'
+        )
     names = [parameter.name for parameter in effect.parameters]
     for name in record.values:
         if name not in names:

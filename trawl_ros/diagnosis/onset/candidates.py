@@ -112,8 +112,9 @@ def candidate_table(effects: Mapping[str, Effect] | None = None) -> CandidateTab
     a drift: their offsets are effects of the catalogue.
     """
     known = catalogue() if effects is None else effects
+    whole = (effect for effect in known.values() if effect.parameters)
     patterns = [drift for drift in drifts() if not set(drift.channels) & set(NOT_USED)]
-    every: Sequence[Effect] = (*known.values(), *patterns)
+    every: Sequence[Effect] = (*whole, *patterns)
     return CandidateTable(tuple(every), tuple(_candidates(every)))
 
 

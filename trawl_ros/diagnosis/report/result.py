@@ -10,6 +10,7 @@ from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import SourceBag
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import Weighed
+from trawl_ros.effects.catalogue.instruments.frozen_sensor import EFFECT as FROZEN
 from trawl_ros.records.channels import CHANNELS
 
 
@@ -74,9 +75,26 @@ def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, obje
 
 def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
     best, named = diagnosis.best, diagnosis.named
+    stuck: list[dict[str, object]] = [
+        {
+            'name': FROZEN.name,
+            'class': [FROZEN.name],
+            'tow': diagnosis.tows[sensor.tow],
+            'channel': sensor.channel,
+            'parameters': {
+                'value': {
+                    'value': sensor.value,
+                    'low': sensor.value - 2.0 * sensor.std,
+                    'high': sensor.value + 2.0 * sensor.std,
+                    'unit': CHANNELS[sensor.channel].unit,
+                }
+            },
+        }
+        for sensor in diagnosis.frozen
+    ]
     if best is None or named is None:
-        return []
-    return [
+        return stuck
+    fitted: list[dict[str, object]] = [
         {
             'name': name,
             'class': [name, *named.alike],
@@ -87,6 +105,7 @@ def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
         }
         for name, values in values_of(best.refit).items()
     ]
+    return fitted + stuck
 
 
 def _onsets(diagnosis: Diagnosis) -> list[dict[str, object]]:

@@ -21,6 +21,9 @@ def _headline(diagnosis: Diagnosis) -> str:
         return f'Nothing can be said: {diagnosis.reason}.'
     if diagnosis.verdict == 'NO_DISCREPANCY':
         return f'No discrepancy: {diagnosis.reason}.'
+    if diagnosis.verdict == 'NAMED' and diagnosis.best is None:
+        listed = '; '.join(map(str, diagnosis.frozen))
+        return f'A sensor is frozen ({listed}), and {diagnosis.reason}.'
     start = 'Model and measurements disagree'
     if diagnosis.where:
         listed = '; '.join(

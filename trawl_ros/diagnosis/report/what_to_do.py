@@ -2,6 +2,7 @@
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.effects.base.effect import Effect
+from trawl_ros.effects.catalogue.instruments.frozen_sensor import EFFECT as FROZEN
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.parts import own_parts
 
@@ -20,7 +21,10 @@ def _sentences(diagnosis: Diagnosis) -> list[str]:
             return ['Nothing need be done; the last table of the report says what would not show.']
         case 'NOT_TESTABLE':
             return ['Mend what the reason says, and diagnose again.']
-    cards = [_card(effect) for effect in _likely(diagnosis)]
+    stuck = [_card(FROZEN)] if diagnosis.frozen else []
+    if stuck and diagnosis.verdict == 'NAMED' and diagnosis.best is None:
+        return [*stuck, 'Until it is mended its readings say nothing of the gear.']
+    cards = [*stuck, *(_card(effect) for effect in _likely(diagnosis))]
     changes = [
         f'{str(mimic)[0].upper()}{str(mimic)[1:]}: {mimic.change.direct}'
         for mimic in diagnosis.mimics

@@ -95,7 +95,8 @@ class Situation:
 
 @dataclass(frozen=True)
 class Effect:
-    """Base of all effects; one that is in the catalogue overrides at least one of its methods.
+    """Base of all effects; one that is in the catalogue overrides at least one of its methods,
+    unless it has no parameters: then it is told from readings, without the model.
 
     Attributes
     ----------
@@ -142,6 +143,11 @@ class Effect:
     direct: str = ''
     instrument: str = ''
     causes: str = ''
+
+    @property
+    def fitted(self) -> bool:
+        """True for one with values that steady tows may show."""
+        return bool(self.parameters) and not self.dynamic
 
     @property
     def neutral(self) -> FloatArray:

@@ -7,6 +7,7 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.report.sentences import headline
+from trawl_ros.effects.catalogue.instruments.frozen_sensor import EFFECT as FROZEN
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 
 if TYPE_CHECKING:
@@ -32,6 +33,10 @@ def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
         values.setdefault(f'{where.channel} {where.variable}', f'{where.region}, z {where.z:.1f}')
     level = OK if diagnosis.verdict in CALM else WARN
     statuses = [Status(f'{NAME}: verdict', level, headline(diagnosis), values)]
+    statuses += [
+        Status(f'{NAME}: {FROZEN.name} {sensor.channel}', WARN, sensor.sentence)
+        for sensor in diagnosis.frozen
+    ]
     repair = diagnosis.repair
     if repair is None and diagnosis.verdict == 'AMBIGUOUS':
         repair = diagnosis.best

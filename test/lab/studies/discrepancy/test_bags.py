@@ -150,7 +150,7 @@ def test_without_errors_the_size_is_what_was_hidden(poor):
 
 def test_classes_come_from_the_plan_alone():
     found = classes(likelihood_of(GEAR, FINER, SEED, 0, 'full'))
-    assert set(found) == {name for name, effect in catalogue().items() if not effect.dynamic}
+    assert set(found) == {name for name, effect in catalogue().items() if effect.fitted}
     assert 'speed_log' in found['heave']
     assert found['tension_cell'] == ('tension_cell',)
     alike = classes(likelihood_of(GEAR, FINER, SEED, 0, 'poor'))
