@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import fit_beside, naming, procedure
+from trawl_ros.diagnosis import fit_beside, naming, procedure, several
+from trawl_ros.diagnosis import refit as refits
 from trawl_ros.diagnosis.changes import changes
 from trawl_ros.diagnosis.diagnosis import unread, values_of
 from trawl_ros.diagnosis.next_tow import propose
@@ -218,14 +219,14 @@ def test_what_leaves_a_towed_state_without_steady_state_explains_nothing(
         fewer = replace(found.fit, windows=found.fit.windows[:-1])
         return replace(found, estimator=SimpleNamespace(fit=fewer))
 
-    monkeypatch.setattr(naming, 'refit', lossy)
+    monkeypatch.setattr(refits, 'refit', lossy)
     wanted = caught.best.refit.wanted
     predictor = Predictor(build_model(coarse))
-    assert naming.refitted(predictor, caught.base, caught.score_test, wanted) is None
+    assert refits.refitted(predictor, caught.base, caught.score_test, wanted) is None
 
 
 def test_a_window_that_the_likeliest_effect_loses_is_told(coarse, caught, monkeypatch):
-    """What was the best to first order is not passed over for one state out of many."""
+    """What explains most of its own windows is not passed over for one state out of many."""
     base, last = caught.base, caught.base.fit.windows[-1].window.index
 
     def lossy(*args):
@@ -233,7 +234,7 @@ def test_a_window_that_the_likeliest_effect_loses_is_told(coarse, caught, monkey
         fewer = replace(found.fit, windows=found.fit.windows[:-1])
         return replace(found, estimator=SimpleNamespace(fit=fewer))
 
-    monkeypatch.setattr(naming, 'refit', lossy)
+    monkeypatch.setattr(refits, 'refit', lossy)
     monkeypatch.setattr(naming, 'OPTIONS', replace(naming.OPTIONS, set_aside=0.2))
     named = naming.name(Predictor(build_model(coarse)), base, caught.score_test)
     assert named.lost == {last}
@@ -255,7 +256,7 @@ def test_a_baseline_that_looks_like_the_gear_shows_that_it_is_the_same(coarse, h
 
 
 def test_another_error_of_the_same_instrument_is_looked_for_too(caught):
-    """Whatever else explains most of what the best leaves over."""
+    """Whatever else looks like the best."""
 
     def of_one(candidate):
         same = candidate.name in ('catch_build_up', 'spread_sensor')
@@ -267,7 +268,7 @@ def test_another_error_of_the_same_instrument_is_looked_for_too(caught):
     (place,) = (n for n, one in enumerate(before.wanted) if one is best.refit.wanted[0])
     told = replace(best, refit=replace(best.refit, wanted=(seen.wanted[place],)))
     without, with_it = (
-        [one.name for one in naming._seconds(looks, [weighed], caught.named.left_over)]
+        [one.name for one in several._like_the_best(looks, [weighed])]
         for looks, weighed in ((before, best), (seen, told))
     )
     assert 'spread_sensor' not in without

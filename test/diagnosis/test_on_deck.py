@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import naming, procedure
+from trawl_ros.diagnosis import procedure
 from trawl_ros.diagnosis.diagnosis import values_of
 from trawl_ros.diagnosis.procedure import diagnose_windows
+from trawl_ros.diagnosis.refit import refitted
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
 from trawl_ros.diagnosis.worsening import on_holdout, worsened
@@ -79,7 +80,7 @@ def test_a_wrong_repair_makes_something_worse(coarse, rerigged):
     """A net of a quarter more drag for what the boards do."""
     predictor = Predictor(build_model(coarse), without=rerigged.baseline)
     (drag,) = [own for own in rerigged.score_test.wanted if own.name == 'net_drag']
-    wrong = naming.refitted(predictor, rerigged.base, rerigged.score_test, (drag,))
+    wrong = refitted(predictor, rerigged.base, rerigged.score_test, (drag,))
     values = np.concatenate((rerigged.base.estimate.values, [1.25, 0.0]))
     wrong = replace(wrong, estimate=replace(wrong.estimate, values=values))
     worse = worsened(predictor, rerigged.base, wrong, rerigged.split.kept_back)

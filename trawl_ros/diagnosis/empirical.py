@@ -12,8 +12,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.candidates import candidates, net_depths, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
-from trawl_ros.diagnosis.naming import refitted
-from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.refit import Refit, refitted
 from trawl_ros.diagnosis.rules import EMPIRICAL_OVER_PLACEBO, LEAST_BIC
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, weigh

@@ -7,14 +7,13 @@ from itertools import combinations
 import numpy as np
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.diagnosis.candidates import Candidate, candidates, net_depths, signatures
 from trawl_ros.diagnosis.evidence import evidence
 from trawl_ros.diagnosis.mimics.change import Change
 from trawl_ros.diagnosis.mimics.drift import drifts
 from trawl_ros.diagnosis.mimics.gear_file_change import GearFileChange, changes_of
-from trawl_ros.diagnosis.naming import REFITTING, refitted
-from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.refit import Refit, refitted, told
 from trawl_ros.diagnosis.rules import (
     LEAST_BIC,
     MIMIC_SCREEN_SHARE,
@@ -109,9 +108,9 @@ def mimics_of(
     least = LEAST_BIC if better else -RIVAL
     found: list[Mimic] = []
     for candidate in _likeliest(test, terms, best, better=better):
-        on_progress(WorkProgress('diagnosing', detail=f'refitting with {candidate.name}'))
+        on_progress(told(candidate.name))
         try:
-            fitted = refitted(predictor, base, terms, (candidate,), REFITTING)
+            fitted = refitted(predictor, base, terms, (candidate,))
         except GearError:
             # A net that cannot be cut so is not the one that was towed.
             continue

@@ -14,9 +14,9 @@ from trawl_ros.diagnosis.holdout import holdout_comparison, split
 from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, without, wrong_unit
 from trawl_ros.diagnosis.locating import telling
 from trawl_ros.diagnosis.mimicry import Mimic, mimics_of, with_mimics
-from trawl_ros.diagnosis.naming import REFITTING, Named, name, refitted
+from trawl_ros.diagnosis.naming import Named, name
 from trawl_ros.diagnosis.next_tow import Proposal, propose
-from trawl_ros.diagnosis.refit import Refit, fit_boards, was_in_order
+from trawl_ros.diagnosis.refit import REFITTING, Refit, fit_boards, refitted, was_in_order
 from trawl_ros.diagnosis.rules import FEWEST_STATES, LEAST_BIC, NEAR, NOWHERE_NEAR, judge_beside
 from trawl_ros.diagnosis.score_test import ScoreTest, score_test
 from trawl_ros.effects.effect_set import effects_of
@@ -67,7 +67,9 @@ def diagnose_windows(
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
     predictor = Predictor(model, effects_of(gear), without=baseline, new=new)
     remarks = (*over_ground(windows, tows), *(sensor.sentence for sensor in stuck))
-    known = Diagnosis('NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=remarks)
+    known = Diagnosis(
+        'NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=remarks, frozen=stuck
+    )
     examined = {window.state for window in windows if window.tow not in baseline}
     if len(examined) < FEWEST_STATES:
         return replace(
@@ -97,7 +99,7 @@ def diagnose_windows(
     if not test.detected:
         return replace(
             known,
-            verdict='NO_DISCREPANCY',
+            verdict='NAMED' if stuck else 'NO_DISCREPANCY',
             reason=f'nothing in the {"other " if stuck else ""}readings is beyond what boards '
             'and errors explain',
             holdout=holdout_comparison(predictor, base, None, None, kept_back),

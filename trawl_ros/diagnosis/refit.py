@@ -1,4 +1,4 @@
-"""Joint refit of boards and effects, all windows solved anew."""
+"""Joint refit of boards and effects, all windows solved anew, from first-order values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -6,14 +6,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.diagnosis.candidates import Candidate, with_candidates
+from trawl_ros.core.progress import WorkProgress
+from trawl_ros.diagnosis.candidates import Candidate, extended, with_candidates
 from trawl_ros.diagnosis.rules import NEAR
+from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.fit.relinearise import with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
@@ -33,6 +36,9 @@ warps, which would pass for an effect."""
 
 POOR = 3.0
 """A misfit from where the boards are fitted anew, another way."""
+
+REFITTING = replace(OPTIONS, iterations_final=10, halvings=2)
+"""Options of a refit, which starts near to where it comes to rest."""
 
 
 @dataclass(frozen=True)
@@ -175,3 +181,57 @@ def refit(
     estimator.begin(windows, prior.clipped(np.concatenate((board, values))))
     estimate = estimator.finish()
     return None if estimate is None else Refit(tuple(wanted), estimator, estimate)
+
+
+def refitted(
+    predictor: Predictor,
+    base: Refit,
+    test: ScoreTest,
+    wanted: Sequence[Candidate],
+    options: EstimatorOptions = REFITTING,
+) -> Refit | None:
+    """Refit boards and effects together, from their first-order values.
+
+    None where a state that was towed has no steady state then: that explains nothing.
+    """
+    fitted = refitted_in_part(predictor, base, test, wanted, options)
+    return None if lost_by(base, fitted) else fitted
+
+
+def lost_by(base: Refit, fitted: Refit | None) -> frozenset[int]:
+    """Windows that have a steady state with the boards alone, and none in a refit."""
+    if fitted is None:
+        return frozenset(linear.window.index for linear in base.fit.windows)
+    return frozenset(window.index for window in with_those_of(base.fit, fitted.fit)[1])
+
+
+def refitted_in_part(
+    predictor: Predictor,
+    base: Refit,
+    test: ScoreTest,
+    wanted: Sequence[Candidate],
+    options: EstimatorOptions = REFITTING,
+) -> Refit | None:
+    """Refit as `refitted`, with the remaining windows where some have lost their steady state."""
+    rows = [place for candidate in wanted for place in test.block(candidate)]
+    columns = [own[:, rows] for own in test.columns]
+    windows = extended(base.fit, wanted, columns, base.fit.options).windows
+    scale = np.concatenate([candidate.scale for candidate in wanted])
+    starts = np.concatenate([candidate.start for candidate in wanted])
+    values = starts + scale * test.evidence.values(rows)
+    best: Refit | None = None
+    # First order may lead astray: then from where there is nothing but the boards.
+    for start in (values, starts):
+        best = likelier(best, refit(predictor, base.fit, wanted, start, windows, options))
+        if (
+            best is not None
+            and not lost_by(base, best)
+            and best.fit.negative_log_likelihood < base.fit.negative_log_likelihood
+        ):
+            break
+    return best
+
+
+def told(*names: str) -> WorkProgress:
+    """Progress of a diagnosis that refits with these effects."""
+    return WorkProgress('diagnosing', detail=f'refitting with {" and ".join(names)}')

@@ -11,11 +11,14 @@ from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.rules import (
     ALIKE,
+    BOUND_SHARE,
     DOUBT,
     FEWEST_TOWS,
     FEWEST_UNITS,
     LEAST_BIC,
+    LEFT_SHARE,
     OTHER_SHARE,
+    RIVAL,
     leaves_too_much,
 )
 from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
@@ -173,9 +176,9 @@ def _resampled(
     ]
     # First order counts the same noise as smaller, and the more so the more there is to explain.
     first = int(np.argmax(criteria))
-    scale = max(criteria[first], 0.0) / max(_penalised(test, refits[first].wanted), 1.0)
+    scale = max(criteria[first], 0.0) / max(penalised_together(test, refits[first].wanted), 1.0)
     corrections = {
-        refit.names[0]: criterion - scale * _penalised(test, refit.wanted)
+        refit.names[0]: criterion - scale * penalised_together(test, refit.wanted)
         for refit, criterion in zip(refits, criteria, strict=True)
         if len(refit.wanted) == 1
     }
@@ -191,7 +194,7 @@ def _resampled(
     return gains, [best(trial) for trial in trials]
 
 
-def _penalised(test: ScoreTest, wanted: Sequence[Candidate]) -> float:
+def penalised_together(test: ScoreTest, wanted: Sequence[Candidate]) -> float:
     """Decrease of BIC with candidates together, to first order."""
     block = [place for candidate in wanted for place in test.block(candidate)]
     freedom = test.evidence.degrees_of_freedom(block)
@@ -200,34 +203,90 @@ def _penalised(test: ScoreTest, wanted: Sequence[Candidate]) -> float:
 
 def twins(test: ScoreTest, refit: Refit, alike: float = ALIKE) -> tuple[str, ...]:
     """Names of effects whose signatures have at least this cosine with the refitted one's."""
-    if len(refit.wanted) != 1:
-        return ()
-    (candidate,) = refit.wanted
+    return like_any(test, refit, alike) if len(refit.wanted) == 1 else ()
+
+
+def like_any(test: ScoreTest, refit: Refit, alike: float = ALIKE) -> tuple[str, ...]:
+    """Names of effects whose signatures have this cosine with one of those refitted, by itself."""
     return tuple(
         dict.fromkeys(
             other.name
+            for candidate in refit.wanted
             for other in test.wanted
-            if other.name != candidate.name and _cosine(test, refit, other) > alike
+            if other.name not in refit.names and _cosine(test, refit, (candidate,), other) > alike
         )
     )
 
 
-def _cosine(test: ScoreTest, refit: Refit, other: Candidate) -> float:
-    """Cosine of the refitted effect's signature with another's."""
-    rows = [place for candidate in refit.wanted for place in test.block(candidate)]
-    starts = np.concatenate([candidate.start for candidate in refit.wanted])
-    scale = np.concatenate([candidate.scale for candidate in refit.wanted])
-    values = (refit.values - starts) / scale
-    return test.evidence.covered(rows, values, test.block(other))
+def _cosine(test: ScoreTest, refit: Refit, own: Sequence[Candidate], other: Candidate) -> float:
+    """Cosine of the signature of some of the refitted effects with another's."""
+    places = zip(refit.wanted, refit.fit.prior.blocks('effect'), strict=True)
+    values = [
+        (refit.estimate.values[list(block)] - candidate.start) / candidate.scale
+        for candidate, block in places
+        if any(candidate is one for one in own)
+    ]
+    rows = [place for candidate in own for place in test.block(candidate)]
+    return test.evidence.covered(rows, np.concatenate(values), test.block(other))
 
 
 def _nearest(test: ScoreTest, refit: Refit) -> float:
     others = [other for other in test.wanted if other.name not in refit.names]
-    return max((_cosine(test, refit, other) for other in others), default=0.0)
+    return max((_cosine(test, refit, refit.wanted, other) for other in others), default=0.0)
+
+
+def possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
+    """Effects in order, those on a bound behind one that does nearly as well."""
+    best = weighed[0]
+    if not best.refit.at_bound():
+        return weighed
+    for other in weighed[1:]:
+        near = best.delta_bic - other.delta_bic < BOUND_SHARE * best.delta_bic
+        if near and not other.refit.at_bound():
+            return (other, *(entry for entry in weighed if entry is not other))
+    return weighed
+
+
+def rivals_of_best(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
+    """Effects that are not excluded and not of the class of the best, alone or among several."""
+    best = weighed[0]
+    taken = {*best.refit.names, *not_told_apart(test, weighed)}
+    if len(best.refit.wanted) > 1:
+        # Several that have the like of one of these in its place are the same several.
+        taken |= set(like_any(test, best.refit))
+    return tuple(
+        dict.fromkeys(
+            name
+            for other in weighed[1:]
+            if best.delta_bic - other.delta_bic < RIVAL and not other.refit.at_bound()
+            for name in other.refit.names
+            if name not in taken
+        )
+    )
+
+
+def not_told_apart(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
+    """Effects of the best one's class; none that was refitted and explains much less, for what is
+    alike to first order may need a size that is not possible.
+    """
+    best = weighed[0]
+    told = {
+        other.refit.names[0]
+        for other in weighed[1:]
+        if best.delta_bic - other.delta_bic > to_be_there(best)
+    }
+    return tuple(name for name in twins(test, best.refit) if name not in told)
+
+
+def to_be_there(best: Weighed) -> float:
+    """Required decrease of the criterion by one more effect: less is the best's other form."""
+    return max(LEAST_BIC, LEFT_SHARE * best.delta_chi2)
 
 
 def left_over(base: Refit, test: ScoreTest, refit: Refit) -> LeftOver:
-    """Test of the residual patterns of the most improbable channel beside a refit.
+    """Test of the residual patterns of the most improbable channel beside a refit, with all errors
+    `DOUBT` times as large: calibration and model are not known better here than where something is
+    detected.
 
     Parameters
     ----------
@@ -249,9 +308,9 @@ def left_over(base: Refit, test: ScoreTest, refit: Refit) -> LeftOver:
     units = np.concatenate((fit.prior.std[effects], np.ones(len(test.patterns))))
     of_patterns = evidence(fit, columns, units).without(range(number))
     blocks = blocks_of(test.patterns, number).values()
-    worst = max(blocks, key=of_patterns.strength)
+    worst = max(blocks, key=lambda block: of_patterns.strength(block, DOUBT))
     explained = 2.0 * (base.cost(fit.scales) - refit.cost(fit.scales))
     return LeftOver(
-        probability=min(1.0, len(blocks) * 10.0 ** -of_patterns.strength(worst)),
+        probability=min(1.0, len(blocks) * 10.0 ** -of_patterns.strength(worst, DOUBT)),
         share=of_patterns.chi2(worst) / max(explained, 1.0),
     )

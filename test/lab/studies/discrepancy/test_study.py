@@ -92,7 +92,7 @@ def value(rows, what):
 
 
 def test_everything_of_the_catalogue_that_shows_in_steady_tows_is_hidden():
-    shows = {name for name, effect in catalogue().items() if not effect.dynamic}
+    shows = {name for name, effect in catalogue().items() if effect.fitted}
     right = {name for names in RIGHT_NAMES.values() for name in names}
     assert set(RIGHT) == set(ON_DECK)
     assert set(INSIDE) <= shows
@@ -249,18 +249,23 @@ def test_of_three_effects_two_are_to_be_found_and_no_other():
 def test_a_repair_that_makes_a_channel_worse_is_counted():
     good, bad = scored('NAMED', ['net_drag']), scored('NAMED', ['net_drag'])
     bad.diagnosis['channels']['net_depth'].update(before=1.0, after=1.6, expected=1.0)
-    row = value(
-        repair_rows([good, bad], ALONE),
-        'repairs that make a channel worse on what was kept back',
-    )
-    assert row.value == 50.0
+    unlucky = scored('NAMED', ['net_drag'])
+    unlucky.diagnosis['channels']['net_depth'].update(before=1.0, after=1.6, expected=1.0)
+    unlucky.key['floor'] = {'net_depth': 1.7}
+    rows = repair_rows([good, good, bad, unlucky], ALONE)
+    worse = 'repairs that make a channel worse'
+    assert value(rows, f'{worse} on what was kept back').value == 50.0
+    assert value(rows, 'the plant itself, by the same count').value == 25.0
+    assert value(rows, f'{worse}, and worse than the plant itself does').value == 25.0
 
 
 def test_a_repair_is_measured_against_the_truth():
     trial = scored('NAMED', ['catch_build_up'])
     quiet = {'parameters': {'one': 1.2}, 'coefficients': dict.fromkeys(COEFFICIENTS, 1.1)}
     rows = repair_rows([replace(trial, quiet=quiet)], ALONE)
-    assert [row.value for row in rows] == pytest.approx([94.5, 7.375, 0.0, 0.1, 0.0, 0.0, 100.0])
+    assert [row.value for row in rows] == pytest.approx(
+        [94.5, 7.375, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 100.0]
+    )
 
 
 def test_what_is_alike_in_every_such_trial_is_as_good_as_the_name():

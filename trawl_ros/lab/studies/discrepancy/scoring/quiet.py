@@ -5,8 +5,7 @@ from typing import Any
 
 from trawl_ros.diagnosis.diagnosis import values_of
 from trawl_ros.diagnosis.holdout import split
-from trawl_ros.diagnosis.naming import refitted
-from trawl_ros.diagnosis.refit import fit_boards
+from trawl_ros.diagnosis.refit import fit_boards, refitted
 from trawl_ros.diagnosis.score_test import score_test
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue

@@ -54,6 +54,13 @@ def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         rate('repairs that make a channel worse on what was kept back',
              [_worse(trial) for trial in repaired], most=2.0,
              note=f'of all that were named; by {WORSE_BY:.0%} of what instruments explain or more'),
+        rate('the plant itself, by the same count',
+             [worse for trial in repaired if (worse := _plant_worse(trial)) is not None],
+             note='the right gear with the right effect: what calibration of the tows kept back '
+             'makes of it'),
+        rate('repairs that make a channel worse, and worse than the plant itself does',
+             [worse for trial in repaired if (worse := _worse_than_plant(trial)) is not None],
+             note=f'both by {WORSE_BY:.0%} of what instruments explain or more'),
         median(f'error of the coefficients with the effect named over that without, where leaving '
                f'it out bends one by {BENT:g} std or more', _known(truth), '', most=0.4),
         median('the same from what readings without errors are best fitted with',
@@ -147,11 +154,39 @@ def _bent(trial: Scored) -> float:
 def _worse(trial: Scored) -> bool:
     """True if a channel's error is larger with the repair, beyond what instruments explain."""
     return any(
-        own['after'] is not None
-        and own['after'] > own['expected']
-        and own['after'] - own['before'] > WORSE_BY * own['expected']
+        is_worse(own['before'], own['after'], own['expected'])
         for own in said_of(trial)['channels'].values()
+        if own['after'] is not None
     )
+
+
+def _plant_worse(trial: Scored) -> bool | None:
+    """True if a channel's error is so much larger with the plant itself; None where not known."""
+    channels, floor = said_of(trial)['channels'], trial.key['floor']
+    if not set(channels) <= set(floor):
+        return None
+    return any(
+        is_worse(own['before'], floor[name], own['expected']) for name, own in channels.items()
+    )
+
+
+def _worse_than_plant(trial: Scored) -> bool | None:
+    """True if a channel's error is so much larger with the repair than before, and than the
+    plant's; None where that is not known.
+    """
+    channels, floor = said_of(trial)['channels'], trial.key['floor']
+    if not set(channels) <= set(floor):
+        return None
+    return any(
+        is_worse(max(own['before'], floor[name]), own['after'], own['expected'])
+        for name, own in channels.items()
+        if own['after'] is not None
+    )
+
+
+def is_worse(before: float, after: float, expected: float) -> bool:
+    """True if an error is larger than instruments explain, by `WORSE_BY` of that than before."""
+    return after > expected and after - before > WORSE_BY * expected
 
 
 def _best_covered(trial: Scored) -> list[bool]:
