@@ -21,9 +21,12 @@ from trawl_ros.lab.studies.motion.study import MotionStudyPlan, run_motion_study
 @click.option('--seed', default=MotionStudyPlan.seed, show_default=True,
               type=click.IntRange(0, 2**31), help='Of all trials.')  # fmt: skip
 @click.option('--trials', default=MotionStudyPlan.trials, show_default=True,
-              type=click.IntRange(1, 10_000), help='Trials with a finer plant.')  # fmt: skip
+              type=click.IntRange(0, 10_000), help='Trials with a finer plant.')  # fmt: skip
 @click.option('--alike', default=MotionStudyPlan.alike, show_default=True,
               type=click.IntRange(0, 10_000), help='Trials with the model as plant.')  # fmt: skip
+@click.option('--autotrawled', default=MotionStudyPlan.autotrawled, show_default=True,
+              type=click.IntRange(0, 10_000),
+              help='Trials with a finer plant under autotrawl.')  # fmt: skip
 @click.option('--around', default=MotionStudyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
 @SCHEDULER_OPTION
@@ -34,6 +37,7 @@ def command(
     seed: int,
     trials: int,
     alike: int,
+    autotrawled: int,
     around: int,
     scheduler: str | None,
 ) -> None:
@@ -43,7 +47,7 @@ def command(
     are in the folder already are not made again: after Ctrl-C the same command goes on where it
     was.
     """
-    plan = MotionStudyPlan(gear, seed, trials, alike, around)
+    plan = MotionStudyPlan(gear, seed, trials, alike, autotrawled, around)
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         rows = run_motion_study(plan, out, display, scheduler=scheduler, force=force)
     print_outcome(rows, out / MOTION_REPORT)

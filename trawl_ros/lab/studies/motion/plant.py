@@ -1,7 +1,7 @@
 """Plants of the trials: random boards towed in time, and read by instruments as they come."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,25 +11,21 @@ from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.nuisances import ADDED_MASS_STD
 from trawl_ros.estimation.motion.towing import TowedGear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.instruments.errors.instrument import SeedPlan
-from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.lab.studies.identification.plant import Look, State, draw_board
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.samples import Sample
+from trawl_ros.scenario.bridge import Bridge
 from trawl_ros.scenario.scenario import Scenario
-from trawl_ros.scenario.sea import build_surroundings
+from trawl_ros.scenario.sea import build_sea, build_surroundings
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.stepper import StepFailed
 
-COURSE = 'demo'
-"""Scenario whose commands are towed: five states in 52 minutes."""
+COURSE, AUTOTRAWLED_COURSE = 'demo', 'states_by_autotrawl'
+"""Scenarios that are towed: five states in 52 minutes."""
 
 HELD_OUT: tuple[State, ...] = ((380.0, 2.25), (330.0, 2.15), (280.0, 2.0), (225.0, 1.9))
 """Steady states that are predicted and not towed, between those of the course."""
-
-PERIOD_S = 0.5
-"""Of the simulation, whose solver steps twice as far; as often as any instrument looks."""
 
 MOST_DRAWS = 20
 """Boards that can be towed at rest, drawn for one trial at most until one can be towed in time."""
@@ -100,18 +96,26 @@ def draw_tow(
 def _towed(
     record: GearRecord, coefficients: FloatArray, added_mass: float, course: Scenario, seed: int
 ) -> tuple[Sample, ...]:
+    """Samples of a tow; the autotrawl, if there is one, goes by readings as the suite has them."""
+    course = replace(course, record=course.record.model_copy(update={'seed': seed}))
     gear = TowedGear(build_model(record).with_coefficients(coefficients))
+    sea = build_sea(course.record.sea, gear.model.water, seed)
+    # As often as any instrument looks; the solver steps twice as far.
+    period = 1.0 / course.record.truth_rate_hz
     simulation = Simulation(
-        gear.model, course.start, period=PERIOD_S, effect_set=gear.with_added_mass(added_mass)
-    )
+        gear.model, course.start, period=period, sea=sea,
+        effect_set=gear.with_added_mass(added_mass),
+    )  # fmt: skip
     suite = InstrumentSuite(
-        load_instruments(),
-        surroundings=build_surroundings(record),
-        draws=SeedPlan(seed, course.state_changes_s),
+        course.instruments, surroundings=build_surroundings(record), draws=course.draws
     )
-    samples = list(suite.observe(simulation.truth()))
-    for number in range(round(course.duration_s / PERIOD_S)):
-        simulation.command = course.commands_at(PERIOD_S * number)
-        simulation.advance()
-        samples += suite.observe(simulation.truth())
+    bridge = Bridge(course)
+    samples: list[Sample] = []
+    for number in range(1 + round(course.duration_s / period)):
+        if number:
+            simulation.command = bridge.command(period * (number - 1))
+            simulation.advance()
+        truth = simulation.truth()
+        bridge.observe(truth)
+        samples += suite.observe(truth)
     return tuple(samples)

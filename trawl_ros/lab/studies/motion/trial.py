@@ -15,9 +15,12 @@ from trawl_ros.estimation.motion.series import tow_readings
 from trawl_ros.estimation.motion.stretches import moving_tow
 from trawl_ros.lab.studies.identification.kept import TrialTask
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
-from trawl_ros.lab.studies.motion.plant import COURSE, draw_tow
+from trawl_ros.lab.studies.motion.plant import AUTOTRAWLED_COURSE, COURSE, draw_tow
 from trawl_ros.model.water import build_water
 from trawl_ros.scenario.scenario import load_scenario
+
+AUTOTRAWLED = 'autotrawled'
+"""Series whose winches an autotrawl works."""
 
 KINDS = ('noise', 'drift', 'model', 'state')
 """Kinds of errors whose sizes a fit in motion finds for each quantity."""
@@ -86,7 +89,7 @@ def run_motion_trial(task: TrialTask) -> MotionTrial:
         If no board drawn can be towed, or nothing can be fitted.
     """
     chance, gear = task.chance(), task.cut.model(task.gear)
-    course = load_scenario(COURSE)
+    course = load_scenario(AUTOTRAWLED_COURSE if task.series == AUTOTRAWLED else COURSE)
     prior = board_prior(gear)
     plant = draw_tow(task.cut.plant(task.gear), prior, course, chance)
     identification = identification_for(gear)

@@ -20,7 +20,7 @@ from trawl_ros.scenario.recording import recorded_messages
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 
-TEN = (
+SHIPPED = (
     'shakedown',
     'paper_trial',
     'cross_current',
@@ -31,6 +31,7 @@ TEN = (
     'dropouts',
     'reciprocal_tracks',
     'quiet_day',
+    'states_by_autotrawl',
 )
 SECONDS = 30.0
 SHORTEST_STEP_S = 1.0
@@ -70,17 +71,17 @@ def shortened(scenario: Scenario, seconds: float) -> Scenario:
     )
 
 
-def test_all_ten_are_there_and_told_in_one_line_each():
+def test_all_are_there_and_told_in_one_line_each():
     result = CliRunner().invoke(trawl, ['scenarios'], env={'COLUMNS': '200'})
     assert result.exit_code == 0, result.output
     lines = {line.split()[0]: line for line in result.output.splitlines() if line.strip()}
-    for name in TEN:
+    for name in SHIPPED:
         assert load(name).record.description in lines[name]
         text = share_path('config', 'scenarios', f'{name}.yaml').read_text()
         assert text.startswith('# '), 'its comment says what it shows'
 
 
-@pytest.mark.parametrize('name', TEN)
+@pytest.mark.parametrize('name', SHIPPED)
 def test_it_runs_to_its_end_with_every_instrument_on(name):
     scenario = shortened(load(name), SECONDS)
     trial = Trial(scenario, model=build_model(scenario.plant))
@@ -97,9 +98,9 @@ def test_it_runs_to_its_end_with_every_instrument_on(name):
         assert counts[topic], topic
 
 
-def test_steps_faults_and_controllers_of_the_ten_cover_what_a_file_can_say():
+def test_steps_faults_and_controllers_cover_what_a_file_can_say():
     steers, works, faults = set(), set(), set()
-    for name in TEN:
+    for name in SHIPPED:
         scenario = load(name)
         for step in scenario.record.steps:
             if step.steer is not None:
