@@ -141,14 +141,15 @@ class RatioBank:
             found.append(
                 OnsetEvidence(
                     number, int(ages[best]), float(ratios[best]),
-                    _rarity(ratios[best], len(own)),
+                    rarity(ratios[best], len(own)),
                     values[best], np.linalg.inv(informed[best]), near,
                 )
             )  # fmt: skip
         return sorted(found, key=lambda one: -one.rarity)
 
 
-def _rarity(ratio: float, freedom: int) -> float:
-    # Beyond the smallest number it is infinite.
+def rarity(ratio: float, freedom: int) -> float:
+    """-log10 of the probability of as large a ratio without any effect."""
+    # With values at their bounds a ratio may be negative; beyond the smallest number it is infinite.
     with np.errstate(divide='ignore'):
-        return float(-np.log(chdtrc(freedom, ratio)) / np.log(10.0))
+        return float(-np.log(chdtrc(freedom, max(ratio, 0.0))) / np.log(10.0))
