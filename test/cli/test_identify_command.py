@@ -1,4 +1,4 @@
-"""``trawl identify`` uses what a bag holds, and says what it lacks."""
+"""``trawl identify --steady`` uses what a bag holds, and says what it lacks."""
 
 import itertools
 import json
@@ -18,8 +18,8 @@ from trawl_ros.records.topics import NAMESPACE
 
 @pytest.fixture
 def identify(run, coarse_gear):
-    """Run ``trawl identify`` with the gear that the bags were made with."""
-    return lambda *arguments: run('identify', '--gear', coarse_gear, *arguments)
+    """Run ``trawl identify --steady`` with the gear that the bags were made with."""
+    return lambda *arguments: run('identify', '--steady', '--gear', coarse_gear, *arguments)
 
 
 @pytest.fixture(scope='module')

@@ -1,4 +1,4 @@
-"""``trawl identify --motion`` learns from all of the tow, or says why it cannot."""
+"""``trawl identify`` learns from all of the tow, or says why it cannot."""
 
 import json
 from dataclasses import replace
@@ -22,8 +22,8 @@ NOTHING_HELD_OUT = 'Nothing could be held out: it takes two tows, or two states.
 
 @pytest.fixture
 def identify(run, coarse_gear):
-    """Run ``trawl identify --motion`` with the gear that the bags were made with."""
-    return lambda *arguments: run('identify', '--motion', '--gear', coarse_gear, *arguments)
+    """Run ``trawl identify`` with the gear that the bags were made with."""
+    return lambda *arguments: run('identify', '--gear', coarse_gear, *arguments)
 
 
 @pytest.fixture(scope='module')

@@ -48,7 +48,7 @@ def identify(
     prior: bool = True,
     net: bool = False,
     namespace: str = NAMESPACE,
-    motion: bool | None = None,
+    motion: bool = True,
     scheduler: str | None = None,
     force: bool = False,
     on_note: OnNote = _silent,
@@ -75,9 +75,9 @@ def identify(
     namespace
         Of the topics.
     motion
-        True if all of the tows is learned from too, hauling and veering included, which takes
-        minutes for each hour of tow; ``out`` has the results of the windows meanwhile. None does
-        so where no bag has a steady window, False never.
+        True if all of the tows is learned from, hauling and veering included, beside their steady
+        windows, which takes minutes for each hour of tow; ``out`` has the results of the windows
+        meanwhile. False for the windows alone.
     scheduler
         Address of a Dask cluster that reads the bags. A scheduler runs code: it must be trusted.
     force
@@ -88,9 +88,9 @@ def identify(
     Returns
     -------
     Report
-        With ``estimate`` (values and covariance, SI), residuals, what was held out; ``motion`` by
-        all of the tows, or ``motion_refused`` with the reason why not. Without one steady window
-        ``estimate`` is that by all of the tows.
+        With ``estimate`` of the steady windows (values and covariance, SI), residuals, what was
+        held out; ``motion`` by all of the tows, or ``motion_refused`` with the reason why not.
+        Without one steady window ``estimate`` is that by all of the tows.
 
     Raises
     ------
@@ -105,10 +105,10 @@ def identify(
 
     Examples
     --------
-    A bag with two steady states of the coarse gear:
+    A bag with two steady states of the coarse gear, and nothing but these:
 
     >>> import trawl_ros
-    >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml')
+    >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml', motion=False)
     >>> report.estimate.values.shape, len(report.windows)
     ((12,), 2)
     """
@@ -129,7 +129,7 @@ def identify(
     why_not = why_windows_alone(record, prior=prior, net=net)
     if len(reasons := _reasons(recordings)) == len(recordings):
         unsettled = [one for one in recordings if (one.why_not or '').startswith(NO_WINDOW)]
-        if motion is False or why_not or not unsettled:
+        if not motion or why_not or not unsettled:
             raise TrawlError('; '.join(reasons))
         on_note('No bag has a steady window: all of the tow is learned from.')
         try:

@@ -43,9 +43,9 @@ TABLE_WIDTH = 100
     'the gear file has them.',
 )  # fmt: skip
 @click.option(
-    '--motion/--steady', default=None, help='Learn from all of the tow too, hauling and veering '
-    'included, and show both: minutes of work for each hour of tow. Else from steady windows '
-    'alone; where no bag has any, from all of the tow, unless --steady is given.',
+    '--motion/--steady', default=True, show_default=True, help='Learn from all of the tow, hauling '
+    'and veering included, and show it beside what its steady windows tell: minutes of work for '
+    'each hour of tow. Else from the windows alone, which takes seconds.',
 )  # fmt: skip
 @NAMESPACE_OPTION
 @SCHEDULER_OPTION
@@ -57,7 +57,7 @@ def command(
     truth: Path | None,
     no_prior: bool,
     net: bool,
-    motion: bool | None,
+    motion: bool,
     namespace: str,
     scheduler: str | None,
     force: bool,

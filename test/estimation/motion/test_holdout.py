@@ -31,9 +31,9 @@ def fit():
     columns[:, 0] = 1.0
     rows = GroupRows(
         np.arange(number), np.zeros(number, int), tow.middles, 1e-3 * ones,
-        1e-3 * ones, 1e-3 * ones, 1e-3 * ones,
+        1e-3 * ones, 1e-3 * ones, 1e-3 * ones, 0.0 * ones,
     )  # fmt: skip
-    nothing = GroupRows(none.astype(int), none.astype(int), none, none, none, none, none)
+    nothing = GroupRows(none.astype(int), none.astype(int), none, none, none, none, none, none)
     empty = LinearGroup(nothing, np.zeros((0, SHARED)), none)
     groups = (LinearGroup(rows, columns, AWAY * ones), *(empty,) * (len(GROUPS) - 1))
     data = LinearData((groups,), (slice(SHARED, SHARED),), SHARED, ErrorTimes())

@@ -11,7 +11,7 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, on_grid
 from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_log
-from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows
+from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.towing import (
     TowedGear,
@@ -139,11 +139,16 @@ def rows(chance, number=60, noise=0.5, model=1.0):
         drift=np.ones(2 * number),
         model=np.full(2 * number, model),
         state=np.ones(2 * number),
+        change=np.ones(2 * number),
     )
 
 
 def test_tows_that_are_joined_are_one_least_squares_problem():
-    chance, sizes, times = np.random.default_rng(5), np.array([1.0, 0.3, 2.0, 0.5]), ErrorTimes()
+    chance, sizes, times = (
+        np.random.default_rng(5),
+        np.array([1.0, 0.3, 2.0, 0.5, 0.7]),
+        ErrorTimes(),
+    )
     shared, own = 3, 4
     groups = []
     for _ in range(2):
@@ -176,11 +181,15 @@ def test_tows_that_are_joined_are_one_least_squares_problem():
 
 @pytest.mark.parametrize(('true', 'told'), [(3.0, 3.0), (0.2, 1.0)])
 def test_sizes_of_errors_are_found_those_of_slow_ones_not_below_what_is_stated(true, told):
-    chance, truth, times = np.random.default_rng(8), np.array([1.6, 0.1, true, 0.3]), ErrorTimes()
+    chance, truth, times = (
+        np.random.default_rng(8),
+        np.array([1.6, 0.1, true, 0.3, 0.05]),
+        ErrorTimes(),
+    )
     own = rows(chance, 200)
     root = np.linalg.cholesky(own.covariance(truth, times))
     columns = chance.standard_normal((400, 14))
-    nothing = GroupRows(*(np.zeros(0, dtype=int),) * 2, *np.zeros((5, 0)))
+    nothing = GroupRows(*(np.zeros(0, dtype=int),) * 2, *np.zeros((6, 0)))
     empty = LinearGroup(nothing, np.zeros((0, 14)), np.zeros(0))
     one = LinearGroup(own, columns, root @ chance.standard_normal(400))
     groups = (one, *(empty,) * (len(GROUPS) - 1))
@@ -244,3 +253,16 @@ def test_the_fit_of_a_short_tow_is_calibrated(coarse, gear):
     # Of 48 normal errors: 99 % of the sums of their squares lie here.
     assert 6.6 < np.mean([trial.squared_error for trial in trials]) < 19.3
     assert all(trial.fit.misfit < 1.3 for trial in trials)
+
+
+def test_a_mean_counts_less_the_more_it_differs_from_its_neighbours():
+    still, hauled = 50.0, 58.0
+    means = np.array([[still, 1.0], [still, np.nan], [hauled, np.nan], [hauled, 2.0]])
+    expected = [[0.0, 0.0], [hauled - still, 0.0], [hauled - still, 0.0], [0.0, 0.0]]
+    np.testing.assert_allclose(changes(means), expected)
+    own = rows(np.random.default_rng(1), 3)
+    sizes = ErrorSizes(swift=0.5).of_group(0)
+    more = own.covariance(sizes, ErrorTimes()) - own.covariance(
+        sizes * [1, 1, 1, 1, 0], ErrorTimes()
+    )
+    np.testing.assert_allclose(more, 0.25 * np.eye(6), atol=1e-12)

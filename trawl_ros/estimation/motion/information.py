@@ -46,7 +46,7 @@ class LinearGroup:
         return found
 
     def information(self, sizes: FloatArray, times: ErrorTimes) -> Information:
-        """Information on the parameters, by sizes (4,) of the errors."""
+        """Information on the parameters, by sizes (5,) of the errors."""
         p = self.columns.shape[1]
         if not len(self.residual):
             return Information(np.zeros((p, p)), np.zeros(p), 0.0, 0.0)

@@ -89,7 +89,9 @@ def estimated_sizes(data: LinearData, expected: ErrorSizes, start: ErrorSizes) -
 
 
 def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: int) -> ErrorSizes:
-    known, free = expected.of_group(group), expected.of_group(group) > 0.0
+    *known_sizes, swift = expected.of_group(group)
+    known = np.array(known_sizes)
+    free = known > 0.0
     told = given_the_others(data, sizes, group)
 
     def factors(logs: FloatArray) -> FloatArray:
@@ -99,9 +101,10 @@ def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: 
         return full
 
     def cost(logs: FloatArray) -> float:
-        return told.negative_log_likelihood(factors(logs)) + 0.5 * float(logs @ logs)
+        tried = np.append(factors(logs), swift)
+        return told.negative_log_likelihood(tried) + 0.5 * float(logs @ logs)
 
-    start = np.log(sizes.of_group(group)[free] / known[free]) / SPREAD[free]
+    start = np.log(sizes.of_group(group)[:-1][free] / known[free]) / SPREAD[free]
     # Left to itself the simplex begins with steps of 0.00025 about 0, and ends there.
     simplex = start + SIMPLEX * np.vstack((np.zeros(len(start)), np.eye(len(start))))
     options = {'initial_simplex': simplex, 'xatol': 0.1, 'fatol': 0.05, 'maxfev': 80}
@@ -142,6 +145,7 @@ def given_the_others(data: LinearData, sizes: ErrorSizes, group: int) -> 'GroupG
     away = [r - columns @ mean for r, columns in zip(residuals, slopes, strict=True)]
     return GroupGivenOthers(
         tuple(own.noise for own in rows),
+        tuple(own.change for own in rows),
         tuple(own.processes(data.times) for own in rows),
         tuple(slopes), tuple(away), tuple(spreads), matrix,
     )  # fmt: skip
@@ -153,7 +157,7 @@ class GroupGivenOthers:
 
     Attributes
     ----------
-    noise : tuple of (m,) arrays
+    noise, change : tuple of (m,) arrays
         Of the rows.
     processes
         Covariances (m, m) of their drift, the model's error and that of the state, of size 1.
@@ -168,6 +172,7 @@ class GroupGivenOthers:
     """
 
     noise: tuple[FloatArray, ...]
+    change: tuple[FloatArray, ...]
     processes: tuple[tuple[FloatArray, FloatArray, FloatArray], ...]
     columns: tuple[FloatArray, ...]
     residual: tuple[FloatArray, ...]
@@ -175,15 +180,16 @@ class GroupGivenOthers:
     matrix: FloatArray
 
     def negative_log_likelihood(self, sizes: FloatArray) -> float:
-        """Of the rows by sizes (4,) of their errors, up to a constant."""
+        """Of the rows by sizes (5,) of their errors, up to a constant."""
         matrix, right, value = self.matrix.copy(), np.zeros(len(self.matrix)), 0.0
         each = zip(
-            self.noise, self.processes, self.columns, self.residual, self.spread, strict=True
-        )
-        for noise, processes, columns, residual, spread in each:
+            self.noise, self.change, self.processes, self.columns, self.residual, self.spread,
+            strict=True,
+        )  # fmt: skip
+        for noise, change, processes, columns, residual, spread in each:
             if not len(residual):
                 continue
-            covariance = total_covariance(noise, processes, sizes) + spread
+            covariance = total_covariance(noise, change, processes, sizes) + spread
             root = cholesky(covariance, lower=True, check_finite=False)
             both = np.column_stack((columns, residual))
             white = solve_triangular(root, both, lower=True, check_finite=False)

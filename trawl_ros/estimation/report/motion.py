@@ -11,8 +11,8 @@ from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 CAUTION = (
-    'Intervals in motion are those of errors twice as large as found, for a plant that is not the '
-    'model; in nine tows of such plants they were too wide (docs/identification/motion.md).'
+    'Intervals in motion count all errors as 1.3 times as large as found, for a plant that is not '
+    'the model (docs/identification/motion.md).'
 )
 
 MOST_NAMED = 3

@@ -108,7 +108,7 @@ class Report:
     Examples
     --------
     >>> import trawl_ros
-    >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml')
+    >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml', motion=False)
     >>> report.measured.shape, report.rejected
     ((2, 4), {'unsteady': 1})
     """

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
+from trawl_ros.api import trials
 from trawl_ros.bags.reader import summarise
 from trawl_ros.bags.sentence_log import write_sentence_log
 from trawl_ros.cli.options import FOLDER, SCENARIO
@@ -17,9 +18,10 @@ from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import write_figure
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.core.resources import packaged
+from trawl_ros.estimation.report.report import Report
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
-from trawl_ros.lab.demo.report import load_result, print_result
+from trawl_ros.lab.demo.report import load_result, print_motion, print_result
 from trawl_ros.lab.running.chain import start_chain, stop_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
@@ -72,10 +74,11 @@ class TopicCounts:
 def command(out: Path, scenario: Path, diagnosis: bool) -> None:
     """Tow a sea trial through the ROS graph, record it, replay it, and refit the boards.
 
-    Every node is a process of its own; they talk by DDS on this machine only. The folder
-    takes the bag, identification.json, figures, and summary.json. At the end four tows of the
-    default gear are diagnosed, three of them in a current that the model does not know; it is
-    found, and repaired: the folder's part 'hidden' has bags and reports.
+    Every node is a process of its own; they talk by DDS on this machine only. All of the tow is
+    learned from, hauling included. The folder takes the bag, identification.json, figures, and
+    summary.json. At the end four tows of the default gear are diagnosed, three of them in a
+    current that the model does not know; it is found, and repaired: the folder's part 'hidden'
+    has bags and reports.
     """
     path = packaged(scenario, 'scenarios').absolute()
     loaded = load_scenario(path)
@@ -91,6 +94,7 @@ def command(out: Path, scenario: Path, diagnosis: bool) -> None:
         tow_s = _tow(processes, monitor, loaded, folder, console)
         traffic = _traffic(monitor, folder)
         _replay(processes, monitor, loaded, folder, console)
+    learned = _learn(loaded, folder, console)
     result = load_result(folder.path)
     _view(loaded, folder, console)
     figures = _draw(loaded, folder)
@@ -114,11 +118,13 @@ def command(out: Path, scenario: Path, diagnosis: bool) -> None:
                 name: {**values, 'truth': truth[name]}
                 for name, values in result['coefficients'].items()
             },
+            'motion': result['motion'],
             'bag': folder.bag.name,
             'figures': figures,
         }
     )
     print_result(result, truth)
+    print_motion(learned, loaded.duration_s)
     _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
     if diagnosis:
         hidden_effect(folder.hidden, console)
@@ -201,6 +207,24 @@ def _replay(
         raise TrawlError(f'{folder.bag}: {message}')
     processes.stop('identification_node')
     folder.gather_results()
+
+
+def _learn(scenario: Scenario, folder: DemoFolder, console: Console) -> Report:
+    """Refit the boards by all of the tow.
+
+    Its report replaces that of the replay: windows are the same, and both estimates are shown.
+    """
+    console.print('identification: all of the tow, from what its windows tell on')
+    with ProgressDisplay(console) as display:
+        found = trials.identify(
+            [folder.bag],
+            gear=_gear_file(scenario),
+            truth=scenario.path,
+            out=folder.results,
+            on_progress=display,
+        )
+    folder.gather_results()
+    return found
 
 
 def _gear_file(scenario: Scenario) -> str:

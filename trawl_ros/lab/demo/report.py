@@ -1,4 +1,4 @@
-"""Terminal output of ``identification.json``."""
+"""Terminal output of ``identification.json``, and of what all of the tow tells."""
 
 import json
 from collections.abc import Mapping
@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.table import Table
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.report.motion import motion_lines, motion_table
+from trawl_ros.estimation.report.report import Report
 
 
 def load_result(folder: Path) -> dict[str, Any]:
@@ -53,6 +55,19 @@ def print_result(result: Mapping[str, Any], truth: Mapping[str, float]) -> None:
     console.print(table)
     objective = ', '.join(f'{value:.4f} at the {key}' for key, value in result['objective'].items())
     console.print(f'Objective of eq. 35: {objective}.')
+
+
+def print_motion(report: Report, duration_s: float) -> None:
+    """Print what all of a tow of a duration (s) tells beside its windows, or why it does not."""
+    console = Console(highlight=False, soft_wrap=True)
+    if report.motion is not None:
+        counted = f'{report.motion.duration_s / 60:.0f} of {duration_s / 60:.0f} min'
+        console.print(
+            f'All of the tow was learned from, hauling included: {counted}.', style='bold'
+        )
+        console.print(motion_table(report))
+    for line in motion_lines(report):
+        console.print(line, markup=False)
 
 
 def _percent(value: float | None) -> str:

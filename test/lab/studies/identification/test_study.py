@@ -184,8 +184,9 @@ def test_trials_of_other_settings_are_refused(tmp_path):
 
 
 def test_costs_are_held_against_what_is_asked():
-    assert replay_rows(Replay(3600.0, 17.0, 18.0))[0].ok
-    assert not replay_rows(Replay(3600.0, 19.0, 18.0))[0].ok
+    motion = Replay(3600.0, 119.0, 120.0), Replay(3600.0, 121.0, 122.0)
+    assert [row.ok for row in replay_rows(Replay(3600.0, 17.0, 18.0), motion[0])] == [True, True]
+    assert [row.ok for row in replay_rows(Replay(3600.0, 19.0, 18.0), motion[1])] == [False, False]
     late, share = live_rows(Live((0.2, 1.4), 12.0, 600.0))
     assert (late.value, late.ok, share.ok) == (1.4, False, True)
     assert not live_rows(Live((), math.nan, 0.0))[0].ok

@@ -149,7 +149,7 @@ def run_study(
         on_progress(WorkProgress('planning'))
         sections.append(Section('A planned trial', planning_rows(plan.gear)))
         on_progress(WorkProgress('replay'))
-        costs = replay_rows(replay())
+        costs = replay_rows(replay(), replay(motion=True))
         if plan.live_s > 0.0:
             costs += live_rows(live(plan.live_s, folder / 'log', on_progress))
         sections.append(Section('Cost', costs))

@@ -17,9 +17,9 @@ from trawl_ros.lab.studies.motion.plant import HELD_OUT
 from trawl_ros.lab.studies.motion.rows import motion_rows
 from trawl_ros.lab.studies.motion.trial import AUTOTRAWLED, MotionTrial, run_motion_trial
 
-SEED = 43
-"""Of the study as it is reported; what was chosen by looking at tows was chosen with others, 41
-among them."""
+SEED = 47
+"""Of the study as it is reported; what was chosen by looking at tows was chosen with others, 41 and
+43 among them."""
 
 AROUND = 24
 
@@ -142,8 +142,8 @@ def _method(plan: MotionStudyPlan) -> str:
         'demo, five states in 52 minutes, in steps of 1 s, and read by the default instruments, '
         'whose counters and spread sensor are wrong by another amount after each command. Its '
         'steady windows are fitted as ever; then all of the tow is, from there on, as `trawl '
-        'identify --motion` does. Under autotrawl the ship heaves by 2.5 m in 10 s, equal '
-        'tension is held, and steps are half as long. '
+        'identify` does. Under autotrawl the ship heaves by 2.5 m in 10 s, equal tension is held, '
+        'and steps are half as long. '
         f'The model has a net of {plan.around} meshes around its mouth; a finer plant has '
         f'{plan.cut(FINER)}. Both estimates, and the truth, predict {len(HELD_OUT)} steady states '
         'between those of the course, read by instruments with noise and biases as stated. '
