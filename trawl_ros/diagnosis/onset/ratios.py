@@ -150,6 +150,6 @@ class RatioBank:
 
 def rarity(ratio: float, freedom: int) -> float:
     """-log10 of the probability of as large a ratio without any effect."""
-    # With values at their bounds a ratio may be negative; beyond the smallest number it is infinite.
+    # Values at their bounds may make a ratio negative; beyond the smallest number it is infinite.
     with np.errstate(divide='ignore'):
         return float(-np.log(chdtrc(freedom, max(ratio, 0.0))) / np.log(10.0))
