@@ -13,6 +13,10 @@ from trawl_ros.model.compiled import compiled, inner
 SLACK_WIDTH = 1e-4
 """Half the range of strain over which slack passes smoothly into taut; eq. 20 has a kink."""
 
+SURELY = 1e-8
+"""Step of Newton's method, as a share of what it seeks, after which the next, which is about its
+square, would lie below rounding."""
+
 STILL = 1e-6
 """Speed (m/s) below which quadratic drag is rounded off, so that its derivative exists."""
 
@@ -43,11 +47,12 @@ def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
     The bow takes (Q / T)² / 24 of the bar's length, with the load Q on all of it and the tension T.
     So the elastic strain e = T / EA is the root of e - bow / e² = strain, bow = (Q / EA)² / 24.
     """
-    root = bow ** (1.0 / 3.0)
-    e = max(strain.real, root) if strain.real > 0.0 else np.sqrt(bow / (root - strain.real))
+    root, real = bow ** (1.0 / 3.0), strain.real
+    e = max(real, root) if real > 0.0 else np.sqrt(bow / (root - real))
     step = e
-    while step > 1e-14 * e:  # Newton from below, where its steps only rise
-        step = (strain.real - e + bow / e**2) / (1.0 + 2.0 * bow / e**3)
+    while step > SURELY * e:  # Newton from below, where its steps only rise
+        square = e * e
+        step = e * ((real - e) * square + bow) / (e * square + 2.0 * bow)
         e += step
     slope = 1.0 / (1.0 + 2.0 * bow / e**3)
     curve = 6.0 * bow / e**4 * slope**3
@@ -81,8 +86,9 @@ def tension_at(
     rest: float,
     rest_rate: float,
     along: FloatArray,
-) -> float:
-    """Tension of a bar (eq. 20, 21); ``along`` gets its unit vector.
+) -> tuple[float, float]:
+    """Tension of a bar (eq. 20, 21), and slope of its elastic strain by its strain; ``along`` gets
+    its unit vector.
 
     The damping is added to the strain before slack is told from taut: so tension rises with strain
     and with its rate everywhere, and no bar pushes, however quickly it shortens.
@@ -92,8 +98,8 @@ def tension_at(
     for i in range(3):
         along[i] = vector[i] / span
         closing += along[i] * stretching[i]
-    value, _, _ = taut_at(span / rest - 1.0 + damping_time * closing / rest, bow.real)
-    return stiffness * value
+    value, slope, _ = taut_at(span / rest - 1.0 + damping_time * closing / rest, bow.real)
+    return stiffness * value, slope
 
 
 @inner
@@ -132,7 +138,7 @@ def weight_at(mass: float, volume: float, rest: float, density: float, gravity: 
 def pull_slopes_at(
     stiffness: float,
     damping_time: float,
-    bow: float,
+    slope: float,
     vector: FloatArray,
     stretching: FloatArray,
     rest: float,
@@ -142,13 +148,13 @@ def pull_slopes_at(
     by_vector: FloatArray,
     by_stretching: FloatArray,
 ) -> None:
-    """Fill in the slopes (3, 3) of a bar's tension times its unit vector."""
+    """Fill in the slopes (3, 3) of a bar's tension times its unit vector; tension and its own slope
+    are those of `tension_at`.
+    """
     span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     closing = 0.0
     for i in range(3):
         closing += along[i] * stretching[i]
-    rate = (closing - rest_rate * span / rest) / rest
-    _, slope, _ = taut_at(span / rest - 1.0 + damping_time * rate, bow.real)
     elastic = slope / rest
     viscous = stiffness * damping_time * slope / rest
     for j in range(3):

@@ -60,7 +60,7 @@ def add_bar_forces(
     for n in range(len(ends)):
         start, end = ends[n, 0], ends[n, 1]
         height = between(x, v, start, end, vector, stretching, velocity)
-        force = tension_at(
+        force, _ = tension_at(
             stiffness[n], damping_time[n], bow[n], vector, stretching, rest[n], rest_rate[n], along
         )
         here = density - gradient * height
@@ -112,7 +112,7 @@ def add_bar_blocks(
         n = order[number]
         start, end = ends[n, 0], ends[n, 1]
         height = between(x, v, start, end, vector, stretching, velocity)
-        force = tension_at(
+        force, slope = tension_at(
             stiffness[n], damping_time[n], bow[n], vector, stretching, rest[n], rest_rate[n], along
         )
         here = density - gradient * height
@@ -124,7 +124,7 @@ def add_bar_blocks(
         pull_slopes_at(
             stiffness[n],
             damping_time[n],
-            bow[n],
+            slope,
             vector,
             stretching,
             rest[n],

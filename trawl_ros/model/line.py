@@ -116,7 +116,7 @@ def _tension(
     along: FloatArray,
 ) -> None:
     for n in range(len(rest)):
-        force[n] = tension_at(
+        force[n], _ = tension_at(
             stiffness[n],
             damping_time[n],
             bow[n],
