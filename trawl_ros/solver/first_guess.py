@@ -5,12 +5,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import block_forces, forces, linearised
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_model
-from trawl_ros.model.numerics import STEP
+from trawl_ros.model.numerics import STEP, length
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.linear.factor import factorised
@@ -122,17 +122,12 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
     The net's displacement from the shape it was built in is a smooth function of the place
     there, which is the same for both.
     """
-    # Imported here: it takes long, and warm starts have no use for it.
-    from scipy.interpolate import RBFInterpolator
-
     layout = coarse.layout
-    built = coarse.net_mesh.positions
-    shape = RBFInterpolator(
-        built, found.nodes[layout.net] - built, neighbors=NEIGHBOURS, kernel='linear'
-    )
-    fine = model.net_mesh.positions
+    built, fine = coarse.net_mesh.positions, model.net_mesh.positions
+    neighbours, shares = _interpolation(built.tobytes(), fine.tobytes())
+    moved = found.nodes[layout.net] - built
     nodes = np.empty((model.nodes, 3))
-    nodes[model.layout.net] = fine + shape(fine)
+    nodes[model.layout.net] = fine + np.einsum('nk,nki->ni', shares, moved[neighbours])
     for ours, theirs in (
         *zip(model.layout.warps, layout.warps, strict=True),
         *zip(model.layout.bridles, layout.bridles, strict=True),
@@ -142,6 +137,29 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
     return replace(
         found, nodes=nodes, node_velocities=np.tile(found.node_velocities[0], (model.nodes, 1))
     )
+
+
+@lru_cache(maxsize=4)
+def _interpolation(known: bytes, wanted: bytes) -> tuple[IntArray, FloatArray]:
+    """Nearest known places (n, k) of each wanted one, and their shares (n, k) in what lies there.
+
+    Places come as the bytes of arrays (..., 3). Each wanted one has a local interpolant of its own,
+    a constant and radial functions -r.
+    """
+    # Imported here: it takes long, and warm starts have no use for it.
+    from scipy.spatial import KDTree
+
+    there, here = (np.frombuffer(places).reshape(-1, 3) for places in (known, wanted))
+    count = min(NEIGHBOURS, len(there))
+    neighbours: IntArray = KDTree(there).query(here, count)[1].reshape(len(here), count)
+    near = there[neighbours]
+    matrix = np.ones((len(here), count + 1, count + 1))
+    matrix[:, :count, :count] = -length(near[:, :, None] - near[:, None])
+    matrix[:, count, count] = 0.0
+    right = np.ones((len(here), count + 1, 1))
+    right[:, :count, 0] = -length(near - here[:, None])
+    shares = np.linalg.solve(matrix, right)[:, :count, 0]
+    return neighbours, np.asarray(shares, float)
 
 
 def at_velocity(state: State, velocity: FloatArray) -> State:
