@@ -31,6 +31,11 @@ WAIT_S, BEHIND_S = 4.0, 2.0
 of all topics, whichever comes first, have arrived."""
 
 
+DECIDED_S = 120.0
+"""Time behind its end at which a window is decided, whichever topic comes first: an estimate from
+windows is begun with no sooner."""
+
+
 @dataclass(frozen=True)
 class MotionUpdate:
     """Estimate from all of a tow so far.
@@ -86,6 +91,7 @@ class LiveMotion:
         self._recorder = TowRecorder(self._depth)
         self._tracker = MotionTracker(self._towed, self._prior, self._options)
         self._number = 0
+        self._windows: list[Estimate] = []
         self.why_not = 'the tow has just begun'
 
     def feed(self, sample: Sample, windows: Estimate | None = None) -> MotionUpdate | None:
@@ -103,6 +109,7 @@ class LiveMotion:
         MotionUpdate or None
             With the first winch reading behind each stretch, where there is an estimate.
         """
+        self._note(windows)
         if not self.record(sample) or not isinstance(sample, WinchSample):
             return None
         start = self._recorder.start_ns
@@ -113,7 +120,7 @@ class LiveMotion:
         if number <= self._number:
             return None
         self._number = number
-        return self._update(start + number * length, windows)
+        return self._update(start + number * length)
 
     def record(self, sample: Sample) -> bool:
         """Take a sample without an estimate; tell whether it belongs to the time learned from."""
@@ -123,6 +130,11 @@ class LiveMotion:
             return False
         self._recorder.feed(sample)
         return True
+
+    def refusal(self) -> str:
+        """Reason for which `finish` would refuse the tow at once; '' where it would not."""
+        tows, refused = self._tows(None)
+        return '' if tows else '; '.join(refused)
 
     def finish(
         self, identification: Identification | None, on_progress: OnProgress = ignore
@@ -158,11 +170,26 @@ class LiveMotion:
             refused.append(str(reason))
         return tows, refused
 
-    def _update(self, end_ns: int, windows: Estimate | None) -> MotionUpdate | None:
+    def _note(self, windows: Estimate | None) -> None:
+        """Note a new estimate of the windows; without one they are withdrawn."""
+        if windows is None:
+            self._windows = []
+        elif not self._windows or self._windows[-1] is not windows:
+            self._windows.append(windows)
+
+    def _decided(self, end_ns: int) -> Estimate | None:
+        """Newest estimate from windows that were decided for sure, and forget those before."""
+        latest = end_ns - round(DECIDED_S * SECOND)
+        number = sum(estimate.stamp <= latest for estimate in self._windows)
+        self._windows = self._windows[max(number - 1, 0) :]
+        return self._windows[0] if number else None
+
+    def _update(self, end_ns: int) -> MotionUpdate | None:
         tows, refused = self._tows(end_ns + round(BEHIND_S * SECOND))
         self.why_not = '; '.join(refused)
         if not tows:
             return None
+        windows = self._decided(end_ns)
         found = self._tracker.update(tows, windows)
         if found is None:
             self.why_not = self.why_not or 'the model is towed along the tow so far'

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from std_srvs.srv import Trigger
 
-from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -23,7 +22,6 @@ from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.planning.advice import Advice
 from trawl_ros.estimation.planning.next_manoeuvre import Adviser
 from trawl_ros.estimation.planning.proposals import knowledge_of
-from trawl_ros.estimation.report.report import report
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
@@ -48,8 +46,11 @@ from trawl_ros.nodes.workers.estimate_status import (
     advice_status,
     identification_statuses,
     innovations_of,
+    motion_diagnosis,
 )
+from trawl_ros.nodes.workers.identification_report import ReportWriter
 from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
+from trawl_ros.nodes.workers.motion_learner import MotionLearner
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 from trawl_ros.nodes.workers.proposals import knowledge_status
 from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
@@ -67,8 +68,9 @@ class IdentificationNode(TrawlNode):
     """Finds steady windows in what the instruments report and refits the gear's model to them.
 
     After each accepted window it publishes the estimate, its covariance, a status and the
-    innovation, and saves its state. ``identification/finish``, or the signal to end, brings
-    the estimate to rest and writes the report.
+    innovation, and saves its state; where all of the tow is learned from, an estimate by it after
+    each half minute. ``identification/finish``, or the signal to end, brings the estimate to rest
+    and writes the report; the former fits all of the tow too.
     """
 
     SPECS: ClassVar = (
@@ -82,6 +84,8 @@ class IdentificationNode(TrawlNode):
              'empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started anew goes on; none if empty.'),
+        Flag('motion', True, 'True if all of the tow is learned from, hauling and veering too, '
+             'beside its steady windows.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are set beside the estimate in the report.'),
         *ADVICE_SPECS,
@@ -94,11 +98,12 @@ class IdentificationNode(TrawlNode):
         super().__init__('identification_node', **kwargs)
         parameters = self.parameters
         output, truth, state = parameters['output'], parameters['truth'], parameters['state']
-        self._folder = empty_folder(Path(output), force=False) if output else None
-        self._truth = true_coefficients(truth) if truth else None
+        folder = empty_folder(Path(output), force=False) if output else None
+        known = true_coefficients(truth) if truth else None
         self._state = Path(state) if state else None
         self._gear = load_gear(parameters['gear'])
         identification = self._identification()
+        self._motion = self._learning(identification)
         for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
             self.advertise(topic)
         self._progress = ConsumerProgress(self, idle=lambda: self._worker.idle)
@@ -106,13 +111,19 @@ class IdentificationNode(TrawlNode):
         self._instruments = OneSourceEach()
         self._rewinding = Rewinding(identification.finder.newest('port_length'))
         self._sent: Estimate | None = None
+        self._by_windows: Estimate | None = None
         self._telling = Lock()
         self._advice: tuple[Advice | None, str] = None, ''
         # Manoeuvres are proposed for what they tell of boards.
         advised = parameters['advise'] and self._gear.pair is None
         self._adviser = self._advising() if advised else None
         self._worker = IdentificationWorker(
-            identification, self._publish, self._progress.done, self._save, self._report
+            identification,
+            self._publish,
+            self._progress.done,
+            self._save,
+            ReportWriter(self._gear, known, folder, self._motion),
+            self._motion,
         )
         # Before any sample it publishes what it knows: nothing yet, or what it goes on from.
         self._publish(self._worker.outcome)
@@ -137,6 +148,14 @@ class IdentificationNode(TrawlNode):
             lambda: self._worker.idle and self._progress.stamp > 0,
             self._advised,
         )
+
+    def _learning(self, identification: Identification) -> MotionLearner | None:
+        """Learning from all of the tow; None where that is not wanted."""
+        if not self.parameters['motion']:
+            return None
+        prior, net = self.parameters['prior'], self.parameters['net']
+        resumed = bool(identification.estimator.windows)
+        return MotionLearner(self._gear, prior=prior, net=net, resumed=resumed)
 
     def _identification(self) -> Identification:
         fresh = identification_for(
@@ -168,6 +187,7 @@ class IdentificationNode(TrawlNode):
         }
         return [
             self._about_estimate(outcome, values),
+            *([] if self._motion is None else [motion_diagnosis(self._motion.knowledge)]),
             *self._about_state(outcome),
             *self._about_advice(),
         ]
@@ -202,7 +222,8 @@ class IdentificationNode(TrawlNode):
         """Bring the estimate to convergence, write the report, and end the thread."""
         if self._adviser is not None:
             self._adviser.stop()
-        wish = self._worker.finish()
+        # All of the tow takes minutes, which who ends a node may not give it.
+        wish = self._worker.finish(whole=False)
         self._worker.stop()
         self._tell(wish.outcome)
 
@@ -229,27 +250,15 @@ class IdentificationNode(TrawlNode):
         if self._state is not None:
             save_checkpoint(self._state, identification, self._gear)
 
-    def _report(self, identification: Identification) -> str:
-        estimate = identification.estimate
-        if estimate is None:
-            raise TrawlError(identification.why_not() or 'nothing is estimated')
-        if self._folder is None:
-            return f'{estimate.windows} windows used; {estimate.reason}'
-        # Figures bring matplotlib, which the node needs at its end only.
-        from trawl_ros.estimation.report.page import write_report
-
-        write_report(report(identification, self._truth, gear=self._gear), self._folder)
-        return f'{self._folder}: identification.json of {estimate.windows} windows'
-
     def _publish(self, outcome: EstimatorOutcome) -> None:
-        estimate = outcome.estimate
-        new = estimate is not self._sent
-        if estimate is not None and new:
-            self.send(*estimate_message(estimate.values))
-            self.send(*covariance_message(estimate.covariance))
-            if estimate.innovation is not None:
-                self.send(*innovation_message(estimate.stamp, innovations_of(estimate.innovation)))
-        self._sent = estimate
+        told, windows = outcome.told, outcome.estimate
+        if told is not None and told is not self._sent:
+            self.send(*estimate_message(told.values))
+            self.send(*covariance_message(told.covariance))
+        new = windows is not self._by_windows
+        if windows is not None and new and windows.innovation is not None:
+            self.send(*innovation_message(windows.stamp, innovations_of(windows.innovation)))
+        self._sent, self._by_windows = told, windows
         self._say_status(outcome)
         if new and self._adviser is not None and outcome.fit is not None:
             self._adviser.fitted(outcome.fit)
@@ -270,7 +279,7 @@ class IdentificationNode(TrawlNode):
                 statuses.append(advice_status(advice, trouble))
                 knowledge = replace(knowledge_of(advice, windows), trouble=trouble)
                 statuses.append(knowledge_status(knowledge))
-            stamp = outcome.estimate.stamp if outcome.estimate else outcome.stamp
+            stamp = outcome.told.stamp if outcome.told else outcome.stamp
             self.send(STATUS, diagnostic_array(stamp, statuses))
 
     async def _finish(self, request: Any, response: Any) -> Any:
@@ -282,9 +291,13 @@ class IdentificationNode(TrawlNode):
         return response
 
     def _tell(self, outcome: EstimatorOutcome) -> None:
-        if outcome.finished is not None:
-            log = self.get_logger()
-            (log.warning if outcome.failed else log.info)(outcome.finished)
+        if outcome.finished is None:
+            return
+        # A logger refuses another severity from the same line.
+        if outcome.failed:
+            self.get_logger().warning(outcome.finished)
+        else:
+            self.get_logger().info(outcome.finished)
 
 
 def _ranking(advice: Advice | None) -> tuple[object, ...]:

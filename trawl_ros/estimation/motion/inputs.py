@@ -181,19 +181,23 @@ def on_grid(
     tuple
         Values and rates (t,), by the readings within ``reach_s``, or by the nearest four.
     """
-    smooth, rates = np.empty((2, len(grid)))
-    for place, time in enumerate(grid):
-        first, last = np.searchsorted(times, (time - reach_s, time + reach_s))
-        if last - first < 4:
-            first = max(0, min(first - 2, len(times) - 4))
-            last = min(first + 4, len(times))
-        away = times[first:last] - time
-        far = 1.0001 * max(reach_s, float(np.max(np.abs(away))))
-        weights = (1.0 - np.abs(away / far) ** 3) ** 1.5
-        rows = np.column_stack((weights, weights * away))
-        line, *_ = np.linalg.lstsq(rows, weights * values[first:last], rcond=None)
-        smooth[place], rates[place] = line
-    return smooth, rates
+    first, last = np.searchsorted(times, (grid - reach_s, grid + reach_s))
+    few = last - first < 4
+    first = np.where(few, np.maximum(np.minimum(first - 2, len(times) - 4), 0), first)
+    last = np.where(few, np.minimum(first + 4, len(times)), last)
+    places = first[:, None] + np.arange(np.max(last - first))
+    inside = places < last[:, None]
+    places = np.minimum(places, len(times) - 1)
+    away, near = times[places] - grid[:, None], values[places]
+    far = 1.0001 * np.maximum(reach_s, np.max(np.abs(away), axis=1, where=inside, initial=0.0))
+    share = np.where(inside, np.abs(away) / far[:, None], 1.0)
+    weights = (1.0 - share**3) ** 3
+    weights /= np.sum(weights, axis=1, keepdims=True)
+    middle, mean = np.sum(weights * away, axis=1), np.sum(weights * near, axis=1)
+    away -= middle[:, None]
+    square = np.sum(weights * away**2, axis=1)
+    rates = np.sum(weights * away * near, axis=1) / np.where(square > 0.0, square, 1.0)
+    return mean - rates * middle, rates
 
 
 def stacked(series: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:

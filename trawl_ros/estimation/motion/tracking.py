@@ -7,7 +7,7 @@ of the tows a fit from beginning to end (`fit`) has the last word.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit import (
     COOLER,
     DAMPING,
+    LEAST_DAMPING,
+    LOOSER,
     LOST,
     NEAR,
     STIFFER,
@@ -31,15 +33,16 @@ from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.start import starting_point
-from trawl_ros.estimation.motion.steps import Place, cost, misfit, shared_std, step
+from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-AHEAD = 8
+AHEAD = 6
 """Stretches that are towed along again, at most, with each new one."""
 
-FAR = 1.0
-"""Part of every std from the place of the linearisation from which an estimate does not hold."""
+HOLDS, FAR = 0.5, 1.0
+"""Parts of every std from the place of the linearisation within which an estimate begins to hold,
+and beyond which it ends to."""
 
 GROWN = 1.5
 """Factor by which a tow grows before sizes of the errors are found anew, or a step is tried again
@@ -140,28 +143,31 @@ class MotionTracker:
         """Fit where the tows are linearised, and how far from there it leads."""
         if self._here is None:
             return None
-        sizes = self._sized(search)
-        data = search.data(search.linear, search.here)
-        place = search.target(sizes.tempered(self._options.widened))
-        away = np.abs(search.target(sizes)[0][:12] - search.here[0][:12])
-        moved = float(np.max(away / shared_std(data, sizes)[:12]))
-        self._held = self._temper == 1.0 and moved < (FAR if self._held else NEAR)
+        sizes, widened = self._sized(search), self._options.widened
+        place = search.target(sizes.tempered(self._temper))
+        sizes = sizes.tempered(self._temper / widened)
+        fit = search.fit(sizes, place, self._towings, converged=False, reason='')
+        if not fit.readings:
+            return None
+        away = self._prior.std * np.abs(place[0][:12] - search.here[0][:12])
+        moved = float(np.max(away / np.sqrt(np.diag(fit.covariance))))
+        self._held = self._temper == widened and moved < (FAR if self._held else HOLDS)
         reason = f'{moved:.2g} std from where the model was towed'
-        if self._temper > 1.0:
-            reason += f', all errors taken for {self._temper:.2g} times as large'
-        fit = search.fit(sizes, place, self._towings, converged=self._held, reason=reason)
-        return TrackedFit(fit, moved, self._towings) if fit.readings else None
+        if self._temper > widened:
+            reason += f', all errors taken for {self._temper / widened:.2g} times as large'
+        fit = replace(fit, converged=self._held, reason=reason)
+        return TrackedFit(fit, moved, self._towings)
 
     def _sized(self, search: MotionSearch) -> ErrorSizes:
         """Sizes of the errors, found anew where the tow has grown."""
         stretches = sum(map(len, search.tows))
         grown = stretches > GROWN * self._found_at and stretches <= MOST_FOUND
-        if self._temper == 1.0 and grown:
+        if self._temper == self._options.widened and grown:
             self._found_at = stretches
             self._sizes = search.find(self._sizes)
             for tow, noise in zip(search.tows, search.noise, strict=True):
                 self._weights[tow.start_ns] = np.nan_to_num(noise / tow.noise, nan=1.0)
-        return self._sizes.tempered(self._temper)
+        return self._sizes
 
     def _candidate(
         self,
@@ -171,13 +177,16 @@ class MotionTracker:
     ) -> GrowingLinearisation | None:
         """Place to tow all of it along again at, if there is reason to."""
         known = 0 if windows is None else windows.windows
-        if self._here is None or (known > self._started_with and not self._held):
+        waits = found is None or sum(map(len, search.tows)) < self._again
+        # Windows are no place to go back to, but where there is no other way on.
+        lost = not self._held and known > self._started_with and (waits or not self._started_with)
+        if self._here is None or lost:
             self._started_with = known
             return self._linearisation(search, self._start(search, windows))
-        if found is None or sum(map(len, search.tows)) < self._again:
+        if found is None or waits:
             return None
         if found.moved < NEAR:
-            self._temper = max(1.0, COOLER * self._temper)
+            self._cool(COOLER * self._temper)
             return None
         data, sizes = search.data(search.linear, search.here), self._sizes.tempered(self._temper)
         largest = self._options.largest_step
@@ -208,15 +217,22 @@ class MotionTracker:
             self._damping = max(DAMPING, STIFFER * self._damping)
             if self._refused >= self._options.attempts:
                 self._refused, self._damping = 0, 0.0
-                self._temper = max(1.0, COOLER * self._temper)
+                self._cool(COOLER * self._temper)
                 self._again = GROWN * sum(map(len, search.tows))
             return False
-        self._here, self._refused, self._damping = tried, 0, 0.0
+        self._here, self._refused = tried, 0
+        self._damping *= LOOSER
+        if self._damping < LEAST_DAMPING:
+            self._damping = 0.0
         self._take(search, tried)
         data = search.data(linear, there)
         rest = misfit(data, _eliminated(data, there, self._sizes), self._sizes)
-        self._temper = max(1.0, min(COOLER * self._temper, rest))
+        self._cool(min(COOLER * self._temper, self._options.widened * rest))
         return True
+
+    def _cool(self, temper: float) -> None:
+        """Take errors of stretches for so many times as large, and no less than at the end."""
+        self._temper = max(self._options.widened, temper)
 
     @staticmethod
     def _lower(

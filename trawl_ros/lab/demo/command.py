@@ -185,6 +185,8 @@ def _replay(
         use_sim_time=True,
         gear=_gear_file(scenario),
         truth=path,
+        # At this speed all of the tow is better learned from at once, from the bag.
+        motion=False,
         output=str(folder.results),
     )
     processes.start(

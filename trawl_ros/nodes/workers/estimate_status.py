@@ -4,10 +4,14 @@ from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimate import Innovation as Innovations
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.planning.advice import Advice
-from trawl_ros.messages.diagnostics import OK, WARN, Status
+from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.estimates import ChannelInnovation
+from trawl_ros.nodes.workers.motion_learner import MotionKnowledge
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 from trawl_ros.records.coefficients import COEFFICIENTS
+
+WINDOWS, WHOLE = 'steady windows', 'all of the tow'
+"""Words for where an estimate is from."""
 
 
 def innovations_of(innovations: Innovations) -> list[ChannelInnovation]:
@@ -30,13 +34,15 @@ def identification_statuses(outcome: EstimatorOutcome) -> list[Status]:
     statuses = [coefficients_status(outcome), channels_status(outcome)]
     if outcome.estimate is not None:
         statuses.append(instruments_status(outcome.estimate))
+    if outcome.motion is not None:
+        statuses.append(motion_status(outcome.motion, outcome.estimate))
     return statuses
 
 
 def coefficients_status(outcome: EstimatorOutcome) -> Status:
     """Return the coefficients by name, with intervals, counts by reason, and their certainty."""
     name = 'identification: coefficients'
-    estimate = outcome.estimate
+    estimate = outcome.told
     rejected = {f'rejected {reason}': str(count) for reason, count in outcome.rejected.items()}
     rejected |= {f'found {reason}': sentence for reason, sentence in outcome.found.items()}
     if estimate is None:
@@ -68,9 +74,15 @@ def coefficients_status(outcome: EstimatorOutcome) -> Status:
             f'{coefficient} determined': str(estimate.determined[i]).lower(),
         }
     level = OK if estimate.converged else WARN
+    by = f'{estimate.windows} windows'
+    if outcome.motion is not None:
+        values |= {'learned from': WINDOWS}
+        if estimate is outcome.motion.estimate:
+            by = f'{outcome.motion.minutes:.1f} min of tow'
+            values |= {'learned from': WHOLE, 'minutes': f'{outcome.motion.minutes:.1f}'}
     message = (
         f'{sum(estimate.determined)} of {len(COEFFICIENTS)} coefficients determined by '
-        f'{estimate.windows} windows; {estimate.reason}'
+        f'{by}; {estimate.reason}'
     )
     return Status(name, level, message, values | rejected)
 
@@ -111,6 +123,49 @@ def instruments_status(estimate: Estimate) -> Status:
         )
     message = 'noise as found over noise as stated, and what each tow reads too high by'
     return Status('identification: instruments', OK, message, values)
+
+
+def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
+    """Return what all of the tow tells, beside the estimate of its steady windows."""
+    values = {
+        'minutes': f'{motion.minutes:.1f}',
+        'used': str(motion.estimate is not None).lower(),
+        'whole': str(motion.whole).lower(),
+    }
+    if (outcome := motion.outcome) is not None:
+        left_out = sum(part.end - part.begin for _, part in outcome.left_out)
+        values |= {
+            'stamp': f'{motion.stamp / 1e9:.3f}',
+            'left out': f'{left_out / 60:.1f}',
+            'misfit': f'{outcome.fit.misfit:.4g}',
+            'moved': f'{motion.moved:.3g}',
+            'towings': str(motion.towings),
+            'std over prior': f'{outcome.geometric_means["whole"]:.4f}',
+        }
+        for i, coefficient in enumerate(COEFFICIENTS):
+            values[coefficient] = f'{outcome.fit.values[i]:.9g}'
+            values[f'{coefficient} std'] = f'{outcome.std[i]:.6g}'
+            if windows is not None:
+                values[f'{coefficient} by windows'] = f'{windows.values[i]:.9g}'
+                values[f'{coefficient} std by windows'] = f'{windows.std[i]:.6g}'
+    if motion.lost:
+        values['lost'] = motion.lost
+    known = motion_diagnosis(motion)
+    return Status('identification: all of the tow', known.level, known.message, values)
+
+
+def motion_diagnosis(motion: MotionKnowledge) -> Status:
+    """Return how much is learned from all of the tow, or why nothing, for ``/diagnostics``."""
+    values = {'minutes': f'{motion.minutes:.1f}', 'used': str(motion.estimate is not None).lower()}
+    return Status('motion', ERROR if motion.failed else OK, _about(motion), values)
+
+
+def _about(motion: MotionKnowledge) -> str:
+    if motion.why_not or motion.outcome is None:
+        return motion.why_not
+    if motion.estimate is None:
+        return f'the model is still {motion.outcome.fit.reason}'
+    return f'learned from {motion.minutes:.1f} min of tow; {motion.outcome.fit.reason}'
 
 
 def advice_status(advice: Advice | None, trouble: str) -> Status:

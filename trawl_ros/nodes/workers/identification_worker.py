@@ -13,6 +13,7 @@ from trawl_ros.core.errors import sentence_of
 from trawl_ros.estimation.fit.whiteness import Whiteness
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
 from trawl_ros.nodes.runtime.rewinding import Reached
+from trawl_ros.nodes.workers.motion_learner import MotionLearner
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome, readings_of, whiteness_of
 from trawl_ros.records.samples import Sample
 
@@ -39,9 +40,13 @@ class _StopRequest:
 
 
 class Finish:
-    """Request to finish; ``outcome`` is there once it is granted. Coroutines may await that."""
+    """Request to finish; ``outcome`` is there once it is granted. Coroutines may await that.
 
-    def __init__(self) -> None:
+    ``whole`` is true if all of the tow is fitted too, where it is learned from.
+    """
+
+    def __init__(self, *, whole: bool = True) -> None:
+        self.whole = whole
         self._granted = Event()
         self.outcome = EstimatorOutcome()
 
@@ -76,6 +81,8 @@ class IdentificationWorker(Thread):
         Called after each window, and before the estimate is brought to rest, to save the state.
     report
         Called at the end to write the report; gives the sentence with which all ends.
+    motion
+        Learning from all of the tow, where that is wanted.
 
     All of these are called in this thread.
     """
@@ -87,6 +94,7 @@ class IdentificationWorker(Thread):
         dealt_with: Callable[[int], None],
         save: Callable[[Identification], None],
         report: Callable[[Identification], str],
+        motion: MotionLearner | None = None,
     ) -> None:
         super().__init__(name='identification', daemon=True)
         self._identification = identification
@@ -94,6 +102,7 @@ class IdentificationWorker(Thread):
         self._dealt_with = dealt_with
         self._save = save
         self._report = report
+        self._motion = motion
         self._queue: SimpleQueue[Work] = SimpleQueue()
         self._wishes: list[Finish] = []
         self._handed_over = 0
@@ -124,9 +133,12 @@ class IdentificationWorker(Thread):
         """Request an update of `outcome`."""
         self._queue.put(_Look())
 
-    def finish(self) -> Finish:
-        """Request to converge the estimate and to write the report, once no sample waits."""
-        wish = Finish()
+    def finish(self, *, whole: bool = True) -> Finish:
+        """Request to converge the estimate and to write the report, once no sample waits.
+
+        All of the tow is fitted where ``whole``, which takes minutes for each hour of it.
+        """
+        wish = Finish(whole=whole)
         self._queue.put(wish)
         return wish
 
@@ -155,6 +167,8 @@ class IdentificationWorker(Thread):
                 self._wishes.append(work)
             case _Reset():
                 self._identification.reset()
+                if self._motion is not None:
+                    self._motion.reset()
                 self._fed, self._reached = 0, Reached()
                 self._troubles, self._whiteness = {}, {}
                 self._tell()
@@ -183,7 +197,10 @@ class IdentificationWorker(Thread):
         # One sample may decide several windows, and each brings an estimate.
         for event in used[:-1]:
             self._on_outcome(replace(self._outcome(), estimate=event.estimate))
-        if events:
+        # After the windows, whose estimate it may begin with.
+        estimate = self._identification.estimate
+        learned = self._motion is not None and self._motion.feed(sample, estimate)
+        if events or learned:
             self._tell()
         if used:
             self._keep()
@@ -210,6 +227,8 @@ class IdentificationWorker(Thread):
             # Saved before: brought to rest it would go on otherwise than without an interruption.
             self._keep()
             self._fed = 0
+            if self._motion is not None:
+                self._motion.at_end = any(wish.whole for wish in wishes)
             sentence, failed = self._end()
             self._tell(sentence, failed)
         elif self.outcome.finished is None:
@@ -240,6 +259,7 @@ class IdentificationWorker(Thread):
             readings=readings_of(identification),
             whiteness=self._whiteness,
             fit=identification.estimator.fit,
+            motion=None if self._motion is None else self._motion.knowledge,
             why_not=identification.why_not(),
             troubles=dict(self._troubles),
             finished=finished,

@@ -8,6 +8,7 @@ from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.whiteness import Whiteness
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.report.residuals import innovations
+from trawl_ros.nodes.workers.motion_learner import MotionKnowledge
 from trawl_ros.records.channels import CHANNELS
 
 
@@ -28,7 +29,7 @@ class EstimatorOutcome:
     stamp
         Newest stamp (ns) of what was dealt with.
     estimate
-        The newest one, None before the first.
+        The newest one of the steady windows, None before the first.
     rejected
         Reason → count.
     found
@@ -39,6 +40,8 @@ class EstimatorOutcome:
         Channel → the test of its innovations; None with too few.
     fit
         Fit of the estimate.
+    motion
+        Knowledge from all of the tow; None where that is not wanted.
     why_not
         Reason for the lack of an estimate; None with one.
     troubles
@@ -55,10 +58,17 @@ class EstimatorOutcome:
     readings: Mapping[str, Readings] = field(default_factory=dict)
     whiteness: Mapping[str, Whiteness | None] = field(default_factory=dict)
     fit: Fit | None = None
+    motion: MotionKnowledge | None = None
     why_not: str | None = None
     troubles: Mapping[str, str] = field(default_factory=dict)
     finished: str | None = None
     failed: bool = False
+
+    @property
+    def told(self) -> Estimate | None:
+        """Estimate to use: by all of the tow where it may be, else by its steady windows."""
+        by_motion = None if self.motion is None else self.motion.estimate
+        return self.estimate if by_motion is None else by_motion
 
 
 def readings_of(identification: Identification) -> dict[str, Readings]:
