@@ -34,6 +34,12 @@ def test_a_cell_shows_its_error_at_once_and_the_gear_takes_minutes(coarse_gear, 
     assert np.abs(responses.fading[59]).max() < np.abs(responses.fading[19]).max()
     lasting = np.ones((len(WATCHED), len(names)))
     grown = responses.since(lasting, np.array([19]), table.growing.astype(float))
+    leapt = np.abs(responses.counters[:, WATCHED.index('net_depth'), 0])
+    assert leapt.argmax() > 2, 'the course follows a leap in minutes'
+    assert leapt[-1] < 0.5 * leapt.max()
+    scale = names.index('counters_drift rate') if 'counters_drift rate' in names else -1
+    assert (responses.applied[:, drag] == 1.0).all()
+    assert scale < 0 or responses.applied[0, scale] < 0.2
     catch = names.index('catch_build_up drag_area')
     hours = 19.5 * 30.0 / 3600.0
     assert grown[0, depth, catch] == pytest.approx(hours - responses.grown[19, depth, catch])

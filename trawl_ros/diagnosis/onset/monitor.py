@@ -1,5 +1,6 @@
 """Monitor of a tow that goes on: raises a finding minutes after an effect begins."""
 
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -18,7 +19,7 @@ from trawl_ros.diagnosis.onset.towing import ModelTow, TowedStretch, WatchedGear
 from trawl_ros.diagnosis.onset.whitening import MOST_ABSORBED, Whitened, WhiteningFilter, states_for
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import effects_of
-from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.stretches import FEWEST
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
@@ -29,8 +30,17 @@ ALIKE = 6.0
 """Candidates whose evidence comes within this of the best's are not told from it, as by the rules
 for steady windows."""
 
-MOVED = 0.5
-"""Part of the gear file's std by which an estimate may move before the tow is linearised anew."""
+MOVED = 4.0
+"""Change of a channel by what coefficients were learned to be, in the model's own error, beyond
+which the tow is linearised anew: a tenth of it may be wrong, or more."""
+
+LEARNING, REST, AT_REST = 20, 4, 5.0
+"""Stretches in which the watch begins anew with what is linearised anew; stretches between two such
+changes; rarity beyond which none is made, for something may have begun."""
+
+BEFORE, QUIET = FEWEST + 1, 8
+"""Stretches before the newest from which the model is towed, and those before these in which
+nothing may have moved."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +99,9 @@ class _Absorbed:
 
 @dataclass
 class _Watch:
-    """State of a tow under watch."""
+    """State of a tow under watch; ``since`` counts stretches since it was linearised last, and
+    ``learned`` those before.
+    """
 
     model: ModelTow
     bank: RatioBank
@@ -97,7 +109,10 @@ class _Watch:
     responses: OnsetResponses | None = None
     absorbed: list[_Absorbed] = field(default_factory=list)
     taken: int = 0
+    since: int = 0
+    learned: int = 0
     moving: tuple[bool, bool] = (False, False)
+    moved: deque[bool] = field(default_factory=lambda: deque(maxlen=QUIET + BEFORE))
 
 
 class OnsetMonitor:
@@ -138,10 +153,8 @@ class OnsetMonitor:
         last_number: int = 0,
     ) -> None:
         gear.require_boards('whose tow could be watched')
-        prior = board_prior(gear)
         self.options = options or OnsetOptions()
         self._known = knowledge or of_gear_file(gear)
-        self._std = prior.std
         self.table: CandidateTable = candidate_table(effects)
         self._gear = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
         self._growing = self.table.growing.astype(float)
@@ -207,9 +220,10 @@ class OnsetMonitor:
         if any(now and not was for now, was in zip(last.moves, watch.moving, strict=True)):
             watch.filter.begin_state()
         watch.moving = last.moves
+        watch.moved.append(any(last.moves))
         lasting = None if model is None else model.by_values
         white = watch.filter.step(
-            means, noise, model, watch.model.coefficients, last.log_std,
+            means, noise, model, watch.model.coefficients, last,
             self._taken_along(lasting, last.number),
         )  # fmt: skip
         signatures = None
@@ -221,8 +235,9 @@ class OnsetMonitor:
         self._tell(last, means, model, white, marks, evidence)
         if evidence:
             yield from self._judge(last, evidence)
-        if self.open is None and self._has_moved():
-            watch.model.begin_anew(watch.filter.coefficients)
+        watch.since += white is not None
+        if model is not None and self._has_moved(model, evidence):
+            self._linearise(watch)
 
     def _begin_watch(self, watch: _Watch) -> None:
         steady = watch.model.steady
@@ -231,16 +246,34 @@ class OnsetMonitor:
         watch.responses = onset_responses(self._gear, watch.model.coefficients, steady, oldest)
         if watch.filter is None:
             watch.filter = WhiteningFilter(
-                self._known.values, self._known.covariance, watch.responses.log,
+                self._known.values, self._known.covariance, watch.responses,
                 self.options.inflation,
             )  # fmt: skip
 
-    def _has_moved(self) -> bool:
+    def _has_moved(self, towed: TowedStretch, evidence: Sequence[OnsetEvidence]) -> bool:
         watch = self._watch
-        if watch.filter is None:
+        rarest = evidence[0].rarity if evidence else 0.0
+        if watch.filter is None or watch.since < REST or self.open is not None or rarest > AT_REST:
             return False
-        moved = (watch.filter.coefficients - watch.model.coefficients) / self._std
-        return bool(np.max(np.abs(moved)) > MOVED)
+        if any(list(watch.moved)[:-BEFORE]):
+            # The model would begin in an equilibrium while the gear was on its way to one.
+            return False
+        moved = watch.filter.coefficients - watch.model.coefficients
+        return bool(np.max(np.abs(towed.by_coefficients @ moved) / towed.model_error) > MOVED)
+
+    def _linearise(self, watch: _Watch) -> None:
+        """Tow anew with the coefficients as they were learned."""
+        assert watch.filter is not None
+        learned = watch.filter.coefficients
+        watch.learned += watch.since
+        if watch.learned <= LEARNING and not watch.absorbed:
+            # Estimates of all else came with derivatives from far off.
+            watch.filter = watch.responses = None
+            watch.bank.forget()
+        else:
+            watch.filter.doubt(learned - watch.model.coefficients)
+        watch.since = 0
+        watch.model.begin_anew(learned)
 
     def _tell(
         self, last: LastStretch, means: FloatArray, towed: TowedStretch | None,

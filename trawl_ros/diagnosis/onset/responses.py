@@ -8,15 +8,16 @@ derivative. `docs/diagnosis.md` has what that costs.
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.diagnosis.onset.stretches import LIVE
+from trawl_ros.diagnosis.onset.stretches import LIVE, counter_leap_shares
 from trawl_ros.diagnosis.onset.towing import ROWS, WatchedGear
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
@@ -32,6 +33,12 @@ TAIL_S = 250.0
 LOG_TAPS = 8
 """Stretches for which an error of the log in one stretch is felt."""
 
+LEAP_TAPS = 24
+"""Stretches since a counter leapt in which the gear does not yet rest with that."""
+
+
+ERRORS = [error.name for error in INPUT_ERRORS]
+
 
 @dataclass(frozen=True)
 class OnsetResponses:
@@ -46,16 +53,27 @@ class OnsetResponses:
         Integral of that over time, in hours, up to the middle of each stretch.
     log : (t, k) array
         Means of the stretches since by a log that shows 1 m/s too much in one stretch alone.
+    applied : (a, p) array
+        Part of each value that the model's inputs have followed: 1 but for errors of counters,
+        whose level in the minutes before they are.
+    counters : (l, k, 2) array
+        Part of what each counter changes by 1 m too much for long that is still missing since it
+        leapt by that, of what inputs have followed.
     """
 
     fading: FloatArray
     grown: FloatArray
     log: FloatArray
+    applied: FloatArray
+    counters: FloatArray
 
     def only(self, columns: Sequence[int]) -> 'OnsetResponses':
         """Responses to some of the values alone."""
         own = list(columns)
-        return OnsetResponses(self.fading[..., own], self.grown[..., own], self.log)
+        return replace(
+            self, fading=self.fading[..., own], grown=self.grown[..., own],
+            applied=self.applied[:, own],
+        )  # fmt: skip
 
     def since(self, lasting: FloatArray, ages: IntArray, growing: FloatArray) -> FloatArray:
         """Signatures (n, k, p) of effects that began so many stretches (n,) ago.
@@ -71,8 +89,9 @@ class OnsetResponses:
         """
         hours = (ages + 0.5) * LIVE.stretch_s / 3600.0
         known = np.minimum(ages, len(self.fading) - 1)
-        steps = lasting - self.fading[known]
-        ramps = lasting * hours[:, None, None] - self.grown[known]
+        steps = lasting * self.applied[known, None] - self.fading[known]
+        late = _grown(1.0 - self.applied)
+        ramps = lasting * (hours[:, None] - late[known])[:, None] - self.grown[known]
         signatures: FloatArray = steps * (1.0 - growing) + ramps * growing
         return signatures
 
@@ -126,14 +145,38 @@ def onset_responses(
     # Errors of sensors show at once: they are not missing, and came in with each.
     nothing = gear.by_values(np.zeros_like(missing[0][:, own[0]]), lasting.values, at)
     fading = _with_tail(np.array(shown) - nothing, oldest)
+    shares = counter_leap_shares(oldest)
+    counted = gear.counted(at)
+    fading[..., counted] = _followed(fading[..., counted], shares)
+    applied = np.where(counted, shares[:, None], 1.0)
+    places = [ERRORS.index(f'{name} offset') for name in INPUTS[:2]]
+    stds = [INPUT_ERRORS[place].std for place in places]
+    columns = [own[1].start + place for place in places]
+    leapt = _with_tail(missing[:, ROWS][:, :, columns] / stds, LEAP_TAPS)
+    counters = _followed(leapt, shares[:LEAP_TAPS])
+    log = _of_log(gear, np.array(towed), own[1].start)
+    return OnsetResponses(fading, _grown(fading), log, applied, counters)
+
+
+def _grown(values: FloatArray) -> FloatArray:
+    """Integral over time, in hours, of values (a, ...) up to the middle of each stretch."""
     hours = LIVE.stretch_s / 3600.0
-    grown = hours * (np.cumsum(fading, axis=0) - 0.5 * fading)
-    return OnsetResponses(fading, grown, _of_log(gear, np.array(towed), own[1].start))
+    total: FloatArray = hours * (np.cumsum(values, axis=0) - 0.5 * values)
+    return total
+
+
+def _followed(steps: FloatArray, shares: FloatArray) -> FloatArray:
+    """Part still missing (a, k, m) since a counter leapt, of what its course has followed by shares
+    (a,); ``steps`` (a, k, m) is that since a course leapt.
+    """
+    still = np.zeros_like(steps)
+    for age, part in enumerate(np.diff(shares, prepend=0.0)):
+        still[age:] += part * steps[: len(steps) - age]
+    return still
 
 
 def _of_log(gear: WatchedGear, towed: FloatArray, first: int) -> FloatArray:
-    names = [error.name for error in INPUT_ERRORS]
-    place = names.index('speed offset')
+    place = ERRORS.index('speed offset')
     # A log that shows too much is a ship that is slower; by a std of that error.
     steps = towed[:LOG_TAPS, :, first + place][:, ROWS] / INPUT_ERRORS[place].std
     pulses: FloatArray = np.diff(steps, axis=0, prepend=0.0)
@@ -143,7 +186,7 @@ def _of_log(gear: WatchedGear, towed: FloatArray, first: int) -> FloatArray:
 def _held(inputs: tuple[float, float, float]) -> InputPoint:
     additions = np.zeros((len(INPUT_ERRORS), 3))
     for row, error in enumerate(INPUT_ERRORS):
-        column = ('port_length', 'starboard_length', 'speed').index(error.channel)
+        column = INPUTS.index(error.channel)
         additions[row, column] = -error.std * (inputs[column] if error.relative else 1.0)
     return InputPoint(
         np.array(inputs), np.zeros(3), hours=1.0,

@@ -3,14 +3,22 @@
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import Series, TowReadings, tow_readings
-from trawl_ros.estimation.motion.stretches import FEWEST, StretchOptions, moving_tow
+from trawl_ros.estimation.motion.stretches import (
+    FEWEST,
+    StretchOptions,
+    level_weights,
+    moving_tow,
+    paid_out,
+)
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.samples import Sample, WinchSample
 
@@ -27,11 +35,27 @@ LOST_S = 1800.0
 """A longer silence of the winches ends a tow; stretches within it are not counted one by one."""
 
 
-RUNNING_M_S, CHANGED_M_S = 0.05, 0.05
-"""Warps that are faster run; a speed that is another by more within a stretch changes."""
+RUNNING_M_S, CHANGED_M_S = 0.05, 0.04
+"""Warps that are faster run; a speed is another one that is so far from what it was."""
+
+LEAP_S = 10.0
+"""Time before the beginning and the end of a stretch whose counts are compared."""
+
+UNSEEN_LEAP_M, PAYOUT_STD = 0.1, 0.003
+"""Std of a leap that cannot be seen, m; and of what a winch pays out in a stretch, as a part."""
 
 UNHEARD_LOG = 0.02
 """Standard error (m/s) of the log's mean where it is not heard."""
+
+
+@dataclass(frozen=True)
+class CounterLeap:
+    """Length (m) by which a counter has leapt in a stretch beside what its winch paid out, and its
+    std.
+    """
+
+    length: float = 0.0
+    std: float = UNSEEN_LEAP_M
 
 
 @dataclass(frozen=True)
@@ -50,6 +74,7 @@ class LastStretch:
     place: int = 0
     log_std: float = UNHEARD_LOG
     moves: tuple[bool, bool] = (False, False)
+    leaps: tuple[CounterLeap, CounterLeap] = (CounterLeap(), CounterLeap())
     why_not: str = ''
 
 
@@ -71,6 +96,7 @@ class StretchCutter:
         self._samples: deque[Sample] = deque(maxlen=MOST_SAMPLES)
         self._origin: int | None = None
         self._number = 0
+        self._held_speed: float | None = None
 
     def feed(self, sample: Sample) -> Iterator[LastStretch]:
         """Take a sample; yield the stretches that it ends."""
@@ -118,17 +144,54 @@ class StretchCutter:
         )
         count = max(int(inside.sum()), 1)
         log_std = aligned.series['speed'].noise / count**0.5
-        return replace(
-            last, tow=tow, place=int(place), log_std=log_std, moves=_moves(tow, int(place))
+        since = place * self._options.stretch_s
+        port, starboard = (
+            counter_leap(aligned.series[name], payout, since, since + self._options.stretch_s)
+            for name, payout in zip(INPUTS[:2], aligned.payout, strict=True)
         )
+        return replace(
+            last, tow=tow, place=int(place), log_std=log_std, moves=self._moves(tow, int(place)),
+            leaps=(port, starboard),
+        )  # fmt: skip
+
+    def _moves(self, tow: MovingTow, place: int) -> tuple[bool, bool]:
+        steps = round(tow.stretch_s / tow.inputs.grid_s)
+        own = slice(place * steps, (place + 1) * steps + 1)
+        running = np.max(np.abs(tow.inputs.rates[own, :2])) > RUNNING_M_S
+        speed = float(np.mean(tow.inputs.values[own, 2]))
+        changed = self._held_speed is not None and abs(speed - self._held_speed) > CHANGED_M_S
+        if changed or self._held_speed is None:
+            self._held_speed = speed
+        return bool(running), changed
 
 
-def _moves(tow: MovingTow, place: int) -> tuple[bool, bool]:
-    steps = round(tow.stretch_s / tow.inputs.grid_s)
-    own = slice(place * steps, (place + 1) * steps + 1)
-    running = np.max(np.abs(tow.inputs.rates[own, :2])) > RUNNING_M_S
-    first, *_, last = np.array_split(tow.inputs.values[own, 2], 3)
-    return bool(running), bool(abs(last.mean() - first.mean()) > CHANGED_M_S)
+def counter_leap(counter: Series, payout: Series, begin: float, end: float) -> CounterLeap:
+    """Leap of a counter between two times (s), beside what its winch paid out."""
+    grid = np.arange(begin - LEAP_S, end + 0.5)
+    way, _ = paid_out(payout, grid)
+    rest = counter.values - np.interp(counter.times, grid, way)
+    first, last = (
+        rest[(counter.times >= time - LEAP_S) & (counter.times < time)] for time in (begin, end)
+    )
+    if not len(first) or not len(last):
+        return CounterLeap()
+    scatter = counter.noise * (1.0 / len(first) + 1.0 / len(last)) ** 0.5
+    length = float(np.mean(last) - np.mean(first))
+    return CounterLeap(length, float(np.hypot(scatter, PAYOUT_STD * np.ptp(way))))
+
+
+@cache
+def counter_leap_shares(number: int) -> FloatArray:
+    """Part (number,) of a counter's leap that the course of each stretch since has followed.
+
+    It leaps in the middle of the first. The level of a course is a mean of the minutes before.
+    """
+    end = LIVE.stretch_s
+    times = np.arange(-FEWEST * LIVE.stretch_s, end + LAG_S) + 0.5
+    weights = level_weights(times - 0.5 * end)
+    leapt = 0.5 * end - end * np.arange(number)
+    after = times >= leapt[:, None]
+    return np.asarray((after * weights).sum(axis=1) / weights.sum(), np.float64)
 
 
 def _from(read: TowReadings, begin: int) -> TowReadings:

@@ -5,25 +5,30 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.mimics.drift import Drift
 from trawl_ros.diagnosis.onset.candidates import WATCHED, AtOneHour
 from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch
 from trawl_ros.effects.base.effect import Effect, Situation, sense
 from trawl_ros.effects.effect_set import EffectSet
+from trawl_ros.estimation.fit.error_terms import MODEL_ANGLE, MODEL_FRACTION
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, CorrectedInputs
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.towing import AGAIN_S, SETTLING_S
 from trawl_ros.estimation.motion.under_way import HIGHEST_M
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import fallen_boards
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import shown_values
 from trawl_ros.solver.motion.course import InputPoint, by_values
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
+
+RENEWAL = 5
+"""Steps after which what effects push by is computed anew: twice in each stretch."""
 
 ROWS = [OBSERVABLES.index(name) for name in WATCHED]
 
@@ -51,6 +56,16 @@ class TowedStretch:
     by_values: FloatArray
     situation: Situation
 
+    @property
+    def model_error(self) -> FloatArray:
+        """Std (k,) of the model's own error."""
+        return np.array(
+            [
+                MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
+                for name, value in zip(WATCHED, self.values, strict=True)
+            ]
+        )
+
 
 @dataclass(frozen=True)
 class WatchedGear:
@@ -70,6 +85,17 @@ class WatchedGear:
         """Parameters of the derivatives in time."""
         errors = tuple(error.name for error in INPUT_ERRORS)
         return MotionParameters(effects=self.moving, inputs=errors)
+
+    def counted(self, at: Situation) -> BoolArray:
+        """Flags (p,) of the values that change what counters show."""
+        shown, flags = np.array(at.inputs), []
+        for effect in self.effects:
+            for place, parameter in enumerate(effect.parameters):
+                values = effect.neutral
+                values[place] += parameter.std
+                true = effect.apply_to_inputs(values, shown.copy(), at)
+                flags.append(not np.array_equal(true[:2], shown[:2]))
+        return np.array(flags, np.bool_)
 
     def by_values(self, moved: FloatArray, shown: FloatArray, at: Situation) -> FloatArray:
         """Derivatives (k, p) of readings by the values of all effects.
@@ -141,7 +167,7 @@ class ModelTow:
         self._following: _Following | None = None
         self._next = -1
         self._again = 0
-        self.coefficients = coefficients
+        self.coefficients = self._sound = coefficients
 
     @property
     def steady(self) -> tuple[float, float, float] | None:
@@ -187,6 +213,8 @@ class ModelTow:
 
     def _stop(self, last: LastStretch) -> None:
         self._motion = None
+        # It may be boards that were learned with which there is no motion.
+        self.coefficients = self._sound
         self._again = last.number + round(AGAIN_S / LIVE.stretch_s)
 
     def _begin(self, last: LastStretch) -> None:
@@ -194,13 +222,14 @@ class ModelTow:
         self._following = _Following(last.tow)
         model = self._gear.model.with_coefficients(self.coefficients)
         self._motion = DifferentiatedTow(
-            model, self._parameters, self._following, self._gear.acting
+            model, self._parameters, self._following, self._gear.acting, renewal=RENEWAL
         )
         port, starboard, speed = map(float, self._following(0.0).inputs)
         self._began = (port, starboard, speed)
         for _ in range(last.place * last.tow.steps):
             self._motion.advance(last.tow.step_s)
         self._require_upright()
+        self._sound = self.coefficients
 
     def _require_upright(self) -> None:
         assert self._motion is not None

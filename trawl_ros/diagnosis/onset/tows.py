@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -33,6 +34,10 @@ class OnsetsInTow:
         Reason why the last of these could not be.
     findings
         All that was not withdrawn.
+    course
+        Innovations and evidence over time.
+    limit
+        Rarity beyond which a finding is raised.
     """
 
     tow: str
@@ -41,6 +46,8 @@ class OnsetsInTow:
     unwatched: int
     why_not: str
     findings: tuple[Finding, ...]
+    course: WatchedCourse
+    limit: float
 
     def sentences(self) -> list[str]:
         """Sentence for each onset, or that there was none."""
@@ -68,10 +75,14 @@ def onsets_in(
     gear: GearRecord, knowledge: Knowledge, tow: str, samples: Iterable[Sample]
 ) -> OnsetsInTow:
     """Watch a tow from its first sample to its last."""
-    monitor, start, last = OnsetMonitor(gear, knowledge), 0, ''
+    keeper = CourseKeeper()
+    monitor, start, last = OnsetMonitor(gear, knowledge, on_stretch=keeper), 0, ''
     for sample in samples:
         start = start or sample.stamp
         monitor.feed(sample)
         last = monitor.why_not or last
     kept = (found for found in monitor.findings.values() if found.state != 'withdrawn')
-    return OnsetsInTow(tow, start, monitor.watched, monitor.unwatched, last, tuple(kept))
+    return OnsetsInTow(
+        tow, start, monitor.watched, monitor.unwatched, last, tuple(kept), keeper.course,
+        monitor.options.limit,
+    )  # fmt: skip

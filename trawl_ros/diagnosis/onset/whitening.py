@@ -13,15 +13,15 @@ from scipy.linalg import solve_triangular
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.diagnosis.onset.candidates import WATCHED
-from trawl_ros.diagnosis.onset.responses import LOG_TAPS
-from trawl_ros.diagnosis.onset.stretches import LIVE
-from trawl_ros.diagnosis.onset.towing import TowedStretch
-from trawl_ros.estimation.fit.error_terms import (
-    GROUPS,
-    MODEL_ANGLE,
-    MODEL_FRACTION,
-    group_of,
+from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
+from trawl_ros.diagnosis.onset.stretches import (
+    LIVE,
+    CounterLeap,
+    LastStretch,
+    counter_leap_shares,
 )
+from trawl_ros.diagnosis.onset.towing import TowedStretch
+from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorSizes, ErrorTimes
 from trawl_ros.records.channels import CHANNELS, INPUTS
@@ -36,10 +36,19 @@ STATE_LEAP, LEAPS = 0.5, {'door_spread': 1.5}
 """Std of what a channel is wrong by more or less in the next state of a tow, in its bias: assumed,
 and of the spread as measured at a dock (0.6 m, `config/instruments/default.yaml`)."""
 
-COUNTER_LEAP, LEAP_STRETCHES = 1.7, 11
-"""Std of what a counter is wrong by more or less in the next state, in `COUNTER_STD_M` (0.85 m, as
-measured: 0.6 m in each), and the stretches over which its mean level, which the model follows,
-takes that in."""
+RUNNING, UNREST_S = 3.0, 150.0
+"""Factor on the model's own error while winches run or speed changes, and time in which it fades:
+derivatives are less exact then, and a gear that is not the model differs more."""
+
+APART = 0.5
+"""Std of what the model is wrong by on one side more than on both, in what it is on both."""
+
+DOUBT = 0.3
+"""Part of a change of coefficients by which they may be wrong still, for derivatives change too."""
+
+MOST_LEAP_M = 3.4
+"""Four std of how a counter leaps from one state to the next: measured ones are wrong by 0.6 m in
+each (`config/instruments/default.yaml`)."""
 
 COUNTER_STD_M = LIVE.counter_std_m
 """Std of those of the counters, as for the fit in motion."""
@@ -81,21 +90,24 @@ class WhiteningFilter:
     ----------
     start, covariance
         Coefficients (12,) as they are known, and their covariance (12, 12).
-    log
-        Means (t, k) of the stretches since by a log that shows 1 m/s too much in one stretch.
+    responses
+        Of the gear, to errors of the log and to counters that leap.
     inflation
         Factor on the std of all errors that are stated.
     """
 
     def __init__(
-        self, start: FloatArray, covariance: FloatArray, log: FloatArray, inflation: float
-    ) -> None:
-        self._start, self._log, self._inflation = start, log, inflation
+        self, start: FloatArray, covariance: FloatArray, responses: OnsetResponses,
+        inflation: float,
+    ) -> None:  # fmt: skip
+        self._start, self._responses, self._inflation = start, responses, inflation
         self._known = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
         self.mean = np.zeros(self.size)
         self.variance = np.eye(self.size)
         self.variance[self._absorbed, self._absorbed] = 0.0
-        self._leaping = 0
+        for part in self._leaps:
+            self.variance[part, part] = 0.0
+        self._unrest = 0.0
 
     @cached_property
     def _starts(self) -> tuple[int, ...]:
@@ -114,6 +126,11 @@ class WhiteningFilter:
         return self._part(7)
 
     @property
+    def _leaps(self) -> tuple[Slice, Slice]:
+        """Slices of the leaps of both counters, by the stretches since."""
+        return self._part(8), self._part(9)
+
+    @property
     def calibrations(self) -> Slice:
         """Slice of the calibration of each watched channel."""
         return self._part(4)
@@ -129,15 +146,20 @@ class WhiteningFilter:
         diagonal = np.einsum('ii->i', self.variance)
         diagonal[self.calibrations] += 1.0
 
-    def begin_state(self) -> None:
-        """Take sensors and counters for wrong by another amount: winches or speed begin to change.
+    def doubt(self, moved: FloatArray) -> None:
+        """Take coefficients (12,) for less known along the way by which they were moved."""
+        way = np.linalg.solve(self._known, DOUBT * moved)
+        own = self._part(0)
+        self.variance[own, own] += np.outer(way, way)
 
-        The dock where they were measured says so of spread and counters.
+    def begin_state(self) -> None:
+        """Take sensors for wrong by another amount: winches or speed begin to change.
+
+        The dock where they were measured says so of the spread; leaps of counters are seen.
         """
         diagonal = np.einsum('ii->i', self.variance)
         leaps = [LEAPS.get(name, STATE_LEAP) for name in WATCHED]
         diagonal[self.calibrations] += np.square(leaps)
-        self._leaping = LEAP_STRETCHES
 
     def absorb(self, number: int, scale: float) -> None:
         """Take a value along that has been found, of a size up to ``scale``."""
@@ -148,7 +170,7 @@ class WhiteningFilter:
 
     def step(
         self, means: FloatArray, noise: FloatArray, towed: TowedStretch | None,
-        linearised_at: FloatArray, log_std: float, absorbed: FloatArray,
+        linearised_at: FloatArray, last: LastStretch, absorbed: FloatArray,
     ) -> Whitened | None:  # fmt: skip
         """Advance by a stretch.
 
@@ -160,8 +182,8 @@ class WhiteningFilter:
             The model; None where there is no prediction.
         linearised_at
             Coefficients (12,) with which it was towed.
-        log_std
-            Std of the log's mean in the stretch, m/s.
+        last
+            The stretch: its log's error, and how its counters leapt.
         absorbed : (k, `MOST_ABSORBED`) array
             Signatures of what is taken along.
 
@@ -171,7 +193,11 @@ class WhiteningFilter:
             Innovations; None where nothing could be compared.
         """
         self.advance(self.mean)
-        self._spread(log_std)
+        self._spread(last.log_std)
+        fading = np.exp(-LIVE.stretch_s / UNREST_S)
+        self._unrest = 1.0 if any(last.moves) else self._unrest * float(fading)
+        for number, leap in enumerate(last.leaps):
+            self._leap(number, leap)
         if towed is None:
             return None
         rows = np.isfinite(means) & np.isfinite(noise)
@@ -196,9 +222,9 @@ class WhiteningFilter:
     def advance(self, states: FloatArray) -> None:
         """Advance states (s, ...) in time by a stretch, in place."""
         states *= self._decay.reshape(-1, *(1,) * (states.ndim - 1))
-        taps = self._part(3)
-        states[taps] = np.roll(states[taps], 1, axis=0)
-        states[taps.start] = 0.0
+        for taps in (self._part(3), *self._leaps):
+            states[taps] = np.roll(states[taps], 1, axis=0)
+            states[taps.start] = 0.0
 
     @cached_property
     def _decay(self) -> FloatArray:
@@ -217,11 +243,16 @@ class WhiteningFilter:
         for number in (2, 5, 6):
             part = self._part(number)
             diagonal[part] += 1.0 - self._decay[part] ** 2
-        if self._leaping:
-            counters = self._part(2).start
-            diagonal[counters : counters + 2] += COUNTER_LEAP**2 / LEAP_STRETCHES
-            self._leaping -= 1
         diagonal[self._part(3).start] = (log_std * self._inflation) ** 2
+
+    def _leap(self, number: int, leap: CounterLeap) -> None:
+        """Take a counter for wrong by so much more, which the gear begins to be towed with."""
+        unit = COUNTER_STD_M * self._inflation
+        both = [self._part(2).start + number, self._leaps[number].start]
+        # More than instruments leap is left to candidates.
+        usual = abs(leap.length) < MOST_LEAP_M
+        self.mean[both] += leap.length / unit if usual else 0.0
+        self.variance[np.ix_(both, both)] += (leap.std / unit) ** 2
 
     def _model(self, towed: TowedStretch, absorbed: FloatArray) -> FloatArray:
         """Change of the watched channels (k, s) by each state of unit size."""
@@ -237,25 +268,34 @@ class WhiteningFilter:
         per_unit = towed.by_inputs[:, offsets] / [INPUT_ERRORS[place].std for place in offsets]
         log = CHANNELS['speed'].bias_std(towed.situation.speed)
         sizes = np.array([COUNTER_STD_M, COUNTER_STD_M, STATE_SHARE * log])
-        groups = np.zeros((k, len(GROUPS)))
-        for row, (name, value) in enumerate(zip(WATCHED, towed.values, strict=True)):
-            angle = CHANNELS[name].unit == 'rad'
-            groups[row, GROUPS.index(group_of(name))] = (
-                MODEL_ANGLE if angle else MODEL_FRACTION * abs(value)
-            )
+        groups, apart = np.zeros((2, k, len(GROUPS)))
+        worse = 1.0 + (RUNNING - 1.0) * self._unrest
+        for row, name in enumerate(WATCHED):
+            group = group_of(name)
+            groups[row, GROUPS.index(group)] = worse * towed.model_error[row]
+            if name != group:
+                way = 1.0 if name.startswith('port') else -1.0
+                apart[row, GROUPS.index(group)] = way * APART * worse * towed.model_error[row]
         stated = self._inflation
         return np.hstack(
             (
                 towed.by_coefficients @ self._known,
                 towed.by_inputs * stated,
                 per_unit * sizes * stated,
-                self._log.T,
+                self._responses.log.T,
                 np.diag(bias) * stated,
                 np.diag(bias) * STATE_SHARE * stated,
-                groups * stated,
+                np.hstack((groups, apart)) * stated,
                 absorbed,
+                -self._still_missing(per_unit[:, :2]) * COUNTER_STD_M * stated,
             )
         )
+
+    def _still_missing(self, lasting: FloatArray) -> FloatArray:
+        """Part (k, 2 l) missing since counters leapt, of what they change (k, 2) for long."""
+        to_come = 1.0 - counter_leap_shares(LEAP_TAPS)
+        missing = self._responses.counters + to_come[:, None, None] * lasting
+        return np.hstack((missing[..., 0].T, missing[..., 1].T))
 
 
 def states_for(coefficients: int) -> int:
@@ -266,7 +306,8 @@ def states_for(coefficients: int) -> int:
 def _starts(coefficients: int) -> tuple[int, ...]:
     k = len(WATCHED)
     sizes = (
-        coefficients, len(INPUT_ERRORS), len(INPUTS), LOG_TAPS, k, k, len(GROUPS), MOST_ABSORBED,
+        coefficients, len(INPUT_ERRORS), len(INPUTS), LOG_TAPS, k, k, 2 * len(GROUPS),
+        MOST_ABSORBED, LEAP_TAPS, LEAP_TAPS,
     )  # fmt: skip
     return tuple(int(one) for one in np.cumsum((0, *sizes)))
 

@@ -12,6 +12,7 @@ from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 
 WHERE, WHICH, GAP = 'Where they disagree', 'Which effect it is', 'The gap before and after'
+BEGAN = 'What began on the way'
 
 MOST_Z = 8.0
 """Colours end here."""
@@ -68,7 +69,25 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
                 coefficient_shifts_figure(diagnosis), GAP,
             )
         )  # fmt: skip
-    return made
+    return [*made, *_began(diagnosis)]
+
+
+def _began(diagnosis: Diagnosis) -> list[Drawing]:
+    watched = [tow for tow in diagnosis.onsets if tow.watched]
+    if not watched:
+        return []
+    from trawl_ros.diagnosis.report.onset_figure import onset_figure
+
+    return [
+        Drawing(
+            f'onset_{number}',
+            f'{tow.tow} as it was watched. Above: what each channel shows more than the '
+            'model foretold, in standard deviations. Below: the evidence for the rarest '
+            'candidate; beyond the dashed limit a finding is raised.',
+            onset_figure(tow.course, tow.findings, tow.limit, tow.start_ns), BEGAN,
+        )
+        for number, tow in enumerate(watched, start=1)
+    ]  # fmt: skip
 
 
 def where_figure(test: ScoreTest) -> Figure:

@@ -202,12 +202,17 @@ def warp_path(counter: Series, payout: Series, grid: FloatArray) -> tuple[FloatA
     """Warp length and its rate (t,) on a grid (t,): the course by the pay-out speed, the level by
     the counter. So no warp moves where a counter leaps while its winch stands.
     """
-    speeds, _ = on_grid(payout.times, payout.values, grid, PAYOUT_REACH_S)
-    speeds[np.abs(speeds) < STANDING_M_S] = 0.0
-    way = cumulative_trapezoid(speeds, grid, initial=0.0)
+    way, speeds = paid_out(payout, grid)
     rest = counter.values - np.interp(counter.times, grid, way)
     level = _level(counter.times, rest, grid)
     return way + level, speeds + np.gradient(level, grid)
+
+
+def paid_out(payout: Series, grid: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Warp that has run out since the beginning of a grid (t,), and its speed (t,)."""
+    speeds, _ = on_grid(payout.times, payout.values, grid, PAYOUT_REACH_S)
+    speeds[np.abs(speeds) < STANDING_M_S] = 0.0
+    return np.asarray(cumulative_trapezoid(speeds, grid, initial=0.0), np.float64), speeds
 
 
 def _level(times: FloatArray, values: FloatArray, grid: FloatArray) -> FloatArray:
@@ -216,7 +221,13 @@ def _level(times: FloatArray, values: FloatArray, grid: FloatArray) -> FloatArra
     means = np.empty(len(places))
     for number, place in enumerate(places):
         first, last = np.searchsorted(times, (place - COUNTER_REACH_S, place + COUNTER_REACH_S))
-        weights = (1.0 - np.abs((times[first:last] - place) / COUNTER_REACH_S) ** 3) ** 3
+        weights = level_weights(times[first:last] - place)
         means[number] = np.average(values[first:last], weights=weights)
     level: FloatArray = np.interp(grid, places, means)
     return level
+
+
+def level_weights(away: FloatArray) -> FloatArray:
+    """Tricube weights (n,) of a counter's readings in its level so many seconds (n,) away."""
+    weights: FloatArray = (1.0 - np.minimum(np.abs(away / COUNTER_REACH_S), 1.0) ** 3) ** 3
+    return weights

@@ -79,11 +79,11 @@ def net_loads(model: GearModel) -> NetLoads:
 
 def pushes(
     model: GearModel,
-    gear: GearAtPoint,
     parameters: MotionParameters,
     end: StepEnd,
     boundary: TowSlopes,
     net: NetLoads,
+    by_effects: FloatArray,
 ) -> FloatArray:
     """Derivatives (dof, m) of F - M a by all parameters; by those of the boundary, of F alone.
 
@@ -91,8 +91,6 @@ def pushes(
     ----------
     model
         The gear with its effects, as it was towed.
-    gear
-        The gear and its effects apart.
     parameters
         Of the derivatives.
     end
@@ -101,6 +99,8 @@ def pushes(
         Derivatives of the boundary there.
     net
         Loads of the net, `net_loads`.
+    by_effects
+        Derivatives by effects, `effect_pushes`.
     """
     found = np.zeros((model.dof, len(parameters)))
     add_forces_along_tow(model, end.state, end.tow, boundary, found)
@@ -108,7 +108,14 @@ def pushes(
         found[-12:, parameters.of_coefficients] += _by_coefficients(model, end)
     if parameters.net:
         found[:, parameters.of_net] += _by_net(model, net, end)
-    first = parameters.of_effects.start
+    found[:, parameters.of_effects] += by_effects
+    return found
+
+
+def effect_pushes(gear: GearAtPoint, parameters: MotionParameters, end: StepEnd) -> FloatArray:
+    """Derivatives (dof, m) of F - M a by the values of effects, of what they do to the gear."""
+    own = parameters.of_effects
+    found, first = np.zeros((gear.plain.dof, own.stop - own.start)), 0
     for effect in parameters.effects:
         last = first + len(effect.parameters)
         if type(effect).gear is not Effect.gear:

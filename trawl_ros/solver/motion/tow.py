@@ -13,7 +13,14 @@ from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.motion.course import CoursePoint, InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
-from trawl_ros.solver.motion.partials import GearAtPoint, NetLoads, StepEnd, net_loads, pushes
+from trawl_ros.solver.motion.partials import (
+    GearAtPoint,
+    NetLoads,
+    StepEnd,
+    effect_pushes,
+    net_loads,
+    pushes,
+)
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.slopes import (
     advance_slopes,
@@ -44,6 +51,9 @@ class DifferentiatedTow:
         Effects that are there.
     start
         Equilibrium nearby from which that is sought.
+    renewal
+        Steps after which the pushes by values of effects are computed anew, which cost most; in
+        between they are taken to stay.
 
     Attributes
     ----------
@@ -71,10 +81,13 @@ class DifferentiatedTow:
         inputs: Callable[[float], InputPoint],
         acting: EffectSet = NO_EFFECTS,
         start: Equilibrium | None = None,
+        renewal: int = 1,
     ) -> None:
         self._plain, self._acting, self._inputs = model, acting, inputs
         self.parameters, self.time = parameters, 0.0
         self._net: tuple[BarProperties, NetLoads] | None = None
+        self._by_effects: FloatArray | None = None
+        self._renewal, self._steps = renewal, 0
         point = inputs(0.0)
         self.model = acting.gear(model, point.situation)
         self.course = course_point(model, acting, parameters, point)
@@ -140,8 +153,13 @@ class DifferentiatedTow:
     ) -> FloatArray:
         if self._net is None or self._net[0] is not model.bars:
             self._net = model.bars, net_loads(model)
-        gear = GearAtPoint(self._plain, self._acting, point)
-        return pushes(model, gear, self.parameters, end, course.slopes, self._net[1])
+        if self._by_effects is None or self._steps % self._renewal == 0:
+            gear = GearAtPoint(self._plain, self._acting, point)
+            self._by_effects = effect_pushes(gear, self.parameters, end)
+        self._steps += 1
+        return pushes(
+            model, self.parameters, end, course.slopes, self._net[1], self._by_effects
+        )  # fmt: skip
 
     def forget(self, columns: Slice) -> None:
         """Set derivatives by some parameters to nought, as if these began to act now."""

@@ -27,6 +27,8 @@ from trawl_ros.lab.studies.onset.study import OnsetPlan, run_onset
 @click.option('--seed', default=OnsetPlan.seed, show_default=True, type=click.IntRange(0))
 @click.option('--shard', default=(1, 1), show_default=True, type=(int, int),
               help='Make one part of the trials alone, of how many: 1 2.')  # fmt: skip
+@click.option('--pictures', is_flag=True,
+              help='Draw each tow that is made, as it was watched.')  # fmt: skip
 @click.option('--limit', 'draws', default=0, type=click.IntRange(0, 5000),
               help='Instead: draw the innovations of one clean tow so often, and print the limit '
               'that they exceed once in 230 h.')  # fmt: skip
@@ -38,6 +40,7 @@ def command(
     minutes: float,
     seed: int,
     shard: tuple[int, int],
+    pictures: bool,
     draws: int,
 ) -> None:
     """Let effects begin during tows, and count how soon they are found, and what is found without.
@@ -52,7 +55,7 @@ def command(
             f'{ASKED_H:g} h beyond {drawn.limit:.2f}'
         )
         return
-    plan = OnsetPlan(gear, trials, clean, minutes, seed, *shard)
+    plan = OnsetPlan(gear, trials, clean, minutes, seed, *shard, pictures)
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         made = run_onset(plan, out, display)
     print_outcome(write_onset(out, plan, made), out / ONSET_REPORT)

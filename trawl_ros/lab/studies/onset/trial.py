@@ -11,11 +11,13 @@ import yaml
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import write_text
+from trawl_ros.core.files import write_figure, write_text
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.history import CourseKeeper
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor, WatchedStretch
+from trawl_ros.diagnosis.report.onset_figure import onset_figure
 from trawl_ros.effects.base.effect import Effect, Readings, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
@@ -29,6 +31,7 @@ from trawl_ros.lab.studies.soak.long_tow import coarse_gear
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
+from trawl_ros.report.style import DPI
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 
@@ -117,7 +120,9 @@ class OnsetTrial:
         return asdict(self) | {'alike': list(self.alike)}
 
 
-def make_trial(gear: str, seed: int, number: int, minutes: float, clean: bool) -> OnsetTrial:
+def make_trial(
+    gear: str, seed: int, number: int, minutes: float, clean: bool, picture: Path | None = None
+) -> OnsetTrial:
     """Tow and watch.
 
     Parameters
@@ -129,6 +134,8 @@ def make_trial(gear: str, seed: int, number: int, minutes: float, clean: bool) -
         Of the study, and of the trial, which decide on the course, the effect and the readings.
     minutes
         Of the tow.
+    picture
+        PNG file into which the tow is drawn as it was watched; None for none.
     """
     chance = np.random.default_rng([seed, number, int(clean)])
     names = list(STEADY_SIZES)
@@ -145,11 +152,9 @@ def make_trial(gear: str, seed: int, number: int, minutes: float, clean: bool) -
         # An effect that begins is none of a file: it takes the place of the plant's own.
         vars(scenario)['effect_set'] = acting
         raised: list[Finding] = []
-        watched = [0.0]
+        keeper = CourseKeeper()
         monitor = OnsetMonitor(
-            load_gear(Path(folder) / 'gear.yaml'),
-            _knowledge(record, chance),
-            on_stretch=lambda stretch: watched.append(stretch.rarity),
+            load_gear(Path(folder) / 'gear.yaml'), _knowledge(record, chance), on_stretch=keeper
         )
         spent = 0.0
         try:
@@ -159,13 +164,18 @@ def make_trial(gear: str, seed: int, number: int, minutes: float, clean: bool) -
                 spent += time.process_time() - begun
         except TrawlError as reason:
             return replace(trial, why_not=str(reason))
+    course = keeper.course
+    if picture is not None:
+        told = list(monitor.findings.values())
+        write_figure(picture, onset_figure(course, told, monitor.options.limit, 0), DPI)
     first = {found.number: found for found in reversed(raised)}
     from_s = np.inf if trial.begin_s is None else trial.begin_s
     early = [one for one in first.values() if one.raised_ns / SECOND < from_s]
     later = [one for one in first.values() if one.raised_ns / SECOND >= from_s]
     trial = replace(
         trial, false=len(early), watched_s=30.0 * monitor.watched,
-        unwatched_s=30.0 * monitor.unwatched, seconds=spent, rarity=max(watched),
+        unwatched_s=30.0 * monitor.unwatched, seconds=spent,
+        rarity=float(np.nanmax(course.rarities, initial=0.0)),
     )  # fmt: skip
     if not later:
         return trial
