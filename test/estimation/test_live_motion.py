@@ -11,11 +11,11 @@ from trawl_ros.api.tows import tow
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import ignore
-from trawl_ros.estimation import bag_motion
+from trawl_ros.estimation import bag_motion, live_motion
 from trawl_ros.estimation.bag_motion import learn_from_motion
 from trawl_ros.estimation.bag_windows import read_tows
 from trawl_ros.estimation.live_motion import LiveMotion
-from trawl_ros.estimation.motion import tracking
+from trawl_ros.estimation.motion import stretches, tracking
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.gear.load import load_gear
 from trawl_ros.records.samples import VelocitySample, WinchSample
@@ -112,6 +112,18 @@ def test_a_tow_that_has_just_begun_says_what_it_needs(record, still):
     assert 'expected at least 600 s' in live.why_not
     with pytest.raises(TrawlError, match='expected at least 600 s'):
         live.finish(None)
+
+
+def test_of_a_tow_that_is_too_long_the_beginning_is_learned_from(record, still, monkeypatch):
+    for module in (live_motion, stretches):
+        monkeypatch.setattr(module, 'LONGEST_S', 650.0)
+    live = LiveMotion(record)
+    # One false stamp is no end of it.
+    assert live.record(replace(still[0], stamp=still[0].stamp + 10_000 * SECOND))
+    taken = [live.record(sample) for sample in still]
+    assert 620 < sum(taken) / len(taken) * 60 * MINUTES < 630
+    assert live.refusal() == ''
+    assert 'which is the most' in live.why_not
 
 
 MOVING = """\

@@ -125,7 +125,8 @@ class LiveMotion:
     def record(self, sample: Sample) -> bool:
         """Take a sample without an estimate; tell whether it belongs to the time learned from."""
         start = self._recorder.start_ns
-        if start is not None and sample.stamp > start + round(LONGEST_S * SECOND):
+        longest = round((LONGEST_S - STRETCHES.stretch_s) * SECOND)
+        if start is not None and self._recorder.newest_ns > start + longest:
             self.why_not = f'learned from the first {LONGEST_S / 3600:g} h, which is the most'
             return False
         self._recorder.feed(sample)
@@ -195,4 +196,5 @@ class LiveMotion:
             self.why_not = self.why_not or 'the model is towed along the tow so far'
             return None
         outcome = MotionOutcome(found.fit, self._prior, windows, tuple(refused), stack(()))
-        return MotionUpdate(end_ns, outcome, found.moved, found.towings)
+        stamp = max(tow.start_ns + round(len(tow) * tow.stretch_s * SECOND) for tow in tows)
+        return MotionUpdate(stamp, outcome, found.moved, found.towings)

@@ -37,7 +37,7 @@ from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-AHEAD = 6
+AHEAD = 10
 """Stretches that are towed along again, at most, with each new one."""
 
 HOLDS, FAR = 0.5, 1.0
