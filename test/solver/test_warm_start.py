@@ -10,7 +10,7 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.relax import TOLERANCE
 from trawl_ros.solver.sensitivity import sensitivities
-from trawl_ros.solver.warm_start import warm_start
+from trawl_ros.solver.warm_start import warm_start, warm_start_in_parts
 
 AT = OperatingPoint(500.0, 500.0, 2.1)
 SAME = 1e-5
@@ -102,6 +102,19 @@ def test_bars_that_become_slack_or_taut_do_not_keep_newton_from_its_root(
     was, is_now = (bar_tensions(model, e.state, e.tow) > 1.0 for e in (known, found))
     assert (was != is_now).any()
     assert found.iterations <= 12
+
+
+def test_a_change_from_which_newton_turns_away_is_made_in_parts(
+    model: GearModel, known: Equilibrium
+) -> None:
+    point = OperatingPoint(482.0, 498.0, 2.1)
+    way = known.state, known.tow, steady_tow(model, point)
+    whole, parts = warm_start(model, *way), warm_start_in_parts(model, *way)
+    assert whole is not None
+    assert whole[2] > TOLERANCE
+    assert parts is not None
+    assert parts[2] <= TOLERANCE
+    assert apart(find_equilibrium(model, point, known), find_equilibrium(model, point)) < SAME
 
 
 def test_a_change_too_large_for_the_tangent_is_left_to_others(

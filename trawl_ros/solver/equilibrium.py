@@ -31,7 +31,7 @@ from trawl_ros.solver.relax import (
     relax,
 )
 from trawl_ros.solver.stability import Stability, stability
-from trawl_ros.solver.warm_start import Tangent, warm_start
+from trawl_ros.solver.warm_start import Tangent, warm_start_in_parts
 
 FAR = 0.3
 """Part of the warps' length from which a change is drifted through rather than leapt over, which
@@ -142,7 +142,8 @@ def _from_known(model: GearModel, start: Equilibrium, tow: Tow) -> tuple[State, 
     """Search from a known equilibrium: along its tangent, or from it moved along its warps."""
     iterations = 0
     far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR)
-    if not far and (found := warm_start(model, start.state, start.tow, tow, start.tangent)):
+    known = start.state, start.tow, tow, start.tangent
+    if not far and (found := warm_start_in_parts(model, *known)):
         state, iterations, residual = found
         if residual <= TOLERANCE:
             return found

@@ -42,6 +42,9 @@ brings the force down to this share at least."""
 LEFT_BY_OTHERS = 1.0
 """Force (N) left at a known steady state from which more than the coefficients has changed."""
 
+HALVINGS = 2
+"""Number of times that a change of the towing boundary is halved before another way is tried."""
+
 SLACK = -1.001 * SLACK_WIDTH
 """Strain of a bar that is taken for slack."""
 
@@ -96,6 +99,40 @@ def warm_start(
     before = _spans(model, state, old) / rest_lengths(_as_known(model, tangent), old)[0] - 1.0
     moved = at_velocity(state.moved(first), new.block_velocities.mean(0))
     return _newton(model, moved, new, before)
+
+
+def warm_start_in_parts(
+    model: GearModel,
+    state: State,
+    old: Tow,
+    new: Tow,
+    tangent: Tangent | None = None,
+    halvings: int = HALVINGS,
+) -> tuple[State, int, float] | None:
+    """The same, by way of the state halfway where `warm_start` does not arrive.
+
+    Bars that flip turn Newton's method away on long ways in fine nets, not on short ones.
+    """
+    found = warm_start(model, state, old, new, tangent)
+    if (found and found[2] <= TOLERANCE) or halvings == 0:
+        return found
+    middle = Tow(*((a + b) / 2.0 for a, b in zip(_parts(old), _parts(new), strict=True)))
+    if all(map(np.array_equal, _parts(old), _parts(middle))):
+        return found
+    spent = found[1] if found else 0
+    for start, end, known in ((old, middle, tangent), (middle, new, None)):
+        found = warm_start_in_parts(model, state, start, end, known, halvings - 1)
+        if found is None:
+            return None
+        state, more, residual = found
+        spent += more
+        if residual > TOLERANCE:
+            break
+    return state, spent, residual
+
+
+def _parts(tow: Tow) -> tuple[FloatArray, ...]:
+    return tow.blocks, tow.block_velocities, tow.lengths, tow.length_rates
 
 
 def _displacement(
