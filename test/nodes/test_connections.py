@@ -86,6 +86,17 @@ def test_who_comes_late_hears_what_follows_and_stops_nobody(graph, gear_path):
     graph.until(lambda: lookout.message_of('vessel_node: instruments').startswith('every instant'))
 
 
+def test_a_node_says_how_it_is_once_somebody_listens_and_its_clock_is_heard(graph, monkeypatch):
+    monkeypatch.setattr('trawl_ros.nodes.runtime.node.DIAGNOSTICS_PERIOD_S', 600.0)
+    lookout = graph.add(Lookout)
+    graph.add(Late, use_sim_time=True)
+    graph.until(lambda: lookout.message_of('lookout: clock') == 'system time')
+    graph.rest(0.5)
+    assert not lookout.message_of('late: clock')
+    lookout.create_publisher(message_class('rosgraph_msgs/msg/Clock'), '/clock', 10)
+    graph.until(lambda: lookout.message_of('late: clock') == 'simulated time')
+
+
 class Consumer(TrawlNode):
     """Reports that it keeps up, until it falls silent."""
 

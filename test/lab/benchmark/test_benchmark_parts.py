@@ -1,11 +1,13 @@
 """The pieces that the benchmark measures with do what they claim."""
 
+import os
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.lab.benchmark.bytecode import NO_BYTECODE, bytecode_kept
 from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, FiniteDifferencePredictor
 from trawl_ros.lab.benchmark.fit_trial import plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear
@@ -45,6 +47,13 @@ def test_the_clock_counts_work_and_no_waiting():
     result, seconds = timed(lambda: sum(range(300_000)))
     assert result == 299_999 * 150_000
     assert seconds > 0.0
+
+
+def test_bytecode_is_kept_while_processes_are_measured_and_then_as_before(monkeypatch):
+    monkeypatch.setenv(NO_BYTECODE, '1')
+    with bytecode_kept('json'):
+        assert NO_BYTECODE not in os.environ
+    assert os.environ[NO_BYTECODE] == '1'
 
 
 def test_shares_of_functions_add_up_and_hold_what_those_call(coarse):

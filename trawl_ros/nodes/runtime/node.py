@@ -26,8 +26,12 @@ from trawl_ros.nodes.runtime.incoming import (
 )
 from trawl_ros.nodes.runtime.introduction import introduction
 from trawl_ros.nodes.runtime.parameters import Parameters, Spec
+from trawl_ros.records.topics import CLOCK
 
 DIAGNOSTICS_PERIOD_S = 1.0
+
+GREETING_S = 0.1
+"""Period at which it is looked whether anybody listens to the first of them."""
 
 
 class TrawlNode(ConnectedNode):
@@ -69,6 +73,7 @@ class TrawlNode(ConnectedNode):
         self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
         self.advertise(DIAGNOSTICS)
         self.every(DIAGNOSTICS_PERIOD_S, self._diagnose)
+        self._greeting = self.every(GREETING_S, self._greet)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Return an objection to a live parameter's value; None without one."""
@@ -146,7 +151,17 @@ class TrawlNode(ConnectedNode):
         clock = replace(clock, values={**clock.values, **self.headway.report()})
         return [_bounded(status) for status in (self._traffic_status(), clock, *self.statuses())]
 
+    def _greet(self) -> None:
+        """Report as soon as somebody listens, and not only after the first period."""
+        if not self._senders[DIAGNOSTICS].get_subscription_count():
+            return
+        # A clock that is not heard of yet would be reported as missing.
+        simulated = self.get_parameter('use_sim_time').value
+        if not simulated or self.get_publishers_info_by_topic(CLOCK.name):
+            self._diagnose()
+
     def _diagnose(self) -> None:
+        self._greeting.cancel()
         statuses = self.all_statuses()
         for status in statuses:
             self.say(status.name, status.level, status.message)
