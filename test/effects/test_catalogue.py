@@ -102,3 +102,9 @@ def test_values_that_are_not_given_are_neutral(gear):
     record = EffectRecord(name='speed_log', values={'bias': 0.1})
     (active,) = effects_of(gear.model_copy(update={'effects': (record,)})).effects
     assert active.values.tolist() == [0.0, 0.1]
+
+
+def test_what_is_told_from_readings_alone_is_refused_in_a_gear_file(gear):
+    record = EffectRecord(name='frozen_sensor', values={})
+    with pytest.raises(GearError, match='expected it among the faults of a scenario'):
+        effects_of(gear.model_copy(update={'effects': (record,)}))
