@@ -29,10 +29,12 @@ OPTIONS = EstimatorOptions(
     set_aside=0.1,
     tolerance=0.05,
     model_trend=1.0,
+    least_noise=1.0,
 )
 """A fit that lacks an effect explains its readings badly, from wherever it is started, and on its
 way some windows lose their steady state. What the model is wrong by changes with the length of the
-warps, which would pass for an effect."""
+warps, which would pass for an effect. Readings that scatter less than is stated make neither model
+nor the form of an effect better, so that what these are wrong by must not count the more."""
 
 POOR = 3.0
 """A misfit from where the boards are fitted anew, another way."""

@@ -155,3 +155,11 @@ def test_errors_of_the_model_may_change_with_the_warps(fit):
     # What may change is known less well.
     before, after = (np.linalg.norm(one.posterior.root, axis=1) for one in (fit, trend))
     assert np.all(after >= before * (1.0 - 1e-9))
+
+
+def test_noise_is_not_found_smaller_than_the_least_that_is_taken(fit):
+    exact = replace(fit.windows[0], measured=fit.windows[0].values)
+    quiet = replace(fit, windows=(exact,) * len(fit.windows), known=None)
+    assert max(quiet.rescaled().scales) < 1.0
+    stated = replace(quiet, options=replace(fit.options, least_noise=1.0), known=None)
+    assert stated.rescaled().scales == (1.0,) * len(fit.scales)

@@ -28,6 +28,8 @@ class EstimatorOptions:
     alike_readings
         Number of imagined readings of a channel group that speak for the noise being wrong by the
         same factor in all of them.
+    least_noise
+        Noise is never taken to be less than this part of what is stated.
     state_share, model_error, model_trend, unsettled
         Scheme of the errors, as in `trawl_ros.estimation.fit.error_terms.Scheme`.
     net_drag, net_weight
@@ -57,6 +59,7 @@ class EstimatorOptions:
     prior_weight: float = 1.0
     stated_noise_readings: float = 4.0
     alike_readings: float = 12.0
+    least_noise: float = 0.3
     state_share: float = 0.3
     model_error: float = 1.0
     model_trend: float = 0.0

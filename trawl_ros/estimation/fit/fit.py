@@ -29,9 +29,6 @@ AS_STATED = (1.0,) * len(GROUPS)
 LEAST_FACTOR = 0.2
 """The net is never taken to have less than this part of its drag and weight."""
 
-LEAST_SCALE = 0.3
-"""Noise is never taken to be less than this part of what is stated."""
-
 
 Known = tuple[tuple[Linearised, ...], EstimatorOptions, tuple[TowErrors, ...]]
 
@@ -242,4 +239,5 @@ class Fit:
         common = (stated + numbers @ known) / (stated + numbers.sum())
         alike = self.options.alike_readings
         pooled = (alike * common + numbers * known) / (alike + numbers)
-        return replace(self, scales=tuple(np.maximum(np.sqrt(pooled), LEAST_SCALE).tolist()))
+        found = np.maximum(np.sqrt(pooled), self.options.least_noise)
+        return replace(self, scales=tuple(found.tolist()))
