@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, without
+from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, standing, without
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline, sentences
@@ -49,6 +49,24 @@ def test_a_log_over_ground_is_told_tow_by_tow(coarse, hide):
     assert found.verdict == 'NOT_TESTABLE'
     assert said not in sentences(found)
     assert sentences(replace(found, remarks=(said,)))[0] == said
+
+
+def test_a_state_in_which_a_board_lies_over_is_left_out_and_told(coarse, hide):
+    windows = hide.trial(coarse, hide.nothing, 7, tows=2)
+    assert standing(windows, hide.names[:2]) == (tuple(windows), ())
+    closed = {**windows[0].means, 'door_spread': 6.0}
+    folded = [replace(windows[0], means=closed), *windows[1:]]
+    kept, (said,) = standing(folded, ['first', 'second'])
+    assert kept == tuple(windows[1:])
+    assert said.startswith('first: the doors were 6 m apart')
+    (remark,) = diagnose_windows(coarse, folded[:2], ['first', 'second']).remarks
+    assert 'a board had fallen over, and this state is left out' in remark
+    # Without a sensor of the spread nothing is known.
+    blind = [
+        replace(window, means={k: v for k, v in window.means.items() if k != 'door_spread'})
+        for window in windows
+    ]
+    assert standing(blind, ['first', 'second']) == (tuple(blind), ())
 
 
 def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):

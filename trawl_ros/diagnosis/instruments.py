@@ -1,4 +1,4 @@
-"""Faults of instruments told without any effect: units, a log over ground, frozen sensors."""
+"""Faults told without any effect: units, a log over ground, frozen sensors, fallen boards."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +21,11 @@ JUDGED = 5
 FROZEN_STATES, FROZEN_LENGTHS, FROZEN_NOISE = 3, 1.5, 4.0
 """A sensor is frozen that shows the same in at least so many states of a tow, between which the
 warps become so many times as long, within so many times its noise."""
+
+
+FALLEN_SPREAD = 0.4
+"""Part of the median spread of all windows below which the boards have fallen over: no change of
+a gear that still spreads its doors takes away so much."""
 
 
 def wrong_unit(
@@ -114,6 +119,29 @@ def without(
         )
 
     return tuple(kept(window) for window in windows) if sensors else tuple(windows)
+
+
+def standing(
+    windows: Sequence[SteadyWindow], tows: Sequence[str]
+) -> tuple[tuple[SteadyWindow, ...], tuple[str, ...]]:
+    """Windows in which the boards stand, with a sentence on each state in which they do not.
+
+    Boards that lie over are towed as steadily as others, but no steady state with boards that
+    stand is like theirs, whatever the effect.
+    """
+    spread = [window.means.get('door_spread', np.nan) for window in windows]
+    usual = float(np.nanmedian(spread)) if np.isfinite(spread).any() else 0.0
+    kept, sentences = [], {}
+    for window, own in zip(windows, spread, strict=True):
+        if not own < FALLEN_SPREAD * usual:
+            kept.append(window)
+            continue
+        sentences[window.state] = (
+            f'{tows[window.tow]}: the doors were {own:.0f} m apart with '
+            f'{window.means["port_length"]:.0f} m of warp at {window.means["speed"]:.1f} m/s, '
+            f'where {usual:.0f} m are usual: a board had fallen over, and this state is left out.'
+        )
+    return tuple(kept), tuple(sentences.values())
 
 
 def possible(

@@ -11,7 +11,14 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.empirical import empirical
 from trawl_ros.diagnosis.fit_beside import fit_beside
 from trawl_ros.diagnosis.holdout import holdout_comparison, split
-from trawl_ros.diagnosis.instruments import frozen, over_ground, possible, without, wrong_unit
+from trawl_ros.diagnosis.instruments import (
+    frozen,
+    over_ground,
+    possible,
+    standing,
+    without,
+    wrong_unit,
+)
 from trawl_ros.diagnosis.locating import telling
 from trawl_ros.diagnosis.mimicry import Mimic, mimics_of, with_mimics
 from trawl_ros.diagnosis.naming import Named, name
@@ -59,14 +66,14 @@ def diagnose_windows(
         If the gear file switches on an effect that there is not.
     """
     stuck = frozen(windows, tows)
-    windows = without(windows, stuck)
+    windows, fallen = standing(without(windows, stuck), tows)
     halves = split(windows, baseline)
     deciding, kept_back = halves.deciding, halves.kept_back
     model = build_model(gear)
     # Effects found by an earlier diagnosis are those that the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
     predictor = Predictor(model, effects_of(gear), without=baseline, new=new)
-    remarks = (*over_ground(windows, tows), *(sensor.sentence for sensor in stuck))
+    remarks = (*over_ground(windows, tows), *(sensor.sentence for sensor in stuck), *fallen)
     known = Diagnosis(
         'NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=remarks, frozen=stuck
     )
