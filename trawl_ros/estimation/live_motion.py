@@ -92,6 +92,7 @@ class LiveMotion:
         self._tracker = MotionTracker(self._towed, self._prior, self._options)
         self._number = 0
         self._windows: list[Estimate] = []
+        self._owed: tuple[bool, Estimate | None] = False, None
         self.why_not = 'the tow has just begun'
 
     def feed(self, sample: Sample, windows: Estimate | None = None) -> MotionUpdate | None:
@@ -109,6 +110,11 @@ class LiveMotion:
         MotionUpdate or None
             With the first winch reading behind each stretch, where there is an estimate.
         """
+        # What is known is told before: whoever asked has it while the rest of the work is done.
+        owed, known = self._owed
+        if owed:
+            self._owed = False, None
+            self._tracker.catch_up(known)
         self._note(windows)
         if not self.record(sample) or not isinstance(sample, WinchSample):
             return None
@@ -191,7 +197,8 @@ class LiveMotion:
         if not tows:
             return None
         windows = self._decided(end_ns)
-        found = self._tracker.update(tows, windows)
+        found = self._tracker.update(tows)
+        self._owed = True, windows
         if found is None:
             self.why_not = self.why_not or 'the model is towed along the tow so far'
             return None

@@ -37,7 +37,7 @@ from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-AHEAD = 10
+AHEAD = 16
 """Stretches that are towed along again, at most, with each new one."""
 
 HOLDS, FAR = 0.5, 1.0
@@ -89,29 +89,42 @@ class MotionTracker:
         self._towed, self._prior, self._options = gear, prior, options
         self._here: GrowingLinearisation | None = None
         self._next: GrowingLinearisation | None = None
+        self._newest: MotionSearch | None = None
+        self._found: TrackedFit | None = None
         self._sizes, self._temper = options.sizes, np.inf
         self._weights: dict[int, FloatArray] = {}
         self._damping, self._refused, self._again = 0.0, 0, 0.0
         self._found_at, self._started_with = 0, 0
         self._towings, self._held = 0, False
 
-    def update(self, tows: Sequence[MovingTow], windows: Estimate | None) -> TrackedFit | None:
-        """Take tows as they are now, and the estimate of their steady windows, where there is one.
+    def update(self, tows: Sequence[MovingTow]) -> TrackedFit | None:
+        """Solve for tows as they are now.
 
         Returns
         -------
         TrackedFit or None
             None as long as the model is towed along them for the first time.
         """
-        search = self._search(tows)
-        found = self._solved(search)
+        self._newest = self._search(tows)
+        self._found = self._solved(self._newest)
+        return self._found
+
+    def catch_up(self, windows: Estimate | None) -> None:
+        """Do a part of the work on another linearisation, behind an update.
+
+        Parameters
+        ----------
+        windows
+            Estimate of the steady windows, where there is one.
+        """
+        search = self._newest
+        if search is None:
+            return
         if self._next is None:
-            self._next = self._candidate(search, found, windows)
-        if self._next is not None and self._next.extend(tows, AHEAD):
-            accepted, self._next = self._compare(search, self._next), None
-            if accepted:
-                found = self._solved(search)
-        return found
+            self._next = self._candidate(search, self._found, windows)
+        if self._next is not None and self._next.extend(search.tows, AHEAD):
+            self._compare(search, self._next)
+            self._next = None
 
     def _search(self, tows: Sequence[MovingTow]) -> MotionSearch:
         """Search with the linearisation as it is, where there is one."""
@@ -207,8 +220,8 @@ class MotionTracker:
             for tow, layout in zip(search.tows, search.layouts, strict=True)
         ]
 
-    def _compare(self, search: MotionSearch, tried: GrowingLinearisation) -> bool:
-        """Take a linearisation for that in use if its cost is lower; tell whether it is."""
+    def _compare(self, search: MotionSearch, tried: GrowingLinearisation) -> None:
+        """Take a linearisation for that in use if its cost is lower."""
         self._towings += 1
         sizes = self._sizes.tempered(self._temper)
         linear, there = tried.linearised(search.tows), tried.place(search.tows, search.layouts)
@@ -219,16 +232,14 @@ class MotionTracker:
                 self._refused, self._damping = 0, 0.0
                 self._cool(COOLER * self._temper)
                 self._again = GROWN * sum(map(len, search.tows))
-            return False
+            return
         self._here, self._refused = tried, 0
         self._damping *= LOOSER
         if self._damping < LEAST_DAMPING:
             self._damping = 0.0
-        self._take(search, tried)
         data = search.data(linear, there)
         rest = misfit(data, _eliminated(data, there, self._sizes), self._sizes)
         self._cool(min(COOLER * self._temper, self._options.widened * rest))
-        return True
 
     def _cool(self, temper: float) -> None:
         """Take errors of stretches for so many times as large, and no less than at the end."""
