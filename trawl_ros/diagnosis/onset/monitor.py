@@ -42,6 +42,11 @@ BEFORE, QUIET = FEWEST + 1, 8
 """Stretches before the newest from which the model is towed, and those before these in which
 nothing may have moved."""
 
+WHITE_LIMIT, MARGIN = 6.33, 1.42
+"""Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
+``trawl study onset --limit 200 --seed 7100``; and the factor on it for what is not quite white: the
+largest in two clean hours of tuning was 6.1."""
+
 
 @dataclass(frozen=True)
 class OnsetOptions:
@@ -54,15 +59,14 @@ class OnsetOptions:
     settled
         Stretches since its onset after which a finding stays as it is.
     limit
-        Rarity beyond which a finding is raised. `trawl study onset --limit` draws what white
-        innovations exceed once in 230 h, over all candidates and onsets; this is above it.
+        Rarity beyond which a finding is raised: `MARGIN` times `WHITE_LIMIT`.
     inflation
         Factor on the std of errors that are stated, as for steady windows.
     """
 
     window: int = 60
     settled: int = 50
-    limit: float = 9.0
+    limit: float = round(MARGIN * WHITE_LIMIT, 1)
     inflation: float = 1.2
 
 
@@ -233,7 +237,7 @@ class OnsetMonitor:
         marks = watch.bank.step(watch.filter, white, signatures)
         evidence = tuple(watch.bank.best()) if white is not None else ()
         self._tell(last, means, model, white, marks, evidence)
-        if evidence:
+        if evidence and not self._learns_from_afar(model):
             yield from self._judge(last, evidence)
         watch.since += white is not None
         if model is not None and self._has_moved(model, evidence):
@@ -253,10 +257,22 @@ class OnsetMonitor:
     def _has_moved(self, towed: TowedStretch, evidence: Sequence[OnsetEvidence]) -> bool:
         watch = self._watch
         rarest = evidence[0].rarity if evidence else 0.0
-        if watch.filter is None or watch.since < REST or self.open is not None or rarest > AT_REST:
+        if watch.filter is None or watch.since < REST or self.open is not None:
             return False
-        if any(list(watch.moved)[:-BEFORE]):
-            # The model would begin in an equilibrium while the gear was on its way to one.
+        if rarest > AT_REST and not self._learns_from_afar(towed):
+            return False
+        # The model would begin in an equilibrium while the gear was on its way to one.
+        return not any(list(watch.moved)[:-BEFORE]) and self._far(towed)
+
+    def _learns_from_afar(self, towed: TowedStretch | None) -> bool:
+        """True in the first minutes while derivatives are of boards far from those learned."""
+        watch = self._watch
+        early = watch.learned + watch.since <= LEARNING
+        return early and towed is not None and self._far(towed)
+
+    def _far(self, towed: TowedStretch) -> bool:
+        watch = self._watch
+        if watch.filter is None:
             return False
         moved = watch.filter.coefficients - watch.model.coefficients
         return bool(np.max(np.abs(towed.by_coefficients @ moved) / towed.model_error) > MOVED)

@@ -56,6 +56,7 @@ def test_delays_onsets_and_false_findings_are_counted(tmp_path):
     assert false.value == pytest.approx(230.0 / (2.0 + 2 * 570.0 / 3600.0))
     assert false.low < false.value < false.high
     assert not false.ok
+    assert rows['largest rarity in 2 clean tows'].value == 3.0
     assert (tmp_path / 'onset.md').exists()
 
 

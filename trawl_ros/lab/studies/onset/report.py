@@ -56,6 +56,7 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
         rate('onsets within 3 min, of those detected', right, least=80.0),
         rate('the effect is named or among those not told apart, of those detected', named),
         _false(made),
+        *_rarest(made, options.limit),
         _core(made),
     ]
     table = TextTable(
@@ -115,6 +116,15 @@ def _false(made: Sequence[OnsetTrial]) -> MeasuredValue:
         'false findings in 230 h', count * part, '', at_most(1.0), note,
         float(low * part), float(high * part), 'false_230_h',
     )  # fmt: skip
+
+
+def _rarest(made: Sequence[OnsetTrial], limit: float) -> list[MeasuredValue]:
+    clean = [trial.rarity for trial in made if not trial.effect]
+    if not clean:
+        return []
+    what = f'largest rarity in {len(clean)} clean tows'
+    note = f'-log10; findings are raised beyond {limit:g}'
+    return [MeasuredValue(what, max(clean), '', at_most(limit), note, key='rarest_clean')]
 
 
 def _core(made: Sequence[OnsetTrial]) -> MeasuredValue:
