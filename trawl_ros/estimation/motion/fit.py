@@ -25,7 +25,8 @@ from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, lineari
 from trawl_ros.estimation.motion.weights import robust_factors
 
 NEAR = 0.3
-"""Part of every std from which a fit is at rest where no step lowers its cost."""
+"""Part of every std, as it will be stated, from which a fit is at rest where its step lowers no
+cost."""
 
 COOLER = 0.4
 """Factor from step to step on the errors of the data while these are taken for too large."""
@@ -142,11 +143,11 @@ class MotionSearch:
             found.append(noise)
         self.noise = tuple(found)
 
-    def advance(self, sizes: ErrorSizes, iteration: int) -> bool:
+    def advance(self, sizes: ErrorSizes, iteration: int, attempts: int) -> bool:
         """Take a step that lowers the cost, ever shorter; tell whether one was found."""
         data = self.data(self.linear, self.here)
         towed = [tow.towed for tow in self.linear]
-        for _ in range(self.options.attempts):
+        for _ in range(attempts):
             there = step(
                 data, self.here, self.prior, sizes, self.options.largest_step, self.damping
             )
@@ -215,7 +216,8 @@ def fit_motion(
         temper = max(1.0, min(COOLER * temper, misfit(data, search.here, sizes)))
         now = sizes.tempered(temper)
         target = step(data, search.here, prior, now, options.largest_step)
-        std = shared_std(data, now)[:12]
+        # Rest is told by the std that will be stated.
+        std = shared_std(data, now.tempered(options.widened))[:12]
         size = float(np.max(np.abs(target[0][:12] - search.here[0][:12]) / std))
         if temper == 1.0 and size < options.tolerance:
             converged = True
@@ -226,8 +228,9 @@ def fit_motion(
         if search.towings >= options.towings:
             reason = f'still moving after {search.towings} towings'
             break
-        if not search.advance(now, iteration) and temper == 1.0:
-            converged = size < NEAR
+        near = temper == 1.0 and size < NEAR
+        if not search.advance(now, iteration, 1 if near else options.attempts) and temper == 1.0:
+            converged = near
             reason = f'no step lowers the cost, {size:.2g} std from rest'
             break
     place: Place = search.here
