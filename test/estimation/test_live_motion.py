@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -151,7 +150,7 @@ def test_what_is_known_on_the_way_ends_near_what_all_of_it_tells(record, coarse_
     scenario.write_text(MOVING.format(gear=coarse_gear))
     bag = tow(scenario, tmp_path / 'bag')
     live = LiveMotion(record)
-    samples = [sample for _, sample in SampleStream([Path(bag)], NAMESPACE)]
+    samples = [sample for _, sample in SampleStream([bag.path], NAMESPACE)]
     last = updates(live, samples)[-1]
     assert last.holds
     whole = live.finish(None)
