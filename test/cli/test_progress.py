@@ -1,6 +1,7 @@
 """Progress of long work: bars on a terminal, else a line now and then."""
 
 import io
+import time
 
 from rich.console import Console
 
@@ -19,12 +20,16 @@ def test_steps_are_counted_from_none() -> None:
 
 def test_without_a_terminal_a_line_says_how_far_it_is(monkeypatch) -> None:
     monkeypatch.setattr(shown, 'LINE_EVERY_S', 0.0)
+    monkeypatch.setattr(shown, 'FIRST_RATE_S', 0.2)
     console = Console(file=io.StringIO(), width=200)
     with ProgressDisplay(console) as display:
+        display(WorkProgress('towing', 60.0, 600.0, 's', 'haul'))
+        time.sleep(0.2)
         display(WorkProgress('towing', 90.0, 600.0, 's', 'haul'))
         display(WorkProgress('trials', 3, 12))
         display(WorkProgress('planning'))
-    first, *others = console.file.getvalue().splitlines()
+    at_once, first, *others = console.file.getvalue().splitlines()
+    assert at_once == 'towing: 1.0 of 10.0 min, haul'
     assert first.startswith('towing: 1.5 of 10.0 min, ')
     assert first.endswith(' × real time, haul')
     assert others == ['trials: 3 of 12', 'planning']

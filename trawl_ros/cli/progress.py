@@ -10,6 +10,9 @@ from trawl_ros.core.progress import WorkProgress
 LINE_EVERY_S = 10.0
 """Without a terminal a line this often (s) says how far things are."""
 
+FIRST_RATE_S = 1.0
+"""A rate of less time than this says nothing."""
+
 
 def error_console() -> Console:
     """Console of progress and warnings, on stderr: stdout has results alone."""
@@ -71,7 +74,9 @@ def _words(progress: WorkProgress, elapsed_s: float) -> str:
     done, total, unit = progress.done, progress.total, progress.unit
     if unit == 's':
         of = '' if total is None else f' of {total / 60:.1f}'
-        amount = f'{done / 60:.1f}{of} min, {done / max(elapsed_s, 1e-9):.1f} × real time'
+        amount = f'{done / 60:.1f}{of} min'
+        if elapsed_s >= FIRST_RATE_S:
+            amount += f', {done / elapsed_s:.1f} × real time'
     elif total is not None:
         amount = f'{done:g} of {total:g} {unit}'.rstrip()
     else:
