@@ -110,7 +110,7 @@ class LiveMotion:
         MotionUpdate or None
             With the first winch reading behind each stretch, where there is an estimate.
         """
-        # What is known is told before: whoever asked has it while the rest of the work is done.
+        # Told before the rest of the work is done: whoever asked has it meanwhile.
         owed, known = self._owed
         if owed:
             self._owed = False, None
