@@ -10,7 +10,8 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import WATCHED, CandidateTable, candidate_table
-from trawl_ros.diagnosis.onset.findings import Finding, OnsetValue
+from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence, RatioBank
 from trawl_ros.diagnosis.onset.responses import OnsetResponses, onset_responses
@@ -26,10 +27,6 @@ from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 from trawl_ros.solver.stepper import StepFailed
 
-ALIKE = 6.0
-"""Candidates whose evidence comes within this of the best's are not told from it, as by the rules
-for steady windows."""
-
 MOVED = 4.0
 """Change of a channel by what coefficients were learned to be, in the model's own error, beyond
 which the tow is linearised anew: a tenth of it may be wrong, or more."""
@@ -44,8 +41,8 @@ nothing may have moved."""
 
 WHITE_LIMIT, MARGIN = 6.33, 1.42
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
-``trawl study onset --limit 200 --seed 7100``; and the factor on it for what is not quite white: the
-largest in two clean hours of tuning was 6.1."""
+``trawl study onset --limit 200 --seed 7100``; and the factor on it for what is not quite white, by
+hand: in clean hours of tuning the largest was 6.1, in those that score the watch it is exceeded."""
 
 
 @dataclass(frozen=True)
@@ -310,73 +307,28 @@ class OnsetMonitor:
         if before is None:
             if rarest.rarity > limit:
                 self._newest += 1
-                yield self._put(self._finding(self._newest, last, evidence, last.end_ns))
+                yield self._put(
+                    finding(self.table, self._newest, last.end_ns, evidence, last.end_ns, limit)
+                )
             return
         if rarest.rarity < 0.5 * limit:
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
             return
-        found = self._finding(before.number, last, evidence, before.raised_ns)
+        found = finding(self.table, before.number, last.end_ns, evidence, before.raised_ns, limit)
         if found.onset_ns >= before.raised_ns:
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
             if rarest.rarity > limit:
                 self._newest += 1
-                yield self._put(self._finding(self._newest, last, evidence, last.end_ns))
+                yield self._put(
+                    finding(self.table, self._newest, last.end_ns, evidence, last.end_ns, limit)
+                )
             return
         age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
         if age >= self.options.settled:
             found = replace(found, state='settled')
             self._take_along(found)
         yield self._put(found)
-
-    def _finding(
-        self, number: int, last: LastStretch, evidence: Sequence[OnsetEvidence], raised_ns: int
-    ) -> Finding:
-        told = [(self._weight(one), one) for one in evidence]
-        told.sort(key=lambda pair: -pair[0])
-        (most, best), *others = told
-        candidate = self.table.candidates[best.candidate]
-        alike = [
-            self.table.candidates[one.candidate].name
-            for weight, one in others
-            if weight > most - ALIKE
-        ]
-        length = round(LIVE.stretch_s * SECOND)
-        onset = last.end_ns - (best.age + 1) * length
-        own = [self.table.parameters[column] for column in candidate.columns]
-        std = np.sqrt(np.diag(best.covariance))
-        values = {}
-        for parameter, departure, one in zip(own, best.values, std, strict=True):
-            value = parameter.neutral + departure
-            low, high = np.clip([value - 1.96 * one, value + 1.96 * one],
-                                parameter.low, parameter.high)  # fmt: skip
-            values[parameter.name] = OnsetValue(
-                float(value), float(low), float(high), parameter.unit
-            )
-        return Finding(
-            number=number,
-            state='raised',
-            raised_ns=raised_ns,
-            updated_ns=last.end_ns,
-            onset_ns=onset,
-            # An onset within a stretch may be taken for one with the next.
-            onset_low_ns=last.end_ns - (int(best.ages.max()) + 1) * length - length // 2,
-            onset_high_ns=last.end_ns - int(best.ages.min()) * length,
-            name=candidate.name,
-            words=candidate.words,
-            values=values,
-            alike=tuple(alike),
-            rarity=evidence[0].rarity,
-            limit=self.options.limit,
-        )
-
-    def _weight(self, one: OnsetEvidence) -> float:
-        """Twice the logarithm of the evidence: the ratio, less what its values could have been."""
-        own = list(self.table.candidates[one.candidate].columns)
-        # The determinant of the prior's covariance over the posterior's.
-        known = np.linalg.slogdet(one.covariance)[1]
-        free = 2.0 * float(np.sum(np.log(self.table.scale[own])))
-        return one.ratio - (free - float(known))
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found along as known to be there, and watch for what comes beside it."""
