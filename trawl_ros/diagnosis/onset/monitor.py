@@ -306,10 +306,7 @@ class OnsetMonitor:
         rarest = evidence[0]
         if before is None:
             if rarest.rarity > limit:
-                self._newest += 1
-                yield self._put(
-                    finding(self.table, self._newest, last.end_ns, evidence, last.end_ns, limit)
-                )
+                yield self._raise(last, evidence)
             return
         if rarest.rarity < 0.5 * limit:
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
@@ -319,16 +316,18 @@ class OnsetMonitor:
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
             if rarest.rarity > limit:
-                self._newest += 1
-                yield self._put(
-                    finding(self.table, self._newest, last.end_ns, evidence, last.end_ns, limit)
-                )
+                yield self._raise(last, evidence)
             return
         age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
         if age >= self.options.settled:
             found = replace(found, state='settled')
             self._take_along(found)
         yield self._put(found)
+
+    def _raise(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Finding:
+        self._newest += 1
+        now, limit = last.end_ns, self.options.limit
+        return self._put(finding(self.table, self._newest, now, evidence, now, limit))
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found along as known to be there, and watch for what comes beside it."""
