@@ -69,7 +69,7 @@ tests: $(VENV)/ready
 	@$(PYTEST) -m 'not slow'
 
 test-slow: $(VENV)/ready
-	@$(PYTEST) -m slow
+	@$(PYTEST) -m 'slow and not report'
 
 test-view: $(VENV)/ready
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \

@@ -8,6 +8,7 @@ from promised.documents import ROOT, TABLE, Document, Promise, read_document
 from promised.story import NOT_RUN, Story
 
 SLOW_S = 4.0
+LONG_S = 240.0
 UNKNOWN_S = 600.0
 DOCUMENTS = [
     read_document(path)
@@ -19,9 +20,10 @@ HEAD = f"""\
 
 Made by `make promises`, which runs every command and block of code of the README and of these
 documents as it stands there, on the default gear. `make test` runs those that, with all that they
-need of others, take up to {SLOW_S:g} s; `make test-slow` runs the rest. Where words stand instead
-of a time, the command is not run, or was not measured yet, which counts as slow. Wall-clock times,
-here of two cores that had other work beside.
+need of others, take up to {SLOW_S:g} s; `make test-slow` those up to {LONG_S:g} s; the others,
+whole reports among them, run with `make promises` alone. Where words stand instead of a time, the
+command is not run, or was not measured yet, which counts as long. Wall-clock times, here of two
+cores that had other work beside.
 
 | command | where | s |
 |---|---|---|
@@ -83,7 +85,7 @@ def story(
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Mark a command slow where it, with all that it needs, took long when it was measured."""
+    """Mark a command by what it took, with all that it needs, when it was measured."""
     if 'promise' not in metafunc.fixturenames:
         return
     seconds = measured()
@@ -97,5 +99,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
             marks = [pytest.mark.timeout(240.0 + 6.0 * takes)]
             if takes > SLOW_S:
                 marks.append(pytest.mark.slow)
+            if takes > LONG_S:
+                marks.append(pytest.mark.report)
             cases.append(pytest.param(promise, marks=marks, id=f'{promise.place} {promise.title}'))
     metafunc.parametrize('promise', cases)

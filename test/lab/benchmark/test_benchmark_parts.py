@@ -12,7 +12,7 @@ from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, Finit
 from trawl_ros.lab.benchmark.fit_trial import plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.growth import exponent
-from trawl_ros.lab.benchmark.haul import WATCHED, error, haul_of
+from trawl_ros.lab.benchmark.haul import WATCHED, Ride, error, haul_of
 from trawl_ros.lab.benchmark.shares import shares
 from trawl_ros.lab.running.timing import timed
 from trawl_ros.model.gear_model import build_model
@@ -37,7 +37,7 @@ def test_an_error_is_the_largest_at_any_time_of_any_observable():
     converged = np.tile(np.linspace(100.0, 110.0, 6)[:, None], len(WATCHED))
     seen = converged.copy()
     seen[3, WATCHED.index('net_depth')] += 0.5
-    found = error(seen, converged)
+    found = error(Ride(seen, 1.0, 0), Ride(converged, 1.0, 0))
     assert found.worst == 'net_depth'
     assert found.of_range == pytest.approx(0.05)
     assert found.of_value == pytest.approx(0.5 / 105.0)
@@ -71,9 +71,12 @@ def test_shares_of_functions_add_up_and_hold_what_those_call(coarse):
 
 def test_shorter_steps_of_the_haul_come_closer_to_the_converged_run(coarse):
     haul = haul_of(coarse.model, 8.0)
-    converged = haul.run(0.1).seen
-    assert len(converged) == 4
-    errors = [np.abs(haul.run(step).seen - converged).max(axis=0) for step in (0.25, 1.0)]
+    converged = haul.run(0.05, 0.05)
+    assert len(converged.seen) == 160
+    rides = [haul.run(step) for step in (0.25, 0.75)]
+    # Steps of 0.75 s do not divide 2 s: they are looked at, and held against, each 2.25 s.
+    assert [(ride.every_s, len(ride.seen)) for ride in rides] == [(2.0, 4), (2.25, 3)]
+    errors = [np.abs(ride.seen - converged.beside(ride)).max(axis=0) for ride in rides]
     assert (errors[0] <= errors[1]).all()
 
 

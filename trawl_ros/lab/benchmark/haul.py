@@ -1,5 +1,6 @@
 """Hauling manoeuvre in steps of one length after another, under the very same ship."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,7 @@ CONVERGED_S = 0.05
 """Step of the run that the others are held against."""
 
 LOOK_EVERY_S = 2.0
+"""Time between two looks at the observables, at least; steps that do not divide it look later."""
 
 WATCHED = (
     'door_spread', 'port_door_depth', 'starboard_door_depth', 'port_tension',
@@ -39,12 +41,18 @@ WATCHED = (
 
 @dataclass(frozen=True)
 class Ride:
-    """Ride through the manoeuvre: ``seen`` (n, n_watched) are the observables of `WATCHED`, every
-    `LOOK_EVERY_S` seconds; ``factorisations`` of the stepper's matrix.
+    """Ride through the manoeuvre: ``seen`` (n, n_watched) are the observables of `WATCHED`, each
+    ``every_s`` seconds from the first such on; ``factorisations`` of the stepper's matrix.
     """
 
     seen: FloatArray
+    every_s: float
     factorisations: int
+
+    def beside(self, other: 'Ride') -> FloatArray:
+        """Observables (n, n_watched) of this ride when the other one, of longer steps, was seen."""
+        stride = round(other.every_s / self.every_s)
+        return self.seen[stride - 1 :: stride][: len(other.seen)]
 
 
 @dataclass(frozen=True)
@@ -62,8 +70,8 @@ class HaulManoeuvre:
         """Duration of the manoeuvre, s."""
         return FINEST_S * (len(self.tows) - 1)
 
-    def run(self, step_s: float) -> 'Ride':
-        """Run the manoeuvre in steps of one length, which divides `LOOK_EVERY_S`.
+    def run(self, step_s: float, look_every_s: float = LOOK_EVERY_S) -> 'Ride':
+        """Run the manoeuvre in steps of one length.
 
         A step that does not converge is taken in two halves, as in `Simulation`.
 
@@ -73,7 +81,7 @@ class HaulManoeuvre:
             If not even the shortest steps converge.
         """
         stride = round(step_s / FINEST_S)
-        looks = round(LOOK_EVERY_S / step_s)
+        looks = math.ceil(look_every_s / step_s - 1e-9)
         columns = [OBSERVABLES.index(name) for name in WATCHED]
         stepper, motion = Stepper(self.model), self.start
         seen = []
@@ -81,7 +89,7 @@ class HaulManoeuvre:
             motion = self._advanced(stepper, motion, at, stride)
             if number % looks == 0:
                 seen.append(observe(self.model, motion.state, self.tows[at]).array()[columns])
-        return Ride(np.array(seen), stepper.factorisations)
+        return Ride(np.array(seen), looks * step_s, stepper.factorisations)
 
     def _advanced(self, stepper: Stepper, motion: Motion, at: int, stride: int) -> Motion:
         try:
@@ -129,9 +137,9 @@ class Error:
     worst: str
 
 
-def error(seen: FloatArray, converged: FloatArray) -> Error:
-    """Error of a run against the converged one."""
-    difference = np.abs(seen - converged).max(axis=0)
-    by_range = difference / np.ptp(converged, axis=0)
-    by_value = difference / np.abs(converged).mean(axis=0)
+def error(ride: Ride, converged: Ride) -> Error:
+    """Error of a run against the converged one, looked at in all of its steps."""
+    difference = np.abs(ride.seen - converged.beside(ride)).max(axis=0)
+    by_range = difference / np.ptp(converged.seen, axis=0)
+    by_value = difference / np.abs(converged.seen).mean(axis=0)
     return Error(float(by_range.max()), float(by_value.max()), WATCHED[int(by_range.argmax())])
