@@ -83,7 +83,8 @@ def test_a_trial_is_towed_fitted_and_kept(tmp_path):
     rows = run_motion_study(plan, tmp_path, workers=1)
     kept = (tmp_path / 'trials.jsonl').read_text('utf-8')
     assert len(kept.splitlines()) == 2
-    assert run_motion_study(plan, tmp_path, workers=1) == rows
+    # Of one trial intervals are no numbers, which equal nothing.
+    assert repr(run_motion_study(plan, tmp_path, workers=1)) == repr(rows)
     assert (tmp_path / 'trials.jsonl').read_text('utf-8') == kept
     assert 'trawl study motion --seed 6 --trials 1 --around 12' in (
         tmp_path / 'motion.md'
