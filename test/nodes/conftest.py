@@ -247,18 +247,19 @@ def steady_samples(steady_tow):
 
 @pytest.fixture(scope='session')
 def tight_tows(steady_tow, model, tmp_path_factory) -> SimpleNamespace:
-    """Three tows in one bag; from the second on cells show an eighth too much.
+    """Three tows in one bag over a level ground; from the second on cells show an eighth too much.
 
-    `path` of the bag, how many `tows`, and how many seconds lie between their starts, `apart_s`.
+    `path` of the bag, how many `tows`, how many seconds lie between their starts, `apart_s`, and
+    the depth (m) of the `seabed`.
     """
     from dataclasses import replace
 
     from trawl_ros.core.time import SECOND
-    from trawl_ros.records.samples import WinchSample
+    from trawl_ros.records.samples import RangeSample, WinchSample
     from trawl_ros.solver.equilibrium import steady_state
 
     legs = ((300.0, 2.4), (450.0, 2.1), (600.0, 2.4), (600.0, 2.1))
-    tows, leg_s, apart_s, too_much = 3, 60, 3000, 1.12
+    tows, leg_s, apart_s, too_much, seabed = 3, 60, 3000, 1.12, 850.0
 
     def tight(sample):
         if isinstance(sample, WinchSample):
@@ -275,5 +276,10 @@ def tight_tows(steady_tow, model, tmp_path_factory) -> SimpleNamespace:
         start = (1000 + number * apart_s) * SECOND
         own = tow.samples(start=start, seed=number, leg_s=leg_s)
         samples += own if number == 0 else map(tight, own)
+        samples += [
+            RangeSample(stamp, 'depth', seabed, 0.5, 1.0, 2000.0)
+            for stamp in range(start, start + len(legs) * leg_s * SECOND, 10 * SECOND)
+        ]
+    samples.sort(key=lambda sample: sample.stamp)
     path = tow.write(tmp_path_factory.mktemp('tows') / 'bag', samples)
-    return SimpleNamespace(path=path, tows=tows, apart_s=apart_s)
+    return SimpleNamespace(path=path, tows=tows, apart_s=apart_s, seabed=seabed)

@@ -65,6 +65,8 @@ def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
         assert float(finding.values['scale low']) < float(finding.values['scale'])
         assert node.statuses()[0].level == WARN
         node.finish_work()
+        # As windows of bags have it: by it bottom contact is ruled out.
+        assert {window.seabed for window in node._windows} == {tight_tows.seabed}
     written = json.loads((tmp_path / 'report' / 'diagnosis.json').read_text())
     assert written['verdict'] == verdict.values['verdict']
     assert (tmp_path / 'report' / 'report.html').exists()

@@ -40,7 +40,7 @@ from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_optio
 
 if TYPE_CHECKING:
     from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
-from trawl_ros.records.channels import CHANNELS
+from trawl_ros.records.channels import READ_TOPICS
 from trawl_ros.records.samples import Sample
 
 FINDINGS = 'discrepancy/findings'
@@ -53,9 +53,6 @@ OPERATOR = 'operator'
 
 MOST_TOLD = 5
 """Newest findings of what has begun that are published with each."""
-
-SAMPLES = tuple(dict.fromkeys(channel.topic for channel in CHANNELS.values()))
-"""Topics that feed a channel."""
 
 
 class DiscrepancyNode(TrawlNode):
@@ -109,7 +106,7 @@ class DiscrepancyNode(TrawlNode):
             if self._monitor is None
             else OnsetThread(self._monitor, self._tell_finding, self._watched)
         )
-        for topic in SAMPLES:
+        for topic in READ_TOPICS:
             self.listen(topic, self._feeder(topic), CONSUMER)
         # Alone in its group: samples still come in while the service waits for a diagnosis.
         alone = MutuallyExclusiveCallbackGroup()

@@ -176,7 +176,7 @@ RIGHTS = {
     ),
     'discrepancy_node': _consumer(
         _names(ESTIMATES, 'discrepancy/'),
-        _READINGS,
+        (*_READINGS, 'vessel/echo_sounder/depth'),
         ('discrepancy/finish', 'discrepancy/acknowledge', 'discrepancy/dismiss'),
     ),
     'bag_recorder': _consumer((), _names((*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS))),
