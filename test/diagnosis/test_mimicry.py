@@ -1,11 +1,12 @@
 """A name is held against changes of the gear file: other boards are not taken for other rigging."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from trawl_ros.diagnosis import procedure
-from trawl_ros.diagnosis.mimicry import mimics_of
+from trawl_ros.diagnosis.mimicry import Mimic, in_another_form, mimics_of
 from trawl_ros.diagnosis.mimics.gear_file_change import changed
 from trawl_ros.diagnosis.mimics.table import mimic_table
 from trawl_ros.diagnosis.procedure import diagnose_windows
@@ -84,3 +85,35 @@ def test_an_uncommon_size_makes_no_name_doubtful(coarse, exchanged, monkeypatch)
     monkeypatch.setattr(LIBRARY, lambda: seldom)
     predictor = Predictor(build_model(coarse), without=exchanged.baseline)
     assert mimics_of(predictor, exchanged.base, exchanged.score_test, exchanged.best) == ()
+
+
+def test_a_change_that_is_the_same_as_a_rival_is_told_by_the_rival_alone(
+    coarse, exchanged, monkeypatch
+):
+    predictor = Predictor(build_model(coarse), without=exchanged.baseline)
+    same = tuple(own.model_copy(update={'same_as': ('kite',)}) for own in TABLE)
+    monkeypatch.setattr(LIBRARY, lambda: same)
+    given = predictor, exchanged.base, exchanged.score_test, exchanged.best
+    assert len(mimics_of(*given)) == 1
+    assert mimics_of(*given, others=('kite',)) == ()
+
+
+def mimic(over, keys=('netting.body[].twine_diameter_m',), same_as=('net_drag',)):
+    change = SimpleNamespace(keys=keys, same_as=same_as)
+    return Mimic(change, SimpleNamespace(), 100.0 + over, 94.0 + over, over)
+
+
+def entry(*names):
+    return SimpleNamespace(refit=SimpleNamespace(names=names, wanted=names))
+
+
+def test_what_explains_far_more_and_is_of_an_effects_kind_is_its_other_form():
+    weighed = [entry('board_rigging'), entry('net_drag', 'heave'), drag := entry('net_drag')]
+    twine, larger = mimic(25.0), mimic(10.0, ('board.area_m2',), ('board_damage',))
+    assert in_another_form(weighed, (larger, twine)) == (drag, twine)
+    assert in_another_form(weighed, (twine, mimic(20.0, ('board.area_m2',)))) is None
+    assert in_another_form(weighed, (mimic(9.0),)) is None
+    assert in_another_form(weighed, (mimic(25.0, same_as=()),)) is None
+    assert in_another_form(weighed, (mimic(25.0, keys=()),)) is None
+    assert in_another_form(weighed[:2], (twine,)) is None
+    assert in_another_form(weighed, ()) is None

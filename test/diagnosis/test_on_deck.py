@@ -9,9 +9,10 @@ from trawl_ros.diagnosis import procedure
 from trawl_ros.diagnosis.diagnosis import values_of
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.refit import refitted
+from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
-from trawl_ros.diagnosis.worsening import on_holdout, worsened
+from trawl_ros.diagnosis.worsening import on_holdout
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
@@ -73,6 +74,9 @@ def test_the_right_repair_makes_nothing_worse(coarse, rerigged):
     compared = on_holdout(predictor, rerigged.base, rerigged.best.refit, rerigged.split.kept_back)
     assert {own.name for own in compared} >= {'tension', 'door_spread', 'vertical_opening'}
     assert not any(own.worse for own in compared)
+    assert all(abs(own.part - 1.0) < 3.5 * own.part_std for own in compared)
+    assert rerigged.named.held_out == compared
+    assert set(result(rerigged, ())['held_out']) == {own.name for own in compared}
     assert sum(own.after for own in compared) < sum(own.before for own in compared)
 
 
@@ -83,5 +87,7 @@ def test_a_wrong_repair_makes_something_worse(coarse, rerigged):
     wrong = refitted(predictor, rerigged.base, rerigged.score_test, (drag,))
     values = np.concatenate((rerigged.base.estimate.values, [1.25, 0.0]))
     wrong = replace(wrong, estimate=replace(wrong.estimate, values=values))
-    worse = worsened(predictor, rerigged.base, wrong, rerigged.split.kept_back)
-    assert 'vertical_opening' in worse
+    compared = on_holdout(predictor, rerigged.base, wrong, rerigged.split.kept_back)
+    (opening,) = [own for own in compared if own.name == 'vertical_opening']
+    assert opening.worse
+    assert opening.part + opening.part_std < 0.5

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from trawl_ros.diagnosis.rules import Grounds, judge, judge_beside
+from trawl_ros.diagnosis.rules import Grounds, judge, judge_beside, judge_form
 
 SOUND = Grounds(
     delta_bic=40.0,
@@ -76,3 +76,9 @@ def test_what_explains_it_far_better_and_is_in_no_catalogue_leaves_no_name():
     assert reason.endswith(
         'explains it better: readings of door spread that drift by about 3 m per h'
     )
+
+
+def test_an_effect_with_a_form_that_explains_more_is_told_with_it_and_not_named():
+    verdict, reason = judge_form('thinner twine, by about 6 %')
+    assert verdict == 'AMBIGUOUS'
+    assert reason.endswith('explains more: thinner twine, by about 6 %')

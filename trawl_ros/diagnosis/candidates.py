@@ -63,7 +63,7 @@ def candidates(
     predictor
         The gear; an effect that it has already is looked for around the values it has.
     depths
-        Of the net in the tows at hand (n,), m.
+        Of the lower edge of the net's mouth in the tows at hand (n,), m.
     """
     wanted = []
     for effect in effects.values():
@@ -77,14 +77,24 @@ def candidates(
     return tuple(wanted)
 
 
-def net_depths(linearised: Sequence[Linearised]) -> FloatArray:
-    """Depths (n,), m, of the net, or of the doors in windows in which its sensor says nothing."""
+def lower_edges(linearised: Sequence[Linearised]) -> FloatArray:
+    """Depths (n,), m, of the lower edge of the net's mouth.
+
+    Where no sensor tells the opening it is the median of the others, none where none does; the
+    doors stand for a headline without a depth.
+    """
     means = [linear.window.means for linear in linearised]
     doors = [[own.get(f'{side}_door_depth', np.nan) for side in SIDES] for own in means]
-    depths = np.array([own.get('net_depth', np.nan) for own in means])
+    depths, heights = (
+        np.array([own.get(name, np.nan) for own in means])
+        for name in ('net_depth', 'vertical_opening')
+    )
     depths = np.where(np.isfinite(depths), depths, np.mean(doors, axis=1))
-    known: FloatArray = depths[np.isfinite(depths)]
-    return known if len(known) else np.zeros(1)
+    known = heights[np.isfinite(heights)]
+    usual = float(np.median(known)) if len(known) else 0.0
+    lowest: FloatArray = depths + np.where(np.isfinite(heights), heights, usual)
+    lowest = lowest[np.isfinite(lowest)]
+    return lowest if len(lowest) else np.zeros(1)
 
 
 def values_vector(wanted: Sequence[Candidate]) -> ParameterVector:

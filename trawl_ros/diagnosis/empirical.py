@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.diagnosis.candidates import candidates, net_depths, signatures
+from trawl_ros.diagnosis.candidates import candidates, lower_edges, signatures
 from trawl_ros.diagnosis.evidence import Evidence, evidence
 from trawl_ros.diagnosis.refit import Refit, refitted
 from trawl_ros.diagnosis.rules import EMPIRICAL_OVER_PLACEBO, LEAST_BIC
@@ -61,7 +61,7 @@ def empirical(predictor: Predictor, base: Refit, test: ScoreTest) -> Empirical |
     test
         Result of the score test.
     """
-    depths = net_depths(base.fit.windows)
+    depths = lower_edges(base.fit.windows)
     wanted = candidates(dictionary(), predictor, depths)
     columns = signatures(predictor, base.fit.windows, wanted)
     units = np.concatenate([candidate.scale for candidate in wanted])

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
-from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, net_depths, signatures
+from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, lower_edges, signatures
 from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refit
 from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator import POOR, Estimator
@@ -61,7 +61,7 @@ def fit_beside(
 
 def _nearest(active: ActiveEffect, predictor: Predictor, base: Refit) -> Candidate:
     """Candidate of an effect, at the start nearest to its found values."""
-    depths = net_depths(base.fit.windows)
+    depths = lower_edges(base.fit.windows)
     places = candidates({active.name: active.effect}, predictor, depths)
 
     def away(candidate: Candidate) -> float:

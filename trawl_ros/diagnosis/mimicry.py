@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.progress import OnProgress, ignore
-from trawl_ros.diagnosis.candidates import Candidate, candidates, net_depths, signatures
+from trawl_ros.diagnosis.candidates import Candidate, candidates, lower_edges, signatures
 from trawl_ros.diagnosis.evidence import evidence
 from trawl_ros.diagnosis.mimics.change import Change
 from trawl_ros.diagnosis.mimics.drift import drifts
@@ -25,7 +24,7 @@ from trawl_ros.diagnosis.rules import (
     SCREEN_SHARE,
 )
 from trawl_ros.diagnosis.score_test import ScoreTest
-from trawl_ros.diagnosis.weighing import Weighed, left_over
+from trawl_ros.diagnosis.weighing import Weighed, block_of, left_over, sparing
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.solver.predict import Predictor
 
@@ -44,6 +43,8 @@ class Mimic:
         By how much it lowers both against the boards alone, with the noise beside the effect.
     over
         By how much more than the effect it lowers the second, uncommon sizes counted against both.
+    alike
+        Less likely ones that are the same thing in the catalogue's words.
     """
 
     change: Change
@@ -51,6 +52,7 @@ class Mimic:
     delta_chi2: float
     delta_bic: float
     over: float
+    alike: 'tuple[Mimic, ...]' = ()
 
     @property
     def interval(self) -> tuple[float, float, float]:
@@ -61,7 +63,8 @@ class Mimic:
         return float(value), float(low), float(high)
 
     def __str__(self) -> str:
-        return self.change.words(self.interval[0])
+        words = self.change.words(self.interval[0])
+        return f'{words} (or {"; or ".join(map(str, self.alike))})' if self.alike else words
 
 
 def mimics_of(
@@ -70,13 +73,15 @@ def mimics_of(
     test: ScoreTest,
     best: Weighed,
     *,
+    others: Sequence[str] = (),
     better: bool = False,
     on_progress: OnProgress = ignore,
 ) -> tuple[Mimic, ...]:
     """Changes of gear file or instruments that explain as much as an effect, the likeliest first.
 
-    Changes that are the same thing as the effect are none, unless `better` ones are looked for.
-    Uncommon sizes count against either, as the squares of their standard deviations.
+    Changes that are the same thing as the effect, or as one that is not excluded beside it, are
+    none, unless `better` ones are looked for. Uncommon sizes count against either, as the squares
+    of their standard deviations.
 
     Parameters
     ----------
@@ -88,6 +93,8 @@ def mimics_of(
         Result of the score test.
     best
         The effect, or two.
+    others
+        Effects that are not excluded beside it.
     better
         True for changes that explain by `LEAST_BIC` more than the effect.
     on_progress
@@ -96,14 +103,14 @@ def mimics_of(
     changes: list[Change] = [
         change
         for change in (*changes_of(predictor.model.gear), *drifts())
-        if better or not set(best.refit.names) & set(change.same_as)
+        if better or not {*best.refit.names, *others} & set(change.same_as)
     ]
     predictor = _ready_for(predictor, changes)
     terms = _screened(predictor, base, test, changes)
     scales = best.refit.fit.scales
     penalty = float(np.log(test.readings))
     before = base.cost(scales)
-    explained = _sparing(test, best, 2.0 * (before - best.refit.cost(scales)))
+    explained = sparing(test, best.refit, 2.0 * (before - best.refit.cost(scales)))
     explained -= _uncommon(best.refit)
     least = LEAST_BIC if better else -RIVAL
     found: list[Mimic] = []
@@ -124,7 +131,41 @@ def mimics_of(
             found.append(Mimic(change, fitted, delta, criterion, over))
         if len(found) == MIMICS_NAMED:
             break
-    return tuple(sorted(found, key=lambda mimic: -mimic.delta_bic))
+    return _by_kind(sorted(found, key=lambda mimic: -mimic.delta_bic))
+
+
+def _by_kind(found: Sequence[Mimic]) -> tuple[Mimic, ...]:
+    """Mimics with those behind the likeliest of a kind that are the same thing as it."""
+    first: list[Mimic] = []
+    for mimic in found:
+        for place, other in enumerate(first):
+            if set(mimic.change.same_as) & set(other.change.same_as):
+                first[place] = replace(other, alike=(*other.alike, mimic))
+                break
+        else:
+            first.append(mimic)
+    return tuple(first)
+
+
+def in_another_form(
+    weighed: Sequence[Weighed], mimics: Sequence[Mimic]
+) -> tuple[Weighed, Mimic] | None:
+    """Effect of which a change of the gear file that explains far more than the best is another
+    form, and the change; None where another change comes near.
+
+    What the catalogue has in one form, less drag of all netting, has many on deck: another twine of
+    some of it.
+    """
+    if not mimics:
+        return None
+    first, *rest = sorted(mimics, key=lambda mimic: -mimic.over)
+    alone = all(first.over - other.over > RIVAL for other in rest)
+    if not (first.change.keys and first.over > LEAST_BIC and alone):
+        return None
+    for entry in weighed:
+        if len(entry.refit.wanted) == 1 and entry.refit.names[0] in first.change.same_as:
+            return entry, first
+    return None
 
 
 def with_mimics(
@@ -155,7 +196,7 @@ def _screened(
     predictor: Predictor, base: Refit, test: ScoreTest, changes: Sequence[Change]
 ) -> ScoreTest:
     """Score test with the changes in place of the catalogue."""
-    depths = net_depths(base.fit.windows)
+    depths = lower_edges(base.fit.windows)
     wanted = candidates({change.name: change for change in changes}, predictor, depths)
     columns = tuple(signatures(predictor, base.fit.windows, wanted))
     units = np.concatenate([candidate.scale for candidate in wanted])
@@ -167,8 +208,7 @@ def _likeliest(
     test: ScoreTest, terms: ScoreTest, best: Weighed, *, better: bool
 ) -> tuple[Candidate, ...]:
     """Changes to be solved in full: nearly as likely to first order, of sizes near what happens."""
-    block = _block(test, best)
-    first = _sparing(test, best, test.evidence.chi2(block))
+    first = sparing(test, best.refit, test.evidence.chi2(block_of(test, best.refit)))
     near = first if better else min(first - SCREEN, MIMIC_SCREEN_SHARE * first)
     far = first if better else SCREEN_SHARE * first
     chosen = []
@@ -197,35 +237,3 @@ def _uncommon(refit: Refit) -> float:
         for name in ('start', 'scale')
     )
     return float(np.sum(((refit.values - start) / scale) ** 2))
-
-
-def _block(test: ScoreTest, best: Weighed) -> list[int]:
-    """Places of the values of an effect, or two."""
-    return [place for candidate in best.refit.wanted for place in test.block(candidate)]
-
-
-def _sparing(test: ScoreTest, best: Weighed, explained: float) -> float:
-    """Decrease of BIC by the values of an effect that earn their place.
-
-    Boards that are turned about one axis are named with all three angles; a change of the gear
-    file, which has one size, would stand ahead of them for that alone. What each choice of the
-    values lacks of the χ² that all of them explain is found to first order. Values of an effect
-    that was searched from several starts all count: one of them was chosen with the start.
-    """
-    block = _block(test, best)
-    names = [candidate.name for candidate in test.wanted]
-    chosen = {
-        place
-        for candidate in best.refit.wanted
-        if names.count(candidate.name) > 1
-        for place in test.block(candidate)
-    }
-    whole, penalty = test.evidence.chi2(block), float(np.log(test.readings))
-    return max(
-        explained
-        - (whole - test.evidence.chi2(some))
-        - max(test.evidence.degrees_of_freedom(some), len(chosen)) * penalty
-        for number in range(1, len(block) + 1)
-        for some in combinations(block, number)
-        if chosen <= set(some)
-    )

@@ -14,13 +14,12 @@ from trawl_ros.diagnosis.several import SetsTried, several_at_once
 from trawl_ros.diagnosis.weighing import (
     LeftOver,
     Weighed,
-    left_over,
     not_told_apart,
     possible_first,
     rivals_of_best,
     weigh,
 )
-from trawl_ros.diagnosis.worsening import worsened
+from trawl_ros.diagnosis.worsening import QuantityOnHoldout, on_holdout
 from trawl_ros.estimation.fit.relinearise import with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.solver.predict import Predictor
@@ -45,6 +44,8 @@ class Named:
     lost
         Windows that have no steady state with what was the best to first order: then nothing was
         weighed, and they are better left out.
+    held_out
+        Each quantity on what was kept back, with the best beside the boards alone.
     """
 
     verdict: Verdict
@@ -54,6 +55,7 @@ class Named:
     rivals: tuple[str, ...]
     left_over: LeftOver
     lost: frozenset[int] = frozenset()
+    held_out: tuple[QuantityOnHoldout, ...] = ()
 
 
 def name(
@@ -100,12 +102,14 @@ def name(
         return _without_states(lost_by(base, likeliest))
     if not weighed:
         return _without_states(frozenset())
-    left = left_over(base, test, weighed[0].refit)
     tried = SetsTried(predictor, base, test, refits, on_progress)
-    weighed, left = several_at_once(tried, weighed, left)
+    tried.add_class_of(weighed[0])
+    weighed = tried.weighed()
+    weighed, left = several_at_once(tried, weighed, tried.left_by(weighed[0]))
     best = weighed[0]
-    alike = not_told_apart(test, weighed)
     rivals = rivals_of_best(test, weighed)
+    alike = tuple(name for name in not_told_apart(test, weighed) if name not in rivals)
+    held_out = on_holdout(predictor, base, best.refit, kept_back)
     grounds = Grounds(
         delta_bic=best.doubted_bic,
         gain=best.gain[0],
@@ -116,13 +120,13 @@ def name(
         left_share=left.share,
         rivals=rivals,
         noise=max(best.refit.fit.scales),
-        worse=worsened(predictor, base, best.refit, kept_back),
+        worse=tuple(own.name for own in held_out if own.worse),
     )
     verdict, reason = judge(grounds)
     if verdict == 'AMBIGUOUS':
         # None is excluded that is the best in a twentieth of the resampled trials.
         rivals = tuple(dict.fromkeys((*rivals, *best.others)))
-    return Named(verdict, reason, weighed, alike, rivals, left)
+    return Named(verdict, reason, weighed, alike, rivals, left, held_out=held_out)
 
 
 def _likeliest_in_part(

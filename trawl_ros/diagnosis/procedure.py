@@ -20,12 +20,20 @@ from trawl_ros.diagnosis.instruments import (
     wrong_unit,
 )
 from trawl_ros.diagnosis.locating import telling
-from trawl_ros.diagnosis.mimicry import Mimic, mimics_of, with_mimics
+from trawl_ros.diagnosis.mimicry import Mimic, in_another_form, mimics_of, with_mimics
 from trawl_ros.diagnosis.naming import Named, name
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.refit import REFITTING, Refit, fit_boards, refitted, was_in_order
-from trawl_ros.diagnosis.rules import FEWEST_STATES, LEAST_BIC, NEAR, NOWHERE_NEAR, judge_beside
+from trawl_ros.diagnosis.rules import (
+    FEWEST_STATES,
+    LEAST_BIC,
+    NEAR,
+    NOWHERE_NEAR,
+    judge_beside,
+    judge_form,
+)
 from trawl_ros.diagnosis.score_test import ScoreTest, score_test
+from trawl_ros.diagnosis.weighing import Weighed, left_over
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
@@ -164,8 +172,11 @@ def _beside_mimics(
     on_progress(_step('holding it against other causes'))
     unknown = named.verdict == 'UNKNOWN'
     mimics = mimics_of(
-        predictor, base, test, named.weighed[0], better=unknown, on_progress=on_progress
-    )
+        predictor, base, test, named.weighed[0],
+        others=(*named.rivals, *named.alike), better=unknown, on_progress=on_progress,
+    )  # fmt: skip
+    if (form := in_another_form(named.weighed, mimics)) is not None:
+        return _as_form(base, test, named, *form)
     if unknown:
         return named, mimics
     words = {str(mimic): mimic.over for mimic in mimics}
@@ -173,6 +184,16 @@ def _beside_mimics(
     if verdict == 'UNKNOWN':
         mimics = tuple(mimic for mimic in mimics if mimic.over > LEAST_BIC)
     return replace(named, verdict=verdict, reason=reason), mimics
+
+
+def _as_form(
+    base: Refit, test: ScoreTest, named: Named, best: Weighed, form: Mimic
+) -> tuple[Named, tuple[Mimic, ...]]:
+    """Result with an effect first of which a change of the gear file is another form."""
+    verdict, reason = judge_form(str(form))
+    rest = tuple(entry for entry in named.weighed if entry is not best)
+    left = left_over(base, test, best.refit)
+    return Named(verdict, reason, (best, *rest), (), (), left), (form,)
 
 
 def _step(detail: str) -> WorkProgress:
@@ -186,7 +207,11 @@ def _advice(
     changes of gear file or instruments that explain as much.
     """
     others = {*named.rivals, *named.alike}
-    beside = mimics if named.verdict == 'AMBIGUOUS' else ()
+    beside = [
+        mimic
+        for mimic in (mimics if named.verdict == 'AMBIGUOUS' else ())
+        if not set(named.weighed[0].refit.names) & set(mimic.change.same_as)
+    ]
     if not named.weighed or not (others or beside):
         return (), ()
     best = named.weighed[0].refit

@@ -178,6 +178,17 @@ def judge(grounds: Grounds) -> tuple[Verdict, str]:
     return 'NAMED', 'it alone explains what was seen, and predicts what was left out'
 
 
+def judge_form(words: str) -> tuple[Verdict, str]:
+    """Judge an effect of which a change of the gear file, which explains more, is another form.
+
+    Parameters
+    ----------
+    words
+        The change in words.
+    """
+    return 'AMBIGUOUS', f'another form of it explains more: {words}'
+
+
 def judge_beside(verdict: Verdict, reason: str, mimics: Mapping[str, float]) -> tuple[Verdict, str]:
     """Judge an effect that the other rules let be named, or not excluded, beside its mimics.
 

@@ -11,7 +11,7 @@ from trawl_ros.diagnosis.candidates import (
     Candidate,
     candidates,
     extended,
-    net_depths,
+    lower_edges,
     signatures,
     values_vector,
 )
@@ -141,7 +141,7 @@ def score_test(predictor: Predictor, base: Fit, effects: Mapping[str, Effect]) -
     effects
         The catalogue.
     """
-    depths = net_depths(base.windows)
+    depths = lower_edges(base.windows)
     wanted = candidates(effects, predictor, depths)
     columns = signatures(predictor, base.windows, wanted)
     shapes, of_shapes = patterns(base.windows)

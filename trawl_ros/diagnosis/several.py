@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from trawl_ros.core.progress import OnProgress
 from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.refit import Refit, refitted, told
-from trawl_ros.diagnosis.rules import LEAST_BIC, NEARLY_ALIKE, RIVAL
+from trawl_ros.diagnosis.rules import LEAST_BIC, NEARLY_ALIKE, RIVAL, SCREEN
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import (
     LeftOver,
@@ -126,6 +126,13 @@ class SetsTried:
         if fitted is not None:
             self.refits.append(fitted)
 
+    def add_class_of(self, best: Weighed) -> None:
+        """Refit each effect that to first order is not told from the best."""
+        alike = twins(self.test, best.refit)
+        ranked = sorted(self.test.wanted, key=self.test.penalised, reverse=True)
+        for candidate in _once(own for own in ranked if own.name in alike):
+            self.add((candidate,))
+
     def weighed(self) -> tuple[Weighed, ...]:
         """All of them at one noise, the best first."""
         return possible_first(weigh(self.base, self.test, self.refits))
@@ -158,7 +165,10 @@ def several_at_once(
         return alone, tried.left_by(alone[0])
     left = tried.left_by(pair[0])
     _try_larger(tried, pair[0], left)
+    for number in (PAIR, THREE):
+        _try_exchanged(tried, number)
     alone, pair, three = (_of_number(tried.weighed(), number) for number in (1, PAIR, THREE))
+    left = tried.left_by(pair[0])
     if three and three[0].delta_bic > pair[0].delta_bic + _more(tried.test, pair[0], three[0]):
         with_three = tried.left_by(three[0])
         if not with_three.too_much:
@@ -182,6 +192,32 @@ def _try_larger(tried: SetsTried, best: Weighed, left: LeftOver) -> None:
         nested = set(best.refit.names) <= {candidate.name for candidate in wanted}
         if more > _enough(best, nested=nested) or (nested and left.too_much):
             tried.add(wanted)
+
+
+def _try_exchanged(tried: SetsTried, number: int) -> None:
+    """Refit the likeliest of the sets that have another effect in the place of one of the best set
+    of a number: what it explains beside the rest another may explain as well.
+    """
+    best = _of_number(tried.weighed(), number)[:1]
+    if not best:
+        return
+    test, own = tried.test, best[0].refit.wanted
+    sets = {
+        frozenset(candidate.name for candidate in wanted): wanted
+        for wanted in sorted(
+            (
+                (*(kept for kept in own if kept is not out), other)
+                for out in own
+                for other in test.wanted
+                if other.name not in best[0].refit.names
+            ),
+            key=lambda wanted: penalised_together(test, wanted),
+        )
+    }
+    least = penalised_together(test, own) - SCREEN
+    near = [wanted for wanted in sets.values() if penalised_together(test, wanted) > least]
+    for wanted in near[: -SECONDS - 1 : -1]:
+        tried.add(wanted)
 
 
 def _enough(best: Weighed, *, nested: bool) -> float:

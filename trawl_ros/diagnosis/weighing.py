@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -248,21 +249,25 @@ def possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
 
 
 def rivals_of_best(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
-    """Effects that are not excluded and not of the class of the best, alone or among several."""
+    """Effects that are not excluded, alone or among several.
+
+    Those of the class of the best are held against it by the values that earn their place: what
+    looks the same in these tows is not told apart by how many values it has.
+    """
     best = weighed[0]
-    taken = {*best.refit.names, *not_told_apart(test, weighed)}
-    if len(best.refit.wanted) > 1:
-        # Several that have the like of one of these in its place are the same several.
-        taken |= set(like_any(test, best.refit))
-    return tuple(
-        dict.fromkeys(
-            name
-            for other in weighed[1:]
-            if best.delta_bic - other.delta_bic < RIVAL and not other.refit.at_bound()
-            for name in other.refit.names
-            if name not in taken
-        )
-    )
+    of_class = frozenset(like_any(test, best.refit))
+    least = sparing(test, best.refit, best.delta_chi2) - RIVAL
+    rivals = []
+    for other in weighed[1:]:
+        new = [name for name in other.refit.names if name not in best.refit.names]
+        if other.refit.at_bound():
+            continue
+        if new and of_class.issuperset(new):
+            if sparing(test, other.refit, other.delta_chi2) > least:
+                rivals += new
+        elif best.delta_bic - other.delta_bic < RIVAL:
+            rivals += [name for name in new if name not in of_class]
+    return tuple(dict.fromkeys(rivals))
 
 
 def not_told_apart(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ...]:
@@ -276,6 +281,47 @@ def not_told_apart(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ..
         if best.delta_bic - other.delta_bic > to_be_there(best)
     }
     return tuple(name for name in twins(test, best.refit) if name not in told)
+
+
+def sparing(test: ScoreTest, refit: Refit, explained: float) -> float:
+    """Decrease of BIC by those values of a refit that earn their place.
+
+    Boards that are turned about one axis are named with all three angles; a change of the gear
+    file, which has one size, would stand ahead of them for that alone. What each choice of the
+    values lacks of the χ² that all of them explain is found to first order. Values of an effect
+    that was searched from several starts all count: one of them was chosen with the start.
+
+    Parameters
+    ----------
+    test
+        Has the refitted effects.
+    refit
+        The refit.
+    explained
+        χ² that all of its values explain.
+    """
+    block = block_of(test, refit)
+    names = [candidate.name for candidate in test.wanted]
+    chosen = {
+        place
+        for candidate in refit.wanted
+        if names.count(candidate.name) > 1
+        for place in test.block(candidate)
+    }
+    whole, penalty = test.evidence.chi2(block), float(np.log(test.readings))
+    return max(
+        explained
+        - (whole - test.evidence.chi2(some))
+        - max(test.evidence.degrees_of_freedom(some), len(chosen)) * penalty
+        for number in range(1, len(block) + 1)
+        for some in combinations(block, number)
+        if chosen <= set(some)
+    )
+
+
+def block_of(test: ScoreTest, refit: Refit) -> list[int]:
+    """Places of the values of all effects of a refit."""
+    return [place for candidate in refit.wanted for place in test.block(candidate)]
 
 
 def to_be_there(best: Weighed) -> float:

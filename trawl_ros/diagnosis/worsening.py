@@ -32,12 +32,18 @@ class QuantityOnHoldout:
         and of the estimate.
     number
         Of readings.
+    part, part_std
+        Part of what the repair changes that the readings want, and its std: 1 where it is right,
+        less than a half where it makes this quantity worse. The std is infinite where nothing
+        changes.
     """
 
     name: str
     before: float
     after: float
     number: int
+    part: float = 1.0
+    part_std: float = np.inf
 
     @property
     def probability(self) -> float:
@@ -86,15 +92,13 @@ def on_holdout(
             inverse = np.linalg.inv(covariance[np.ix_(rows, rows)])
             missed = [fit.residual.ravel()[rows] for fit in (without, repaired)]
             before, after = (float(left @ inverse @ left) for left in missed)
-            found.append(QuantityOnHoldout(name, before, after, len(rows)))
+            own = QuantityOnHoldout(name, before, after, len(rows))
+            changed = missed[0] - missed[1]
+            if information := float(changed @ inverse @ changed):
+                part = 1.0 + float(changed @ inverse @ missed[1]) / information
+                own = replace(own, part=part, part_std=information**-0.5)
+            found.append(own)
     return tuple(found)
-
-
-def worsened(
-    predictor: Predictor, base: Refit, best: Refit, windows: Sequence[SteadyWindow]
-) -> tuple[str, ...]:
-    """Names of the quantities that a repair makes worse, as `on_holdout` compares them."""
-    return tuple(own.name for own in on_holdout(predictor, base, best, windows) if own.worse)
 
 
 def _held(refit: Refit, windows: Sequence[Linearised]) -> Fit:

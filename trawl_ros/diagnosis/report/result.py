@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.holdout import HoldoutComparison
+from trawl_ros.diagnosis.naming import Named
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import SourceBag
 from trawl_ros.diagnosis.score_test import ScoreTest
@@ -39,6 +40,7 @@ def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, obje
         'added': None if diagnosis.added is None else ' and '.join(diagnosis.added.refit.names),
         'evidence': {} if named is None else _evidence(named.weighed),
         'channels': _channels(diagnosis.holdout),
+        'held_out': _held_out(named),
         'shown_by': diagnosis.split.by if diagnosis.holdout else None,
         'excess_removed': None if diagnosis.holdout is None else _number(diagnosis.holdout.removed),
         'excess_removed_by_placebo': (
@@ -131,6 +133,7 @@ def _mimics(diagnosis: Diagnosis) -> list[dict[str, object]]:
                 'name': mimic.change.name,
                 'keys': list(mimic.change.keys),
                 'words': str(mimic),
+                'alike': [other.change.name for other in mimic.alike],
                 'relative': mimic.change.relative,
                 'value': value,
                 'low': low,
@@ -211,6 +214,21 @@ def _channels(holdout: HoldoutComparison | None) -> dict[str, object]:
             'expected': _number(holdout.before.expected[name]),
         }
         for name, before in holdout.before.rms.items()
+    }
+
+
+def _held_out(named: Named | None) -> dict[str, object]:
+    """χ² of each quantity on what was kept back, errors of calibration and all others counted."""
+    return {
+        own.name: {
+            'before': _number(own.before),
+            'after': _number(own.after),
+            'readings': own.number,
+            'probability': _number(own.probability),
+            'part': _number(own.part),
+            'part_std': _number(own.part_std),
+        }
+        for own in (() if named is None else named.held_out)
     }
 
 

@@ -160,7 +160,7 @@ class Effect:
         Parameters
         ----------
         depths
-            Of the net (n,), m, in the tows at hand.
+            Of the lower edge of the net's mouth (n,), m, in the tows at hand.
         """
         return (self.neutral,)
 

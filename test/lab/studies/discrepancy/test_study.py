@@ -259,12 +259,21 @@ def test_a_repair_that_makes_a_channel_worse_is_counted():
     assert value(rows, f'{worse}, and worse than the plant itself does').value == 25.0
 
 
+def test_a_repair_that_readings_do_not_want_is_told_from_one_that_calibration_makes_look_so():
+    unwanted, unlucky, blind = (scored('NAMED', ['net_drag']) for _ in range(3))
+    for trial, part, std in ((unwanted, 0.1, 0.1), (unlucky, 0.1, 0.3), (blind, 1.0, None)):
+        trial.diagnosis['held_out'] = {'net_depth': {'part': part, 'part_std': std}}
+    rows = repair_rows([unwanted, unlucky, blind, blind], ALONE)
+    what = 'repairs of which readings kept back want less than half, in any quantity'
+    assert value(rows, what).value == 25.0
+
+
 def test_a_repair_is_measured_against_the_truth():
     trial = scored('NAMED', ['catch_build_up'])
     quiet = {'parameters': {'one': 1.2}, 'coefficients': dict.fromkeys(COEFFICIENTS, 1.1)}
     rows = repair_rows([replace(trial, quiet=quiet)], ALONE)
     assert [row.value for row in rows] == pytest.approx(
-        [94.5, 7.375, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 100.0]
+        [94.5, 7.375, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 100.0]
     )
 
 

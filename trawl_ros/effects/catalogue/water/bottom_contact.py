@@ -22,6 +22,10 @@ NEAR, NEAR_SHARE = 15.0, 0.05
 """The bottom may lie higher under the gear than under the ship by so much (m), and this part."""
 
 
+STARTS = (0.5, 0.6, 0.7, 0.8, 0.9)
+"""Parts of all states whose wing tips are above the ground where a search begins."""
+
+
 @dataclass(frozen=True)
 class Ground:
     """Ground force on nodes below a depth: friction, and a vertical reaction of the same size."""
@@ -45,8 +49,11 @@ class BottomContact(Effect):
     """Ground contact of both lower wing tips beyond a depth."""
 
     def starts(self, depths: FloatArray) -> tuple[FloatArray, ...]:
-        """Start values: the ground may lie anywhere between the net's depths."""
-        return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, (0.5, 0.75, 0.9)))
+        """Start values: the ground may lie anywhere between the depths of the wing tips.
+
+        Between two of these a refit comes to rest at the wrong ground as well as at the right one.
+        """
+        return tuple(np.array([0.0, depth]) for depth in np.quantile(depths, STARTS))
 
     def is_possible(self, lowest: FloatArray, seabed: FloatArray) -> bool:
         """False if the echo sounder shows water under the net in all tows."""

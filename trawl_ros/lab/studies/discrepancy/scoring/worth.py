@@ -23,6 +23,10 @@ BENT = 3.0
 WORSE_BY = 0.5
 """Part of the error that instruments explain, by which a repair is not to be worse."""
 
+HALF, SIGMAS = 0.5, 1.96
+"""A quantity is worse where the readings want less than this part of what a repair changes, with so
+many standard deviations."""
+
 
 def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
     """Gain by the named effect on held-out tows."""
@@ -61,6 +65,10 @@ def repair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValu
         rate('repairs that make a channel worse, and worse than the plant itself does',
              [worse for trial in repaired if (worse := _worse_than_plant(trial)) is not None],
              note=f'both by {WORSE_BY:.0%} of what instruments explain or more'),
+        rate('repairs of which readings kept back want less than half, in any quantity',
+             [_unwanted(trial) for trial in repaired],
+             note='beyond the 95 % interval of that part: calibration of the tows kept back, which '
+             'the counts above take for an error of the repair, is in it'),
         median(f'error of the coefficients with the effect named over that without, where leaving '
                f'it out bends one by {BENT:g} std or more', _known(truth), '', most=0.4),
         median('the same from what readings without errors are best fitted with',
@@ -157,6 +165,14 @@ def _worse(trial: Scored) -> bool:
         is_worse(own['before'], own['after'], own['expected'])
         for own in said_of(trial)['channels'].values()
         if own['after'] is not None
+    )
+
+
+def _unwanted(trial: Scored) -> bool:
+    """True if the readings that were kept back want less than half of a quantity's change."""
+    return any(
+        own['part_std'] is not None and own['part'] + SIGMAS * own['part_std'] < HALF
+        for own in said_of(trial).get('held_out', {}).values()
     )
 
 
