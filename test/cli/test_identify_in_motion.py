@@ -3,13 +3,16 @@
 import json
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from trawl_ros.estimation import bag_motion
+from trawl_ros.estimation.from_gear import NET_STD
 from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.gear.records import EffectRecord
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import VelocitySample, WinchSample
 from trawl_ros.records.topics import NAMESPACE
@@ -95,6 +98,13 @@ def restless_bag(steady_tow, tmp_path_factory):
     return still.write(path, swaying(still.samples(leg_s=601)))
 
 
+STRUMMING = """
+effects:
+  - name: warp_strumming
+    values: {factor: 1.1}
+"""
+
+
 def swaying(samples):
     for sample in samples:
         if isinstance(sample, VelocitySample):
@@ -110,8 +120,9 @@ def test_without_one_steady_window_all_of_the_tow_is_learned_from_and_that_is_to
 ):
     quick = partial(MotionOptions, iterations=1, attempts=1, estimate_sizes=False)
     monkeypatch.setattr(bag_motion, 'MotionOptions', quick)
-    out = tmp_path / 'out'
-    done = run('identify', '--gear', coarse_gear, restless_bag, '--out', out)
+    out, laden = tmp_path / 'out', tmp_path / 'laden.yaml'
+    laden.write_text(Path(coarse_gear).read_text() + STRUMMING)
+    done = run('identify', '--net', '--gear', laden, restless_bag, '--out', out)
     assert done.exit_code == 0, done.output
     sentence = 'No steady window was found: all of the tow was learned from instead, 5 min of it'
     assert done.stdout.startswith(sentence)
@@ -127,9 +138,12 @@ def test_without_one_steady_window_all_of_the_tow_is_learned_from_and_that_is_to
         assert found['coefficients'][name]['value'] == row['value']
         assert 0.0 < found['coefficients'][name]['std'] <= 1.01 * row['prior_std']
     assert found['motion']['tows'] == [str(restless_bag)]
+    assert found['net'] == found['motion']['net']
+    assert 0.0 < found['net']['drag']['std'] < NET_STD
+    assert done.stdout.count('Drag of the net: ') == 1
 
 
-@pytest.mark.parametrize('option', ['--steady', '--no-prior', '--net'])
+@pytest.mark.parametrize('option', ['--steady', '--no-prior'])
 def test_without_one_steady_window_what_cannot_be_had_in_motion_is_refused(
     run, coarse_gear, restless_bag, tmp_path, option
 ):
@@ -180,6 +194,9 @@ def test_a_log_that_falls_silent_divides_a_tow(gear, steady_tow, tmp_path):
     assert len(tows[0]) == 690 // 30
     assert 20 <= len(tows[1]) <= 22
     assert tows[1].start_ns >= 730 * SECOND
+    # An effect that grows through a tow does not begin anew with its second part.
+    away_h = (tows[1].start_ns - tows[0].start_ns) / SECOND / 3600.0
+    assert [tow.inputs.hours for tow in tows] == pytest.approx([0.0, away_h])
     assert np.all(tows[1].counts[:, tows[1].channels.index('door_spread')] >= 28)
 
 
@@ -191,10 +208,17 @@ def test_a_log_that_leaves_no_part_long_enough_is_told(gear, steady_tow, tmp_pat
 
 
 def test_what_is_asked_for_beside_and_cannot_be_had_in_motion_is_told(gear, pair_gear):
-    assert bag_motion.why_windows_alone(gear, prior=True, net=False) is None
-    assert 'prior' in bag_motion.why_windows_alone(gear, prior=False, net=False)
-    assert 'net' in bag_motion.why_windows_alone(gear, prior=True, net=True)
-    assert 'no boards' in bag_motion.why_windows_alone(pair_gear, prior=True, net=False)
+    assert bag_motion.why_windows_alone(gear, prior=True) is None
+    assert 'prior' in bag_motion.why_windows_alone(gear, prior=False)
+    assert 'no boards' in bag_motion.why_windows_alone(pair_gear, prior=True)
+
+
+def test_effects_of_the_gear_file_and_an_unknown_net_are_towed(gear):
+    sheared = EffectRecord(name='current_shear', values={'along': 0.05})
+    towed = bag_motion.towed_gear(gear.model_copy(update={'effects': (sheared,)}), net=True)
+    assert [active.name for active in towed.acting.effects] == ['current_shear']
+    assert towed.net_std == NET_STD
+    assert bag_motion.towed_gear(gear, net=False).net_std == 0.0
 
 
 def test_who_stops_it_on_the_way_has_the_results_of_the_windows(

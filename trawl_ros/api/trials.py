@@ -126,14 +126,14 @@ def identify(
     paths = [Path(bag) for bag in bags]
     recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
     _note(recordings, on_note)
-    why_not = why_windows_alone(record, prior=prior, net=net)
+    why_not = why_windows_alone(record, prior=prior)
     if len(reasons := _reasons(recordings)) == len(recordings):
         unsettled = [one for one in recordings if (one.why_not or '').startswith(NO_WINDOW)]
         if not motion or why_not or not unsettled:
             raise TrawlError('; '.join(reasons))
         on_note('No bag has a steady window: all of the tow is learned from.')
         try:
-            learned = learn_from_motion(record, None, unsettled, namespace, on_progress)
+            learned = learn_from_motion(record, None, unsettled, namespace, on_progress, net=net)
         except TrawlError as error:
             raise TrawlError(f'{"; ".join(reasons)}; nor in motion: {error}') from error
         rejections = [recording.rejections for recording in unsettled]
@@ -152,7 +152,9 @@ def identify(
         try:
             if why_not:
                 raise TrawlError(why_not)
-            learned = learn_from_motion(record, identification, recordings, namespace, on_progress)
+            learned = learn_from_motion(
+                record, identification, recordings, namespace, on_progress, net=net
+            )
             result = replace(result, motion=learned)
         except TrawlError as reason:
             result = replace(result, motion_refused=str(reason))

@@ -8,7 +8,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.objective import stack
-from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.from_gear import NET_STD, board_prior
 from trawl_ros.estimation.motion.fit import fit_motion
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.holdout import hold_out_states
@@ -39,17 +39,20 @@ STAGE = 'towing all of it'
 Refused = Callable[[str], None]
 
 
-def why_windows_alone(gear: GearRecord, *, prior: bool, net: bool) -> str | None:
+def why_windows_alone(gear: GearRecord, *, prior: bool) -> str | None:
     """Reason, in a sentence, for which all of a tow cannot be used; None where it can."""
     if gear.pair is not None:
         return f'{gear.name} has no boards, and only their coefficients are learned in motion'
-    if effects_of(gear):
-        return f'{gear.name} has effects switched on, with which no motion is fitted yet'
-    if net:
-        return 'drag and weight of the net cannot be estimated along in motion yet'
     if not prior:
         return 'in motion the prior of the gear file always takes part'
     return None
+
+
+def towed_gear(gear: GearRecord, *, net: bool) -> TowedGear:
+    """Gear that is towed, with the effects that its file switches on; ``net`` is true if drag and
+    weight of the net are estimated along.
+    """
+    return TowedGear(build_model(gear), effects_of(gear), net_std=NET_STD if net else 0.0)
 
 
 def learn_from_motion(
@@ -58,6 +61,8 @@ def learn_from_motion(
     recordings: Sequence[FoundWindows],
     namespace: str,
     on_progress: OnProgress,
+    *,
+    net: bool = False,
 ) -> MotionOutcome:
     """Fit all of the tows, from the estimate of their steady windows on, or from the prior.
 
@@ -73,6 +78,8 @@ def learn_from_motion(
         Of the topics.
     on_progress
         Called after each stretch that was towed, with the time (s) towed so far.
+    net
+        True if drag and weight of the net are estimated along.
 
     Raises
     ------
@@ -84,7 +91,7 @@ def learn_from_motion(
     tows, numbers, refused = moving_tows(gear, recordings, namespace, on_progress)
     if not tows:
         raise TrawlError('; '.join(refused))
-    return fit_tows(gear, identification, tows, numbers, refused, on_progress)
+    return fit_tows(gear, identification, tows, numbers, refused, on_progress, net=net)
 
 
 def fit_tows(
@@ -94,12 +101,14 @@ def fit_tows(
     numbers: Sequence[tuple[int, ...]],
     refused: Sequence[str],
     on_progress: OnProgress = ignore,
+    *,
+    net: bool = False,
 ) -> MotionOutcome:
     """Fit tows in motion.
 
     Parameters
     ----------
-    gear, identification, on_progress
+    gear, identification, on_progress, net
         As of `learn_from_motion`.
     tows, numbers, refused
         As `moving_tows` gives them.
@@ -114,9 +123,9 @@ def fit_tows(
     prior, options, towed = (
         board_prior(gear),
         MotionOptions(widened=WIDENED),
-        TowedGear(build_model(gear)),
+        towed_gear(gear, net=net),
     )
-    layouts = [layout_of(tow, towed.motions, options.model) for tow in tows]
+    layouts = [layout_of(tow, towed, options.model) for tow in tows]
     start = None
     if estimate is not None:
         start = [

@@ -9,7 +9,13 @@ from dataclasses import dataclass
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.core.time import SECOND
-from trawl_ros.estimation.bag_motion import STRETCHES, WIDENED, fit_tows, moving_parts
+from trawl_ros.estimation.bag_motion import (
+    STRETCHES,
+    WIDENED,
+    fit_tows,
+    moving_parts,
+    towed_gear,
+)
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import board_prior
@@ -18,11 +24,9 @@ from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import TowRecorder
 from trawl_ros.estimation.motion.stretches import LONGEST_S
-from trawl_ros.estimation.motion.towing import TowedGear
 from trawl_ros.estimation.motion.tracking import MotionTracker
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample, WinchSample
 
@@ -72,6 +76,8 @@ class LiveMotion:
         The gear as the model has it.
     options
         Of the fit.
+    net
+        True if drag and weight of the net are estimated along.
 
     Attributes
     ----------
@@ -79,10 +85,12 @@ class LiveMotion:
         Reason for which nothing is learned at present; '' where it is.
     """
 
-    def __init__(self, gear: GearRecord, options: MotionOptions | None = None) -> None:
-        self._gear, self._prior = gear, board_prior(gear)
+    def __init__(
+        self, gear: GearRecord, options: MotionOptions | None = None, *, net: bool = False
+    ) -> None:
+        self._gear, self._prior, self._net = gear, board_prior(gear), net
         self._options = options or MotionOptions(widened=WIDENED)
-        self._towed = TowedGear(build_model(gear))
+        self._towed = towed_gear(gear, net=net)
         self._depth = build_water(gear).depth
         self.reset()
 
@@ -166,7 +174,9 @@ class LiveMotion:
         windows = () if identification is None else identification.estimator.windows
         own = tuple(range(1 + max((window.tow for window in windows), default=-1)))
         numbers = [own] * len(tows)
-        return fit_tows(self._gear, identification, tows, numbers, refused, on_progress)
+        return fit_tows(
+            self._gear, identification, tows, numbers, refused, on_progress, net=self._net
+        )
 
     def _tows(self, until_ns: int | None) -> tuple[list[MovingTow], list[str]]:
         tows: list[MovingTow] = []

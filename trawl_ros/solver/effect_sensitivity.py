@@ -71,7 +71,7 @@ def chained(
                     [(acting, one, replace(at, inputs=_three(one))) for one in both])
         )  # fmt: skip
     by_inputs = _carried(gear, found, jacobian, acting, rows, at)
-    by_coefficients = sensor_slopes(acting, found, at) @ jacobian[:, :-3]
+    by_coefficients = sensor_slopes(acting, found.observables.array(), at) @ jacobian[:, :-3]
     return np.hstack((by_coefficients, by_inputs))
 
 
@@ -160,16 +160,15 @@ def _carried(
         shifts = solve_refined(rest_linearisation(gear, found.state, found.tow).factor, pushes)
         along = observed_slopes(gear, found.state, found.tow, shifts)[1]
     change = along + direct + jacobian[:, -3:] @ towed
-    readings: FloatArray = sensor_slopes(acting, found, at) @ change + shown
+    readings: FloatArray = sensor_slopes(acting, found.observables.array(), at) @ change + shown
     return readings
 
 
-def sensor_slopes(acting: EffectSet, found: Equilibrium, at: Situation) -> FloatArray:
-    """Slopes (n_observables, n_observables) of the sensors' readings by the observables.
+def sensor_slopes(acting: EffectSet, values: FloatArray, at: Situation) -> FloatArray:
+    """Slopes (n_observables, n_observables) of the sensors' readings by the observables ``values``.
 
     Most sensors show their own observable alone; swapped ones show that of the other side.
     """
-    values = found.observables.array()
     if not acting.on_sensors:
         return np.eye(len(values))
     sizes = 1e-6 * np.maximum(np.abs(values), 1e-3)

@@ -132,7 +132,7 @@ class Predictor:
         """
         acting = self.acting(coefficients)
         by_net = net_sensitivities(self.gear(coefficients, inputs), found)
-        return sensor_slopes(acting, found, self._situation(inputs)) @ by_net
+        return sensor_slopes(acting, found.observables.array(), self._situation(inputs)) @ by_net
 
     def _situation(self, inputs: FloatArray) -> Situation:
         port, starboard, speed = map(float, inputs)

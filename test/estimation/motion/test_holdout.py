@@ -39,7 +39,7 @@ def fit():
     data = LinearData((groups,), (slice(SHARED, SHARED),), SHARED, ErrorTimes())
     return SimpleNamespace(
         linear=(SimpleNamespace(tow=tow),), data=data, parameters=(np.zeros(SHARED),),
-        sizes=ErrorSizes(),
+        sizes=ErrorSizes(), net=(),
     )  # fmt: skip
 
 
@@ -57,7 +57,8 @@ def test_a_state_left_out_is_predicted_by_a_step_as_long_as_the_fit_may_take(
 ):
     prior = board_prior(gear)
     predicted = hold_out_states(
-        fit, prior, windows(), [(0,)], lambda values, chosen: np.tile(values[:4], (len(chosen), 1)),
+        fit, prior, windows(), [(0,)],
+        lambda values, chosen, net: np.tile(values[:4], (len(chosen), 1)),
         MotionOptions(largest_step=largest),
     )  # fmt: skip
     steps = (predicted[:, 0] - prior.start[0]) / prior.std[0]

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
+from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
@@ -55,15 +57,74 @@ def towed(coarse, short_tow):
 
 def changed(towed, model, **changes):
     """Change of the means, and what the derivatives say of it, in the noise of a stretch."""
+    return changed_gear(towed, TowedGear(model), **changes)
+
+
+def changed_gear(towed, gear, **changes):
     point = replace(towed.point, **changes)
-    again = linearise_tow(TowedGear(model), towed.tow, point)
+    again = linearise_tow(gear, towed.tow, point)
     told = (
         towed.by_errors @ point.errors
         + towed.by_knots @ point.drifts
         + towed.by_added_mass[..., 0] * point.added_mass
         + towed.by_coefficients @ (point.coefficients - towed.point.coefficients)
     )
+    if towed.by_net.size:
+        told = told + towed.by_net @ (point.net - towed.point.net)
     return (again.values - towed.values) / towed.tow.noise, told / towed.tow.noise
+
+
+def active(**values):
+    return EffectSet(
+        tuple(ActiveEffect(catalogue()[name], np.array(own)) for name, own in values.items())
+    )
+
+
+ON = active(current_shear=[0.03], tension_cell=[500.0, 0.05])
+
+
+@pytest.fixture(scope='module')
+def laden(coarse, short_tow):
+    """A gear with effects of current and sensors on, whose net is not known; another length of the
+    bridles of one side is looked for.
+    """
+    gear = TowedGear(coarse, ON, net_std=0.2, examined=(catalogue()['port_bridle_length'],))
+    number = short_tow.inputs.number_of_knots
+    net = np.array([1.1, 0.9])
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(number), net)
+    return gear, linearise_tow(gear, short_tow, point)
+
+
+def test_a_tow_has_the_effects_of_its_gear_and_its_sensors(laden, towed, coarse):
+    gear, linear = laden
+    sheared = replace(gear, acting=active(current_shear=[0.03]), examined=())
+    plain = linearise_tow(sheared, linear.tow, linear.point)
+    cell = linear.tow.channels.index('port_tension')
+    np.testing.assert_allclose(
+        linear.values[:, cell], 1.05 * plain.values[:, cell] + 500.0, rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        linear.by_coefficients[:, cell], 1.05 * plain.by_coefficients[:, cell], rtol=1e-6
+    )
+    depth = linear.tow.channels.index('net_depth')
+    np.testing.assert_allclose(linear.values[:, depth], plain.values[:, depth], rtol=1e-9)
+    assert np.abs(plain.values - towed.values)[:, depth].max() > 1.0
+
+
+def test_net_and_effects_that_are_looked_for_do_what_their_derivatives_say(laden):
+    gear, linear = laden
+    moved = linear.point.coefficients + 0.001
+    real, told = changed_gear(linear, gear, net=np.array([1.102, 0.902]), coefficients=moved)
+    assert np.abs(real).max() > 0.1
+    np.testing.assert_allclose(told, real, atol=0.02 * np.abs(real).max())
+    fewer = replace(
+        gear, acting=gear.acting.having(ActiveEffect(gear.examined[0], np.array([0.01, 0.0])))
+    )
+    again = linearise_tow(fewer, linear.tow, linear.point)
+    real = (again.values - linear.values) / linear.tow.noise
+    told = 0.01 * linear.by_examined[..., 0] / linear.tow.noise
+    assert np.abs(real).max() > 0.1
+    np.testing.assert_allclose(told, real, atol=0.02 * np.abs(real).max())
 
 
 @pytest.mark.parametrize(('channel', 'knot', 'size'), [(0, 2, 0.002), (0, 5, 0.002), (1, 1, 0.02)])
@@ -213,6 +274,20 @@ def test_smoothing_keeps_a_ramp_and_its_rate():
     values, rates = on_grid(times, 3.0 + 0.4 * times, np.arange(5.0, 50.0), 5.0)
     np.testing.assert_allclose(values, 3.0 + 0.4 * np.arange(5.0, 50.0))
     np.testing.assert_allclose(rates, 0.4)
+
+
+def test_a_gear_with_effects_on_is_fitted_and_its_net_along(coarse, gear):
+    known = board_prior(gear)
+    prior = replace(known, std=0.05 * known.std)
+    laden = TowedGear(coarse, ON, net_std=0.02)
+    trial = run_motion_trial(laden, prior, 31, duration_s=80.0)
+    assert trial.fit.converged, trial.fit.reason
+    assert trial.squared_error < BAND[1]
+    assert [factor.what for factor in trial.fit.net] == ['drag', 'weight']
+    for factor in trial.fit.net:
+        assert 0.0 < factor.std < factor.known
+        assert abs(factor.value - 1.0) < 4.0 * factor.std
+    assert trial.fit.misfit < 1.3
 
 
 @pytest.mark.slow

@@ -28,7 +28,7 @@ from trawl_ros.solver.relax import relax
 from trawl_ros.solver.stepper import StepFailed, Stepper, at_rest
 
 STEP_S = 0.2
-EFFECTS = ('board_added_mass', 'counter_scale', 'counter_offset', 'speed_log')
+EFFECTS = ('board_added_mass', 'counter_scale', 'counter_offset', 'other_wire', 'speed_log')
 PARAMETERS = MotionParameters(
     net=True, effects=tuple(catalogue()[name] for name in EFFECTS), inputs=('speed drift',)
 )
@@ -234,7 +234,7 @@ def test_names_are_those_of_a_fit(quick: Differentiated) -> None:
     effects = [Candidate(catalogue()[name], np.zeros(0)).group for name in EFFECTS]
     net = Scheme(net_drag=0.2, net_weight=0.2).model_errors.only('net')
     expected = (*BOARD.names, *net.names, *(name for group in effects for name in group.names))
-    assert PARAMETERS.names[:20] == expected
+    assert PARAMETERS.names[:21] == expected
     assert quick.slopes.shape[2] == len(PARAMETERS)
 
 

@@ -175,9 +175,13 @@ class Estimator:
         return subset
 
     def predictions(
-        self, coefficients: FloatArray, windows: Sequence[SteadyWindow] | None = None
+        self,
+        coefficients: FloatArray,
+        windows: Sequence[SteadyWindow] | None = None,
+        net: FloatArray | None = None,
     ) -> FloatArray:
-        """Predict the four channels of eq. 35 at each window's inputs.
+        """Predict the four channels of eq. 35 at each window's inputs, with factors ``net`` (2,) on
+        the net's drag and weight, or those of the fit.
 
         Returns
         -------
@@ -186,7 +190,7 @@ class Estimator:
         rows = []
         for window in self.windows if windows is None else windows:
             try:
-                linear = self._linearise(window, coefficients)
+                linear = self._linearise(window, coefficients, net=net)
             except NoSteadyState:
                 rows.append(np.full(len(PAPER_CHANNELS), np.nan))
             else:
@@ -216,8 +220,10 @@ class Estimator:
         *,
         start: 'Equilibrium | None' = None,
         near: Sequence[Linearised] = (),
+        net: FloatArray | None = None,
     ) -> Linearised:
         """Linearise the model at a window, from a given state or that of the nearest window."""
+        net = self._fit.net if net is None else net
 
         def distance(linear: Linearised) -> float:
             return sum(
@@ -230,7 +236,7 @@ class Estimator:
             starts.append(min(known, key=distance).state)
         starts.append(None)
         return linearise(
-            self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
+            self.predictor, self.observables, window, coefficients, starts, inputs, net
         )
 
     def _from_start(self) -> None:

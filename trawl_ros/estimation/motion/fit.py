@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup, joined
@@ -23,6 +24,7 @@ from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, shared_std, step
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, linearise_tow
 from trawl_ros.estimation.motion.weights import robust_factors
+from trawl_ros.solver.motion.parameters import NET
 
 NEAR = 0.3
 """Part of every std, as it will be stated, from which a fit is at rest where its step lowers no
@@ -92,7 +94,9 @@ class MotionSearch:
         data, prior = self.data(self.linear, self.here), self.prior
         wide = sizes.tempered(self.options.widened)
         told = joined(data.information(wide), data.precisions(wide.log), data.shared)
-        covariance = np.linalg.inv(told.matrix + np.eye(data.shared))[:12, :12]
+        every = np.linalg.inv(told.matrix + np.eye(data.shared))
+        covariance, layout, known = every[:12, :12], self.layouts[0], self.gear.net_std
+        std = known * np.sqrt(np.diag(every)[layout.of_net])
         return MotionFit(
             values=prior.start + prior.std * place[0][:12],
             matrix=told.matrix,
@@ -108,6 +112,10 @@ class MotionSearch:
             iterations=iterations,
             converged=converged,
             reason=reason,
+            net=tuple(
+                NetFactor(what, float(value), float(own), known)
+                for what, value, own in zip(NET, layout.net(place[0]), std, strict=False)
+            ),
         )
 
     def find(self, sizes: ErrorSizes) -> ErrorSizes:
@@ -197,7 +205,7 @@ def fit_motion(
     on_stretch
         Called with the numbers of iteration, tow and stretch.
     """
-    layouts = tuple(layout_of(tow, gear.motions, options.model) for tow in tows)
+    layouts = tuple(layout_of(tow, gear, options.model) for tow in tows)
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
     search = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
     search.noise = tuple(tow.noise for tow in tows)
@@ -257,7 +265,7 @@ def linear_data(
     for tow, layout, z, own in zip(linear, layouts, at, noise, strict=True):
         slopes = columns(tow, layout, prior.std)
         if not options.nuisances:
-            slopes[..., len(prior) :] = 0.0
+            slopes[..., len(prior) : layout.of_net.start] = slopes[..., layout.of_gear :] = 0.0
         towed = z * (1.0 - linear_part(layout))
         residual = tow.residual + slopes @ towed
         groups = []

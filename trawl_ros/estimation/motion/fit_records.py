@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.motion.nuisances import TowLayout
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes
 from trawl_ros.estimation.motion.sizes import LinearData
@@ -82,6 +83,8 @@ class MotionFit:
         Steps that were taken.
     converged, reason
         As of an estimate.
+    net
+        Drag and weight of the net, where these are estimated along.
     """
 
     values: FloatArray
@@ -98,3 +101,4 @@ class MotionFit:
     iterations: int
     converged: bool
     reason: str
+    net: tuple[NetFactor, ...] = ()

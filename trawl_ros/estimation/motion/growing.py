@@ -1,7 +1,7 @@
 """Linearisation, at one place, of tows that grow."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.nuisances import TowLayout, point_of
 from trawl_ros.estimation.motion.records import MovingTow
-from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, TowedPoint, TowLineariser
+from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, TowLineariser
 
 
 @dataclass(frozen=True)
@@ -91,9 +91,7 @@ class GrowingLinearisation:
 
     def _begin(self, tow: MovingTow) -> TowLineariser:
         inputs = self._of(tow)
-        point = TowedPoint(
-            self._point.coefficients, self._point.added_mass, inputs.errors, inputs.along(tow)
-        )
+        point = replace(self._point, errors=inputs.errors, drifts=inputs.along(tow))
         begun = TowLineariser(self._gear, tow.channels, point)
         self._towed[tow.start_ns] = begun
         return begun

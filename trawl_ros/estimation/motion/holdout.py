@@ -20,8 +20,9 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 FOLDS = 5
 """Parts into which the states of a single tow are dealt, as by the hold-out of the windows."""
 
-Predict = Callable[[FloatArray, Sequence[SteadyWindow]], FloatArray]
-"""Channels of eq. 35 (n, 4) in windows, by coefficients (12,)."""
+Predict = Callable[[FloatArray, Sequence[SteadyWindow], FloatArray | None], FloatArray]
+"""Channels of eq. 35 (n, 4) in windows, by coefficients (12,) and factors (2,) on drag and weight
+of the net, None where these are held."""
 
 
 def hold_out_states(
@@ -75,7 +76,8 @@ def hold_out_states(
         there = step(data, fit.parameters, prior, fit.sizes, options.largest_step)
         rows = [i for i, window in enumerate(windows) if window.state in fold]
         values = prior.start + prior.std * there[0][:12]
-        predicted[rows] = predict(values, [windows[i] for i in rows])
+        net = fit.layouts[0].net(there[0]) if fit.net else None
+        predicted[rows] = predict(values, [windows[i] for i in rows], net)
     return predicted
 
 

@@ -55,6 +55,8 @@ class TowInputs:
         ENU yaw (rad) without leaps, and rate of turn (rad/s).
     knots
         Of errors along the way, input by input; those without have none but `INPUT_ERRORS`.
+    hours
+        Since the tow began, at the first of the grid.
     """
 
     grid_s: float
@@ -63,6 +65,7 @@ class TowInputs:
     headings: FloatArray
     yaw_rates: FloatArray
     knots: tuple[Knots, ...] = ()
+    hours: float = 0.0
 
     @property
     def number_of_knots(self) -> int:
@@ -143,7 +146,8 @@ class CorrectedInputs:
             column = INPUTS.index(knots.channel)
             value[column] -= knots.hats(time) @ self.drifts[own]
             rate[column] -= knots.hat_rates(time) @ self.drifts[own]
-        return InputPoint(value, rate, heading, yaw_rate, time / 3600.0, additions, paces)
+        hours = self.inputs.hours + time / 3600.0
+        return InputPoint(value, rate, heading, yaw_rate, hours, additions, paces)
 
     def _additions(
         self, time: float, shown: FloatArray, rates: FloatArray

@@ -1,8 +1,9 @@
 """Columns of a linearised tow by all its parameters, each in units of its prior std.
 
-Parameters that all tows share come first: coefficients, added mass and the constant part of the
-model's error. Those of one tow follow: slow motions at its beginning, errors of its inputs, those
-that stay and those at knots along the way, and calibration errors of its sensors.
+Parameters that all tows share come first: coefficients, added mass, the net's factors where these
+are estimated along, and the constant part of the model's error. Those of one tow follow: slow
+motions at its beginning, errors of its inputs, those that stay and those at knots along the way,
+and calibration errors of its sensors.
 """
 
 from dataclasses import dataclass
@@ -13,9 +14,10 @@ from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, channel_errors
 from trawl_ros.estimation.motion.records import MovingTow
-from trawl_ros.estimation.motion.towing import LinearisedTow, TowedPoint
+from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, TowedPoint
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.solver.motion.parameters import NET
 
 MOTION_STD_M = 3.0
 """Prior std (m) of the slow motions with which a tow begins; assumed."""
@@ -39,22 +41,36 @@ class TowLayout:
         Measured channels.
     model
         Std of the model's constant error, as a factor on what is stated; 0 for an exact model.
+    net_std
+        Prior std of the factors on drag and weight of the net; 0 where these are held.
     """
 
     motions: int
     knots: tuple[tuple[str, int], ...]
     channels: tuple[str, ...]
     model: float = 1.0
+    net_std: float = 0.0
+
+    @property
+    def of_net(self) -> Slice:
+        """Slice of the factors on drag and weight of the net."""
+        first = len(COEFFICIENTS) + 1
+        return slice(first, first + (len(NET) if self.net_std else 0))
+
+    @property
+    def of_gear(self) -> int:
+        """Number of the parameters of the gear itself, the first of all."""
+        return self.of_net.stop
 
     @property
     def shared(self) -> int:
         """Number of the parameters that all tows share."""
-        return len(COEFFICIENTS) + 1 + len(GROUPS)
+        return self.of_gear + len(GROUPS)
 
     @property
     def of_model(self) -> Slice:
         """Slice of the constant errors of the model."""
-        return slice(len(COEFFICIENTS) + 1, self.shared)
+        return slice(self.of_gear, self.shared)
 
     @property
     def of_motions(self) -> Slice:
@@ -86,14 +102,18 @@ class TowLayout:
         """Slice of the calibration errors."""
         return slice(self.of_knots.stop, len(self))
 
+    def net(self, z: FloatArray) -> FloatArray:
+        """Factors (2,) on drag and weight of the net by parameters (p,) in prior std; 1 if held."""
+        return 1.0 + self.net_std * z[self.of_net] if self.net_std else np.ones(len(NET))
+
     def __len__(self) -> int:
         return self.of_knots.stop + len(channel_errors(self.channels))
 
 
-def layout_of(tow: MovingTow, motions: int, model: float) -> TowLayout:
-    """Layout of a tow."""
+def layout_of(tow: MovingTow, gear: TowedGear, model: float) -> TowLayout:
+    """Layout of a tow of a gear."""
     knots = tuple((knots.channel, knots.number) for knots in tow.inputs.knots)
-    return TowLayout(motions, knots, tow.channels, model)
+    return TowLayout(gear.motions, knots, tow.channels, model, gear.net_std)
 
 
 def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:
@@ -102,6 +122,7 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
     total = np.zeros((n, k, len(layout)))
     total[..., :12] = linear.by_coefficients * prior_std
     total[..., 12:13] = linear.by_added_mass * ADDED_MASS_STD
+    total[..., layout.of_net] = linear.by_net * layout.net_std
     for column, group in enumerate(GROUPS, start=layout.of_model.start):
         for row, name in enumerate(layout.channels):
             if group_of(name) == group:
@@ -132,6 +153,7 @@ def point_of(
         added_mass=float(ADDED_MASS_STD * z[12]),
         errors=z[layout.of_errors],
         drifts=np.concatenate((np.zeros(0), *drifts)),
+        net=layout.net(z),
     )
 
 

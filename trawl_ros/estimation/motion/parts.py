@@ -6,7 +6,10 @@ import numpy as np
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.motion.series import Series, TowReadings
+from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.records.channels import CHANNELS, INPUTS
+
+NEXT_TOW_S = WindowOptions.tow_gap_s
 
 
 def parts_of(read: TowReadings, shortest_s: float) -> list[TowReadings]:
@@ -40,16 +43,18 @@ def parts_of(read: TowReadings, shortest_s: float) -> list[TowReadings]:
         end = min((other for other in ends if other > begin), default=begin)
         within = any(first <= begin < last for first, last in silent)
         if not within and end - begin >= shortest_s:
-            parts.append(_part(read, begin, end))
+            # Behind a silence so long another tow begins, as for the windows.
+            origins = [last for first, last in silent if first + NEXT_TOW_S <= last <= begin]
+            parts.append(_part(read, begin, end, max(origins, default=0.0)))
     return parts
 
 
-def _part(read: TowReadings, begin: float, end: float) -> TowReadings:
+def _part(read: TowReadings, begin: float, end: float, origin: float) -> TowReadings:
     series = {name: _cut(known, begin, end) for name, known in read.series.items()}
     payout = [_cut(known, begin, end) for known in read.payout]
     start = read.start_ns + round(begin * SECOND)
     kept = {name: known for name, known in series.items() if name in INPUTS or len(known)}
-    return TowReadings(start, kept, (payout[0], payout[1]))
+    return TowReadings(start, kept, (payout[0], payout[1]), (begin - origin) / 3600.0)
 
 
 def _cut(series: Series, begin: float, end: float) -> Series:

@@ -71,11 +71,14 @@ class TowReadings:
         Series of each channel that has readings enough.
     payout
         Series of the pay-out speeds (m/s) of both winches, by their counters where no winch tells.
+    hours
+        Since the tow began, where these are a part of one.
     """
 
     start_ns: int
     series: Mapping[str, Series]
     payout: tuple[Series, Series]
+    hours: float = 0.0
 
     @property
     def duration_s(self) -> float:

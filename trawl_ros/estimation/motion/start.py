@@ -35,6 +35,8 @@ def starting_point(
     """
     z = np.zeros(len(layout))
     z[:12] = prior.departure(estimate.values)
+    if layout.net_std and estimate.net:
+        z[layout.of_net] = [(factor.value - 1.0) / layout.net_std for factor in estimate.net]
     own = [bias for bias in estimate.tow_biases if bias.tow in numbers]
     z[layout.of_errors] = _input_errors(own, tow)
     return z

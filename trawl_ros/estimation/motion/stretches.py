@@ -175,7 +175,7 @@ def _inputs(read: TowReadings, duration_s: float, options: StretchOptions) -> To
         ),
     )  # fmt: skip
     values, rates = stacked(paths)
-    return TowInputs(GRID_S, values, rates, headings, yaw_rates, knots)
+    return TowInputs(GRID_S, values, rates, headings, yaw_rates, knots, read.hours)
 
 
 def quiet_stretches(inputs: TowInputs, number: int, stretch_s: float) -> BoolArray:

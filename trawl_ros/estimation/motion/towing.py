@@ -1,12 +1,13 @@
 """Linearised tow in motion: means of its stretches, with derivatives by all that is towed."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, CorrectedInputs
@@ -14,7 +15,8 @@ from trawl_ros.estimation.motion.records import LeftOut, MovingTow
 from trawl_ros.estimation.motion.under_way import InputsUnderWay, MotionUnderWay
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
+from trawl_ros.solver.motion.parameters import NET, MotionParameters
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
@@ -35,17 +37,33 @@ AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
 class TowedGear:
     """Gear that is towed: the model as its file has it, with the effects that are there.
 
-    ``motions`` is the number of slow motions with which a tow may begin.
+    Attributes
+    ----------
+    model, acting
+        The model without effects, and these.
+    motions
+        Number of slow motions with which a tow may begin.
+    net_std
+        Prior std of the factors on drag and weight in water of the net; 0 where these are held.
+    examined
+        Effects by whose values the tow is differentiated too.
     """
 
     model: GearModel
     acting: EffectSet = NO_EFFECTS
     motions: int = 0
+    net_std: float = 0.0
+    examined: tuple[Effect, ...] = ()
 
     def with_added_mass(self, part: float) -> EffectSet:
         """Effects with an added mass of the boards beside that in the gear file."""
         known = self.acting.of(ADDED_MASS).values
         return self.acting.having(ActiveEffect(ADDED_MASS, known + part))
+
+    def model_at(self, point: 'TowedPoint') -> GearModel:
+        """Model without effects, with coefficients and net of a point."""
+        model = self.model.with_coefficients(point.coefficients)
+        return model.with_net(*map(float, point.net)) if self.net_std else model
 
 
 @dataclass(frozen=True)
@@ -53,13 +71,15 @@ class TowedPoint:
     """Point at which a tow is linearised.
 
     ``coefficients`` (12,), ``added_mass`` as a part of the cylinder of water around a board,
-    ``errors`` (e,) of the inputs in std, ``drifts`` (knots,) their errors at all knots, SI.
+    ``errors`` (e,) of the inputs in std, ``drifts`` (knots,) their errors at all knots, SI, and
+    ``net`` (2,), factors on its drag and weight in water.
     """
 
     coefficients: FloatArray
     added_mass: float
     errors: FloatArray
     drifts: FloatArray
+    net: FloatArray = field(default_factory=lambda: np.ones(len(NET)))
 
 
 @dataclass(frozen=True)
@@ -80,6 +100,10 @@ class LinearisedTow:
         By an input's error at each knot, per SI unit.
     by_motions : (n, k, motions) array
         By a metre of each slow motion at the beginning.
+    by_net : (n, k, 2 or 0) array
+        By the factors on drag and weight of the net.
+    by_examined : (n, k, values) array
+        By the values of the effects that are examined, of what they do to the gear and its inputs.
     left_out
         Stretches that the model cannot tow, and why.
     """
@@ -92,6 +116,8 @@ class LinearisedTow:
     by_errors: FloatArray
     by_knots: FloatArray
     by_motions: FloatArray
+    by_net: FloatArray
+    by_examined: FloatArray
     left_out: tuple[LeftOut, ...]
 
     @property
@@ -117,6 +143,8 @@ class _TowedMeans:
     by_errors: FloatArray
     by_knots: tuple[tuple[int, FloatArray], ...]
     by_motions: FloatArray
+    by_net: FloatArray
+    by_examined: FloatArray
 
 
 class TowLineariser:
@@ -207,11 +235,15 @@ class TowLineariser:
     def linearised(self, tow: MovingTow) -> LinearisedTow:
         """Tow as it is linearised so far, of which all has been towed along."""
         n, k, number = len(tow), len(tow.channels), tow.inputs.number_of_knots
+        gear = self._gear
+        of_net = len(NET) if gear.net_std else 0
+        examined = sum(len(effect.parameters) for effect in gear.examined)
         result = LinearisedTow(
             tow, self._point,
             np.full((n, k), np.nan), np.zeros((n, k, 12)), np.zeros((n, k, 1)),
             np.zeros((n, k, len(INPUT_ERRORS))), np.zeros((n, k, number)),
-            np.zeros((n, k, self._gear.motions)), tuple(self._left_out),
+            np.zeros((n, k, gear.motions)), np.zeros((n, k, of_net)), np.zeros((n, k, examined)),
+            tuple(self._left_out),
         )  # fmt: skip
         places = tow.inputs.knot_places
         for stretch, means in enumerate(self._means[:n]):
@@ -225,6 +257,8 @@ class TowLineariser:
                 at = own.start + knot
                 result.by_knots[stretch][:, at : at + slopes.shape[1]] = slopes
             result.by_motions[stretch][:, : means.by_motions.shape[1]] = means.by_motions
+            result.by_net[stretch] = means.by_net / self._point.net if of_net else 0.0
+            result.by_examined[stretch] = means.by_examined
         return result
 
     def _towed(self, tow: MovingTow, stretch: int) -> _TowedMeans | str:
@@ -263,8 +297,13 @@ class TowLineariser:
             yield self._observed(motion)
 
     def _observed(self, motion: MotionUnderWay) -> MotionPrediction:
-        observed = motion.towed.observed()
-        return MotionPrediction(observed.values[self._rows], observed.slopes[self._rows])
+        observed, acting = motion.towed.observed(), self._gear.acting
+        values, slopes = observed.values, observed.slopes
+        if acting.on_sensors:
+            at = motion.course(motion.towed.time).situation
+            slopes = sensor_slopes(acting, values, at) @ slopes
+            values = shown_values(acting, values, at)
+        return MotionPrediction(values[self._rows], slopes[self._rows])
 
 
 def linearise_tow(
@@ -305,12 +344,13 @@ def _begin(
     course = InputsUnderWay(CorrectedInputs(tow.inputs, point.errors, point.drifts, begin))
     parameters = MotionParameters(
         coefficients=True,
-        effects=(ADDED_MASS,),
+        net=bool(gear.net_std),
+        effects=(ADDED_MASS, *gear.examined),
         inputs=course.inputs.names,
         motions=0 if anew else gear.motions,
     )
-    model = gear.model.with_coefficients(point.coefficients)
-    towed = DifferentiatedTow(model, parameters, course, gear.with_added_mass(point.added_mass))
+    acting = gear.with_added_mass(point.added_mass)
+    towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting)
     return MotionUnderWay(towed, course, begin + SETTLING_S if anew else 0.0)
 
 
@@ -325,6 +365,7 @@ def _average(
         # The column of the newest knot was another's until this stretch began.
         slopes[0, :, column] = 0.0
     mean = np.einsum('ki,ikm->km', weights, slopes)
+    of_effects, added = mean[:, parameters.of_effects], len(ADDED_MASS.parameters)
     of_inputs = mean[:, parameters.of_inputs]
     by_knots = []
     for knots, _, first in tow.inputs.knot_places:
@@ -333,8 +374,10 @@ def _average(
     return _TowedMeans(
         values=np.einsum('ki,ik->k', weights, values),
         by_coefficients=mean[:, parameters.of_coefficients],
-        by_added_mass=mean[:, parameters.of_effects],
+        by_added_mass=of_effects[:, :added],
         by_errors=of_inputs[:, : len(INPUT_ERRORS)],
         by_knots=tuple(by_knots),
         by_motions=mean[:, parameters.of_motions],
+        by_net=mean[:, parameters.of_net],
+        by_examined=of_effects[:, added:],
     )

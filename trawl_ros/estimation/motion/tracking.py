@@ -35,7 +35,6 @@ from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 AHEAD = 16
 """Stretches that are towed along again, at most, with each new one."""
@@ -47,9 +46,6 @@ and beyond which it ends to."""
 GROWN = 1.5
 """Factor by which a tow grows before sizes of the errors are found anew, or a step is tried again
 that was refused."""
-
-OF_GEAR = len(COEFFICIENTS) + 1
-"""Parameters of the gear itself, the first of all: coefficients and added mass."""
 
 MOST_FOUND = 240
 """Stretches of a tow for which sizes are found, at most: it takes the longer the more these are."""
@@ -128,7 +124,7 @@ class MotionTracker:
 
     def _search(self, tows: Sequence[MovingTow]) -> MotionSearch:
         """Search with the linearisation as it is, where there is one."""
-        layouts = tuple(layout_of(tow, 0, self._options.model) for tow in tows)
+        layouts = tuple(layout_of(tow, self._towed, self._options.model) for tow in tows)
         search = MotionSearch(
             self._towed, tows, layouts, self._prior, self._options, lambda *_: None,
             [np.zeros(len(layout)) for layout in layouts],
@@ -238,7 +234,7 @@ class MotionTracker:
         if self._damping < LEAST_DAMPING:
             self._damping = 0.0
         data = search.data(linear, there)
-        rest = misfit(data, _eliminated(data, there, self._sizes), self._sizes)
+        rest = misfit(data, _eliminated(search, data, there, self._sizes), self._sizes)
         self._cool(min(COOLER * self._temper, self._options.widened * rest))
 
     def _cool(self, temper: float) -> None:
@@ -258,17 +254,19 @@ class MotionTracker:
         for linear, place in ((search.linear, search.here), (tried, there)):
             kept = [only(tow, flags) for tow, flags in zip(linear, both, strict=True)]
             data = search.data(kept, place)
-            costs.append(cost(data, _eliminated(data, place, sizes), sizes))
+            costs.append(cost(data, _eliminated(search, data, place, sizes), sizes))
         return costs[1] <= costs[0] * (1.0 + 1e-9)
 
 
-def _eliminated(data: LinearData, place: Place, sizes: ErrorSizes) -> list[FloatArray]:
-    """Place with all that is no coefficient or added mass as it fits best there.
+def _eliminated(
+    search: MotionSearch, data: LinearData, place: Place, sizes: ErrorSizes
+) -> list[FloatArray]:
+    """Place with all that is none of the gear itself as it fits best there.
 
     Stretches that came after a linearisation began were towed without errors of their own.
     """
     parts = zip(data.information(sizes), data.precisions(sizes.log), place, strict=True)
-    kept = OF_GEAR
+    kept = search.layouts[0].of_gear
     return [
         np.concatenate((z[:kept], own_values(tow, precision, z[:kept])))
         for tow, precision, z in parts

@@ -77,7 +77,7 @@ def estimate_in_motion(motion: MotionOutcome) -> Estimate:
         undetermined=(),
         noise_scales={},
         tow_biases=(),
-        net=(),
+        net=fit.net,
         degrees_of_freedom=float('inf'),
         birge_ratio=1.0,
         cost=fit.cost,

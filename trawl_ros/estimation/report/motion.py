@@ -7,6 +7,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae
 from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.report.net import net_lines, net_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -82,6 +83,8 @@ def motion_lines(report: Report) -> list[str]:
         f'{"At rest" if fit.converged else "NOT at rest"}: {fit.reason}. Whitened residuals have '
         f'{fit.misfit:.2f} of their std.',
     ]
+    if report.windows:
+        lines += [f'By all of the tow. {line}' for line in net_lines(fit.net)]
     for name, part in motion.left_out:
         lines.append(f'Left out: {name}, {part.begin:.0f} to {part.end:.0f} s: {part.why}.')
     if poor := motion.poor:
@@ -128,6 +131,7 @@ def motion_result(report: Report) -> dict[str, object]:
         'converged': fit.converged,
         'reason': fit.reason,
         'iterations': fit.iterations,
+        'net': net_result(fit.net),
         'misfit': fit.misfit,
         'readings': fit.readings,
         'counted_s': motion.duration_s,

@@ -6,6 +6,7 @@ from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.motion import motion_result
+from trawl_ros.estimation.report.net import net_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -57,10 +58,7 @@ def result(report: Report) -> dict[str, object]:
         ],
         'misfit': estimate.birge_ratio,
         'noise_scales': dict(estimate.noise_scales),
-        'net': {
-            factor.what: {'value': factor.value, 'std': factor.std, 'known': factor.known}
-            for factor in report.estimate.net
-        },
+        'net': net_result(report.estimate.net),
         'prior_used': report.prior_weight > 0.0,
         'held_out_by': report.held_out.by,
         'accepted': _accepted(report),

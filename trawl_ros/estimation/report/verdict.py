@@ -7,6 +7,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.net import net_lines
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -88,7 +89,8 @@ def _fit(report: Report, held: FloatArray, paper: FloatArray) -> str:
 
 def _knowledge(report: Report) -> tuple[str, ...]:
     if report.paired:
-        return 'The gear has no boards: drag and weight of its net are estimated.', *_net(report)
+        only = 'The gear has no boards: drag and weight of its net are estimated.'
+        return only, *net_lines(report.estimate.net)
     estimate = report.estimate
     known = [name for name, flag in zip(COEFFICIENTS, estimate.determined, strict=True) if flag]
     listed = f': {", ".join(known)}' if known else ''
@@ -98,7 +100,7 @@ def _knowledge(report: Report) -> tuple[str, ...]:
     if estimate.undetermined:
         names = '; '.join(str(combination) for combination in estimate.undetermined)
         sentences.append(f'Known no better than before any tow: {names}.')
-    sentences += _net(report)
+    sentences += net_lines(report.estimate.net)
     if report.laws is not None:
         well = report.laws.quantities.well_known
         lacking = [name for name, flag in zip(QUANTITIES, well, strict=True) if not flag]
@@ -108,14 +110,6 @@ def _knowledge(report: Report) -> tuple[str, ...]:
             f'slopes of their laws are known to a fifth of what the law spans over 15°{listed}.'
         )
     return tuple(sentences)
-
-
-def _net(report: Report) -> list[str]:
-    return [
-        f'{factor.what.capitalize()} of the net: {factor.value:.2f} times that of the gear '
-        f'file, standard deviation {factor.std:.2f}, {factor.known:.2f} before any tow.'
-        for factor in report.estimate.net
-    ]
 
 
 def _concerns(report: Report) -> tuple[str, ...]:

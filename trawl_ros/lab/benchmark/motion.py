@@ -151,7 +151,7 @@ def run_motion_trial(
         options = MotionOptions(
             sizes=EXACT_MODEL, estimate_sizes=False, nuisances=False, tolerance=0.02
         )
-    layout = layout_of(tow, 0, options.model)
+    layout = layout_of(tow, gear, options.model)
     for _ in range(MOST_DRAWS):
         z = chance.standard_normal(len(layout))
         z[len(prior)] = abs(z[len(prior)])

@@ -170,10 +170,10 @@ class MotionLearner:
         from trawl_ros.estimation.bag_motion import why_windows_alone
         from trawl_ros.estimation.live_motion import LiveMotion
 
-        if reason := why_windows_alone(self._gear, prior=self._prior, net=self._net):
+        if reason := why_windows_alone(self._gear, prior=self._prior):
             self._know(why_not=reason)
         else:
-            self._live = LiveMotion(self._gear)
+            self._live = LiveMotion(self._gear, net=self._net)
 
     def _show(self, progress: WorkProgress) -> None:
         self._know(why_not=f'{progress.stage}: {progress.detail}')

@@ -22,6 +22,7 @@ from trawl_ros.solver.motion.partials import (
     pushes,
 )
 from trawl_ros.solver.motion.readings import MotionPrediction
+from trawl_ros.solver.motion.shown import effects_that_show, shown_by_effects
 from trawl_ros.solver.motion.slopes import (
     advance_slopes,
     unmoved,
@@ -87,8 +88,10 @@ class DifferentiatedTow:
         self.parameters, self.time = parameters, 0.0
         self._net: tuple[BarProperties, NetLoads] | None = None
         self._by_effects: FloatArray | None = None
+        self._showing: frozenset[str] = frozenset()
         self._renewal, self._steps = renewal, 0
         point = inputs(0.0)
+        self._point = point
         self.model = acting.gear(model, point.situation)
         self.course = course_point(model, acting, parameters, point)
         true = acting.apply_to_inputs(point.inputs, point.situation)
@@ -147,6 +150,7 @@ class DifferentiatedTow:
         else:
             motion = self._stepper.step(self.motion, course.tow, h)
         self.model, self.course, self.motion, self.time = model, course, motion, time
+        self._point = point
 
     def _pushes(
         self, model: GearModel, point: InputPoint, end: StepEnd, course: CoursePoint
@@ -156,6 +160,7 @@ class DifferentiatedTow:
         if self._by_effects is None or self._steps % self._renewal == 0:
             gear = GearAtPoint(self._plain, self._acting, point)
             self._by_effects = effect_pushes(gear, self.parameters, end)
+            self._showing = effects_that_show(gear, self.parameters)
         self._steps += 1
         return pushes(
             model, self.parameters, end, course.slopes, self._net[1], self._by_effects
@@ -180,4 +185,8 @@ class DifferentiatedTow:
         """Observables of the present instant with their derivatives."""
         at = self.model, self.motion.state, self.course.tow
         along = self.slopes.places, self.slopes.velocities, self.course.slopes
-        return MotionPrediction(*observed_slopes(*at, *along))
+        values, slopes = observed_slopes(*at, *along)
+        if self._showing:
+            gear, own = GearAtPoint(self._plain, self._acting, self._point), self.parameters
+            slopes[:, own.of_effects] += shown_by_effects(gear, own, self._showing, *at[1:])
+        return MotionPrediction(values, slopes)
