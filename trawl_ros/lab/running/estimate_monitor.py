@@ -15,6 +15,8 @@ from trawl_ros.nodes.runtime.qos import CONSUMER
 class EstimateMonitor(Monitor):
     """Monitor of `identification_node`'s status, whose stamp is the end of the newest window.
 
+    What all of the tow tells has a stamp of its own there, the end of its newest half minute.
+
     Parameters
     ----------
     environment
@@ -24,6 +26,7 @@ class EstimateMonitor(Monitor):
     def __init__(self, environment: Mapping[str, str]) -> None:
         super().__init__(environment)
         self._heard_at: dict[int, int] = {}
+        self._motion_heard_at: dict[float, int] = {}
 
     @property
     def playing(self) -> bool:
@@ -39,11 +42,22 @@ class EstimateMonitor(Monitor):
         """Time (s) on the graph's clock from each window's end to the estimate with it."""
         return [(heard - end) / SECOND for end, heard in sorted(self._heard_at.items())]
 
+    def motion_delays_s(self) -> list[float]:
+        """Time (s) on the graph's clock from the end of each half minute of a tow that was learned
+        from to the estimate with it.
+        """
+        found = sorted(self._motion_heard_at.items())
+        return [heard / SECOND - end for end, heard in found]
+
     def listen_to_more(self, node: TrawlNode) -> None:
         """Listen to the status."""
 
         def hear(message: Any) -> None:
-            coefficients = read_statuses(message)[0].values
+            coefficients, *others = (status.values for status in read_statuses(message))
+            # Of all others that of all of the tow alone has a stamp.
+            for values in others:
+                if 'stamp' in values:
+                    self._motion_heard_at.setdefault(float(values['stamp']), node.now())
             if coefficients['windows'] != '0':
                 # A refused window brings a status too, with the stamp of the estimate there is.
                 self._heard_at.setdefault(stamp_of(message), node.now())

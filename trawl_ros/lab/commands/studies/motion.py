@@ -29,6 +29,11 @@ from trawl_ros.lab.studies.motion.study import MotionStudyPlan, run_motion_study
               help='Trials with a finer plant under autotrawl.')  # fmt: skip
 @click.option('--around', default=MotionStudyPlan.around, show_default=True,
               type=click.IntRange(12, 96), help='Meshes around the model net.')  # fmt: skip
+@click.option('--detectable', is_flag=True,
+              help='Smallest effects that four tows show, too: a quarter of an hour.')  # fmt: skip
+@click.option('--live-s', default=MotionStudyPlan.live_s, show_default=True,
+              type=click.FloatRange(0.0, 7200.0),
+              help='So much of the sample trial is played to both nodes in real time.')  # fmt: skip
 @SCHEDULER_OPTION
 def command(
     out: Path,
@@ -39,6 +44,8 @@ def command(
     alike: int,
     autotrawled: int,
     around: int,
+    detectable: bool,
+    live_s: float,
     scheduler: str | None,
 ) -> None:
     """Ask of tows in time what a fit of all of each is worth, beside that of its windows.
@@ -47,7 +54,7 @@ def command(
     are in the folder already are not made again: after Ctrl-C the same command goes on where it
     was.
     """
-    plan = MotionStudyPlan(gear, seed, trials, alike, autotrawled, around)
+    plan = MotionStudyPlan(gear, seed, trials, alike, autotrawled, around, detectable, live_s)
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         rows = run_motion_study(plan, out, display, scheduler=scheduler, force=force)
     print_outcome(rows, out / MOTION_REPORT)

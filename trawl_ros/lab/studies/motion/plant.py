@@ -85,7 +85,7 @@ def draw_tow(
         added_mass = ADDED_MASS_STD * abs(chance.standard_normal())
         seed = int(chance.integers(2**31))
         try:
-            samples = _towed(record, board.coefficients, added_mass, course, seed)
+            samples = towed_samples(record, board.coefficients, added_mass, course, seed)
         except (NoSteadyState, StepFailed):
             rejected['in time'] += 1
             continue
@@ -93,17 +93,41 @@ def draw_tow(
     raise TrawlError(f'none of {MOST_DRAWS} boards that can be towed at rest tows the course')
 
 
-def _towed(
-    record: GearRecord, coefficients: FloatArray, added_mass: float, course: Scenario, seed: int
+def towed_samples(
+    record: GearRecord,
+    coefficients: FloatArray,
+    added_mass: float,
+    course: Scenario,
+    seed: int,
+    heading: float = 0.0,
 ) -> tuple[Sample, ...]:
-    """Samples of a tow; the autotrawl, if there is one, goes by readings as the suite has them."""
+    """Samples of a tow; the autotrawl, if there is one, goes by readings as the suite has them.
+
+    Parameters
+    ----------
+    record
+        The plant.
+    coefficients, added_mass
+        Of its boards: coefficients (12,), and a part of the cylinder of water around a board.
+    course
+        Scenario whose commands are towed, by its instruments.
+    seed
+        Of instruments and sea.
+    heading
+        ENU yaw, rad.
+
+    Raises
+    ------
+    NoSteadyState, StepFailed
+        If it cannot be towed.
+    """
     course = replace(course, record=course.record.model_copy(update={'seed': seed}))
     gear = TowedGear(build_model(record).with_coefficients(coefficients))
     sea = build_sea(course.record.sea, gear.model.water, seed)
     # As often as any instrument looks; the solver steps twice as far.
     period = 1.0 / course.record.truth_rate_hz
     simulation = Simulation(
-        gear.model, course.start, period=period, sea=sea,
+        gear.model, course.start, heading=heading, period=period, sea=sea,
         effect_set=gear.with_added_mass(added_mass),
     )  # fmt: skip
     suite = InstrumentSuite(

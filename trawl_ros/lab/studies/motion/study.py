@@ -13,6 +13,10 @@ from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.lab.studies.identification.kept import KeptTrials, TrialTask
 from trawl_ros.lab.studies.identification.plant import Cut
+from trawl_ros.lab.studies.motion.detectable_rows import detectable_rows
+from trawl_ros.lab.studies.motion.detectable_sizes import DetectableSizes, run_detectable
+from trawl_ros.lab.studies.motion.detectable_tows import STATE_MINUTES, STATES
+from trawl_ros.lab.studies.motion.live import live_chain, live_chain_rows
 from trawl_ros.lab.studies.motion.plant import HELD_OUT
 from trawl_ros.lab.studies.motion.rows import motion_rows
 from trawl_ros.lab.studies.motion.trial import AUTOTRAWLED, MotionTrial, run_motion_trial
@@ -23,7 +27,7 @@ SEED = 47
 
 AROUND = 24
 
-FINER, ALIKE = 'finer', 'alike'
+FINER, ALIKE, DETECTABLE = 'finer', 'alike', 'detectable'
 WORDS = {
     FINER: 'a finer plant',
     ALIKE: 'the model as its own plant',
@@ -48,6 +52,10 @@ class MotionStudyPlan:
         ship that heaves, whose warps an autotrawl holds at equal tension.
     around
         Meshes around the mouth of the model's net.
+    detectable
+        True to ask too how small effects four tows could have shown.
+    live_s
+        So much of the sample trial is played to both nodes in real time; 0 for none.
     """
 
     gear: str = 'kaifuha'
@@ -56,6 +64,8 @@ class MotionStudyPlan:
     alike: int = 0
     autotrawled: int = 0
     around: int = AROUND
+    detectable: bool = False
+    live_s: float = 0.0
 
     def numbers(self) -> dict[str, int]:
         """Number of trials by the name of their series."""
@@ -113,6 +123,12 @@ def run_motion_study(
         for series, words in WORDS.items()
         if plan.numbers()[series]
     ]  # fmt: skip
+    if plan.detectable:
+        sizes = _detectable(plan, folder / DETECTABLE, on_progress, force=force)
+        sections.append(Section('Smallest detectable effects', detectable_rows(sizes)))
+    if plan.live_s:
+        chain = live_chain(plan.live_s, folder / 'log', on_progress)
+        sections.append(Section('In real time', live_chain_rows(chain)))
     page = Page(
         name='motion',
         title='What all of a tow is worth',
@@ -128,9 +144,25 @@ def _tasks(plan: MotionStudyPlan) -> Iterator[TrialTask]:
             yield TrialTask(series, trial, plan.seed, plan.gear, plan.cut(series))
 
 
+def _detectable(
+    plan: MotionStudyPlan, folder: Path, on_progress: OnProgress, *, force: bool
+) -> DetectableSizes:
+    """Sizes that are kept in a folder of their own, as they are no trial."""
+    asked = {**plan.asked(), 'states': STATES, 'minutes': STATE_MINUTES}
+    kept = KeptTrials(folder, asked, DetectableSizes, force=force)
+    task = TrialTask(DETECTABLE, 0, plan.seed, plan.gear, plan.cut(ALIKE))
+    kept.run_missing(run_detectable, [task], on_progress, workers=1)
+    (found,) = kept.series(DETECTABLE)
+    return found
+
+
 def _options(plan: MotionStudyPlan) -> str:
     usual, own = asdict(MotionStudyPlan()), asdict(plan)
-    return ''.join(f' --{key} {own[key]}' for key in own if own[key] != usual[key])
+    others = {key: value for key, value in own.items() if value != usual[key]}
+    return ''.join(
+        f' --{key.replace("_", "-")}' + ('' if value is True else f' {value}')
+        for key, value in others.items()
+    )
 
 
 def _method(plan: MotionStudyPlan) -> str:
@@ -147,5 +179,21 @@ def _method(plan: MotionStudyPlan) -> str:
         f'The model has a net of {plan.around} meshes around its mouth; a finer plant has '
         f'{plan.cut(FINER)}. Both estimates, and the truth, predict {len(HELD_OUT)} steady states '
         'between those of the course, read by instruments with noise and biases as stated. '
+        f'{_of_detectable(plan)}'
         f'On {os.cpu_count()} cores of {cpu_model()}, with {versions}.'
+    )
+
+
+def _of_detectable(plan: MotionStudyPlan) -> str:
+    if not plan.detectable:
+        return ''
+    return (
+        'Of the smallest detectable effects the model is its own plant: four tows of three '
+        f'states, {STATE_MINUTES:g} min each with the hauling that leads to it, two on either '
+        'course, are towed in time and read once. By their windows a size is detectable as '
+        '`trawl diagnose` has it in `smallest_detectable`; by all of them likewise, and by the '
+        'same limit, from derivatives in time by coefficients, effects and all that errs, '
+        'linearised once, with errors as the fit in motion states them, widened, and trends of '
+        "the model's error with length as for windows. No effect is hidden, so that nothing is "
+        'said of its name. '
     )

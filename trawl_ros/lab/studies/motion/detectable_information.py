@@ -1,0 +1,177 @@
+"""Information of tows in motion on the values of effects, with all that errs eliminated.
+
+Errors are those of the fit in motion, as `trawl identify` states them; beside them the model is
+taken to be wrong by what changes with the length of the warps, as a diagnosis of windows takes it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray, IntArray, Slice
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.diagnosis.candidates import Candidate
+from trawl_ros.diagnosis.evidence import Evidence
+from trawl_ros.diagnosis.onset.candidates import WATCHED
+from trawl_ros.diagnosis.onset.towing import WatchedGear
+from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
+from trawl_ros.estimation.bag_motion import WIDENED
+from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
+from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.estimation.motion.information import LinearGroup, joined
+from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, without_errors
+from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
+from trawl_ros.estimation.motion.processes import group_rows
+from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.sizes import LinearData
+from trawl_ros.estimation.motion.towing import (
+    LinearisedTow,
+    TowedGear,
+    TowedPoint,
+    linearise_tow,
+)
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.records.observables import OBSERVABLES
+
+OPTIONS = MotionOptions(widened=WIDENED)
+
+
+@dataclass(frozen=True)
+class ExaminedGear:
+    """Gear in order with the effects of its file, its coefficients (12,) with their prior, and
+    effects that it might have, each with the values about which it is looked for.
+    """
+
+    model: GearModel
+    known: EffectSet
+    coefficients: FloatArray
+    prior: ParameterVector
+    wanted: tuple[Candidate, ...]
+
+    @property
+    def watched(self) -> WatchedGear:
+        """The gear; of the effects that it might have those act that are looked for elsewhere than
+        at neutral values, as a ground without friction at a depth.
+        """
+        acting = self.known
+        for one in self.wanted:
+            if not np.array_equal(one.start, one.effect.neutral):
+                acting = acting.having(ActiveEffect(one.effect, one.start))
+        return WatchedGear(self.model, acting, tuple(one.effect for one in self.wanted))
+
+    @property
+    def units(self) -> FloatArray:
+        """Units (m,) in which values are counted."""
+        return np.concatenate([candidate.scale for candidate in self.wanted])
+
+
+@dataclass(frozen=True)
+class MotionInformation:
+    """Information of tows in motion.
+
+    Attributes
+    ----------
+    evidence
+        On all values of effects, in their units; the score is nought, as of a gear in order.
+    added_mass
+        On the boards' added mass, in `ADDED_MASS_STD`, as if nothing were known of it before.
+    counted_s
+        Time of all stretches that count.
+    """
+
+    evidence: Evidence
+    added_mass: Evidence
+    counted_s: float
+
+
+def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> MotionInformation:
+    """Tow the gear along tows once, with derivatives by all, and eliminate what errs.
+
+    Parameters
+    ----------
+    gear
+        The gear.
+    tows
+        As they are read: which means there are, and their noise; their values do not count.
+
+    Raises
+    ------
+    TrawlError
+        If it cannot be towed along any stretch.
+    """
+    watched, parts, counted = gear.watched, [], 0.0
+    towed = TowedGear(gear.model, watched.acting, examined=watched.moving)
+    for tow in tows:
+        none = np.zeros(len(INPUT_ERRORS)), np.zeros(tow.inputs.number_of_knots)
+        linear = linearise_tow(towed, tow, TowedPoint(gear.coefficients, 0.0, *none))
+        parts.append(_rows(gear, linear, layout_of(tow, towed, OPTIONS.model)))
+        counted += tow.stretch_s * float(np.sum(np.isfinite(linear.residual).any(axis=1)))
+    if not counted:
+        raise TrawlError('the model cannot be towed along any stretch of the tows')
+    layout, number = layout_of(tows[0], towed, OPTIONS.model), len(gear.units)
+    shared = layout.shared + len(GROUPS) + number
+    logs = tuple(log for _, log in parts)
+    data = LinearData(tuple(groups for groups, _ in parts), logs, shared, OPTIONS.times)
+    sizes = OPTIONS.sizes.tempered(OPTIONS.widened)
+    matrix = joined(data.information(sizes), data.precisions(sizes.log), shared).matrix
+    errors, values = np.split(np.arange(shared), [shared - number])
+    mass = np.array([len(gear.prior)])
+    return MotionInformation(
+        _evidence(matrix, values, errors),
+        _evidence(matrix, mass, np.setdiff1d(errors, mass)),
+        counted,
+    )
+
+
+def _rows(
+    gear: ExaminedGear, linear: LinearisedTow, layout: TowLayout
+) -> tuple[tuple[LinearGroup, ...], Slice]:
+    """Rows of a tow, and the place of the log's errors among its parameters: behind those that all
+    tows share come trends of the model's error and values of effects, which are shared too.
+    """
+    usual = columns(linear, layout, gear.prior.std)
+    longer = np.log(_lengths(linear.tow) / USUAL_LENGTH) / np.log(LONGER)
+    trends = longer[:, None, None] * usual[..., layout.of_model]
+    effects = _by_values(gear.watched, linear) * gear.units
+    own, first = (usual, trends, effects), layout.shared
+    every = np.concatenate((own[0][..., :first], *own[1:], own[0][..., first:]), axis=-1)
+    groups = tuple(
+        LinearGroup(rows, every[rows.stretches, rows.channels], np.zeros(len(rows.stretches)))
+        for rows in group_rows(linear.tow, linear.values, linear.tow.noise)
+    )
+    added, log = every.shape[-1] - usual.shape[-1], layout.of_log
+    return groups, slice(log.start + added, log.stop + added)
+
+
+def _lengths(tow: MovingTow) -> FloatArray:
+    """Mean warp length (n,) of stretches, m."""
+    inputs = without_errors(tow.inputs)
+    return np.array([np.mean(inputs(time).inputs[:2]) for time in tow.middles])
+
+
+def _by_values(watched: WatchedGear, linear: LinearisedTow) -> FloatArray:
+    """Derivatives (n, k, m) of means by the values of all effects, on the gear and on sensors."""
+    tow, inputs = linear.tow, without_errors(linear.tow.inputs)
+    rows = [OBSERVABLES.index(name) for name in tow.channels]
+    places = [WATCHED.index(name) for name in tow.channels]
+    number = sum(len(effect.parameters) for effect in watched.effects)
+    found = np.zeros((len(tow), len(rows), number))
+    for stretch in np.flatnonzero(linear.towed):
+        moved = np.zeros((len(OBSERVABLES), linear.by_examined.shape[-1]))
+        shown = np.zeros(len(OBSERVABLES))
+        moved[rows], shown[rows] = linear.by_examined[stretch], linear.values[stretch]
+        at = inputs(float(tow.middles[stretch])).situation
+        found[stretch] = watched.by_values(moved, shown, at)[places]
+    return found
+
+
+def _evidence(matrix: FloatArray, wanted: IntArray, rest: IntArray) -> Evidence:
+    """Evidence on the wanted of all parameters, by information (s, s) on all; the rest have their
+    prior, of std 1, and are eliminated.
+    """
+    across = matrix[np.ix_(rest, wanted)]
+    known = matrix[np.ix_(rest, rest)] + np.eye(len(rest))
+    left = matrix[np.ix_(wanted, wanted)] - across.T @ np.linalg.solve(known, across)
+    return Evidence(left, np.zeros(len(wanted)), np.zeros((0, len(wanted))))
