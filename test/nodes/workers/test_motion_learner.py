@@ -20,7 +20,7 @@ def broken(*_):
 class Live:
     """Stands for the fit, which takes minutes."""
 
-    def __init__(self, gear):
+    def __init__(self, gear, *, net):
         self.recorded, self.why_not = 0, 'the tow has just begun'
         self.feed = lambda sample, windows: None
         self.finish = broken
