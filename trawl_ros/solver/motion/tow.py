@@ -30,11 +30,11 @@ from trawl_ros.solver.motion.slopes import (
 from trawl_ros.solver.motion.start import starting_slopes
 from trawl_ros.solver.motion.stepper import DifferentiatedStepper
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.stepper import (
-    HALVINGS,
-    StepFailed,
-    at_rest,
-)
+from trawl_ros.solver.stepper import StepFailed, at_rest
+
+HALVINGS = 6
+"""Number of halvings of a step that fails. A simulation goes on where more are needed, behind a
+fall of milliseconds; derivatives through that are of no use, and who fits leaves it out."""
 
 
 class DifferentiatedTow:
