@@ -193,11 +193,12 @@ class DiscrepancyNode(TrawlNode):
             self.get_logger().warning(
                 f'finding {finding.number} {finding.state}: {finding.sentence()}'
             )
-        self._send_findings()
         if before is None or before.state != finding.state or before.name != finding.name:
+            # Before it is sent: an operator may answer sooner than a line is written.
             topic = self.resolve_topic_name(FINDINGS)
             heard = {one.node_name for one in self.get_subscriptions_info_by_topic(topic)}
             self._log('published', finding, to=sorted(heard))
+        self._send_findings()
 
     def _send_findings(self) -> None:
         told = [onset_status(one, one.number in self._acknowledged) for one in self._newest_told()]
