@@ -7,6 +7,7 @@ import pytest
 
 from trawl_ros.core.errors import GearError, NoSteadyState
 from trawl_ros.estimation.planning.plan import plan_for
+from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import block_forces, board_loads, forces, linearised
 from trawl_ros.model.gear_model import build_model
@@ -44,6 +45,17 @@ def test_plates_lie_between_ships_and_wings(steady: SteadyState) -> None:
     # The warps run inward, nearly straight from block to plate.
     inward = np.arctan2(0.5 * (200.0 - o.door_spread), WARP)
     assert -o.port_divergence == pytest.approx(inward, rel=0.06)
+
+
+def test_plates_turn_over_where_the_upper_bridle_is_the_heavier_one() -> None:
+    tank = build_model(load_gear('flume_83_112').refined(net=0.4))
+    turned = steady_state(tank, 250.0, 1.2)
+    assert turned.stability.stable
+    assert abs(np.degrees(turned.observables.port_roll)) > 90.0
+    # So does the tow begin.
+    at_start = Simulation(tank, Command(250.0, 250.0, 1.2)).truth()
+    opening = turned.observables.vertical_opening
+    assert at_start.net.vertical_opening == pytest.approx(opening, rel=1e-6)
 
 
 def test_ships_pull_what_water_and_weight_do_not_carry(

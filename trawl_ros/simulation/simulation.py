@@ -16,7 +16,7 @@ from trawl_ros.simulation.reading import read_picture, read_truth
 from trawl_ros.simulation.sea import Sea
 from trawl_ros.simulation.seabed import require_clear
 from trawl_ros.simulation.ship import Ship, Winch
-from trawl_ros.solver.equilibrium import find_equilibrium, require_usable
+from trawl_ros.solver.equilibrium import find_usable
 from trawl_ros.solver.operating_point import OperatingPoint, block_offsets
 from trawl_ros.solver.stepper import HALVINGS, Motion, StepFailed, Stepper, at_rest
 
@@ -120,7 +120,7 @@ class Simulation:
     def _first(self, command: Command, heading: float, stamp: int) -> Instant:
         towed = self._towed(command)
         point = OperatingPoint(towed.port_length, towed.starboard_length, towed.speed, heading)
-        equilibrium = require_usable(self.model, find_equilibrium(self.model, point)).equilibrium
+        equilibrium = find_usable(self.model, point).equilibrium
         return Instant(
             stamp=stamp,
             ship=Ship(np.zeros(3), heading, towed.speed, 0.0),

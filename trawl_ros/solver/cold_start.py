@@ -53,7 +53,7 @@ BOWED_POWER = 2.0 / 3.0
 
 
 def cold_start(
-    model: GearModel, heading: float, tow: Tow, *, lying: bool = False
+    model: GearModel, heading: float, tow: Tow, *, lying: bool = False, turned: bool = False
 ) -> tuple[State, int, float]:
     """Find a steady shape from that of a coarser net or, for the coarsest, from a first guess.
 
@@ -64,6 +64,8 @@ def cold_start(
     lying
         True: boards may lie on their backs. False: the search is given up where they do with bowed
         twine, whose load then takes long to be taken away.
+    turned
+        True: the search begins with plates of a pair turned over.
 
     Returns
     -------
@@ -74,7 +76,7 @@ def cold_start(
     spent = 0
     for harder in HARDER:
         pressure = harder * PRESSURE
-        state, more, residual = _bowed_shape(model, heading, even, pressure)
+        state, more, residual = _bowed_shape(model, heading, even, pressure, turned=turned)
         spent += more
         if residual <= ROUGH:
             break
@@ -100,7 +102,7 @@ def bowed(model: GearModel, pressure: float) -> GearModel:
 
 
 def _bowed_shape(
-    model: GearModel, heading: float, tow: Tow, pressure: float
+    model: GearModel, heading: float, tow: Tow, pressure: float, *, turned: bool
 ) -> tuple[State, int, float]:
     """Shape of the gear with twine that is bowed by this load, Pa."""
     coarse = coarser_model(model)
@@ -109,7 +111,7 @@ def _bowed_shape(
         # Boards keep their attitude until ropes and net have found a shape.
         state, spent, _ = relax(
             loose,
-            first_guess(model, tow, heading),
+            first_guess(model, tow, heading, turned=turned),
             tow,
             tolerance=1000.0,
             time_step=2.0,
@@ -117,7 +119,7 @@ def _bowed_shape(
             limit=120,
         )
     else:
-        state, spent, residual = _bowed_shape(coarse, heading, tow, pressure)
+        state, spent, residual = _bowed_shape(coarse, heading, tow, pressure, turned=turned)
         if residual > ROUGH:
             return state, spent, residual
         state = carried_over(coarse, state, model)

@@ -79,9 +79,11 @@ def find_equilibrium(
     *,
     near: State | None = None,
     cold: bool = True,
+    turned: bool = False,
 ) -> Equilibrium:
     """Find the root at an operating point: warm from ``start``, from the shape ``near``
-    at this very point, or cold; where a root to start from is of no use, only if ``cold``.
+    at this very point, or cold; where a root to start from is of no use, only if ``cold``. A cold
+    start begins with plates of a pair ``turned`` over, or on edge.
 
     Raises
     ------
@@ -97,7 +99,9 @@ def find_equilibrium(
     elif start is not None:
         state, iterations, residual = _from_known(model, start, tow)
     if (near is None and start is None) or (cold and residual > TOLERANCE):
-        state, iterations, residual = cold_start(model, point.heading, tow, lying=near is not None)
+        state, iterations, residual = cold_start(
+            model, point.heading, tow, lying=near is not None, turned=turned
+        )
     where = _where(point)
     if residual > TOLERANCE and cold and near is None:
         known = None if start is None else (start.point, start.state)
@@ -240,13 +244,34 @@ def steady_state(
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
     model, point = with_effects(model, (port, starboard), speed, heading)
+    return find_usable(model, point, start, near)
+
+
+def find_usable(
+    model: GearModel,
+    point: OperatingPoint,
+    start: Equilibrium | None = None,
+    near: State | None = None,
+) -> SteadyState:
+    """Find the root that meets the conditions of `steady_state`, from where `find_equilibrium` may.
+
+    Raises
+    ------
+    NoSteadyState
+        As `steady_state` does.
+    """
     found = find_equilibrium(model, point, start, near=near)
     try:
         return require_usable(model, found)
     except NoSteadyState as refusal:
         if not (model.paired and refusal.reason == 'unstable'):
             raise
-        # Plates between two backstrops that meet again balance on edge and lying, stable in one.
+        # Plates between two backstrops that meet again balance on edge and lying, stable in one;
+        # where the upper bridle is the heavier one, they turn over.
+        try:
+            return require_usable(model, find_equilibrium(model, point, turned=True))
+        except NoSteadyState:
+            pass
         try:
             return require_usable(model, find_equilibrium(model, point, near=_rolled(found.state)))
         except NoSteadyState:

@@ -30,8 +30,11 @@ NEIGHBOURS = 12
 """Nodes of the coarser net that say where one of the finer net lies."""
 
 
-def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
-    """First guess: straight warps, boards at a usual attitude, the net as built behind them."""
+def first_guess(model: GearModel, tow: Tow, heading: float, *, turned: bool = False) -> State:
+    """First guess: straight warps, boards at a usual attitude, the net as built behind them.
+
+    Plates of a pair are on edge, or ``turned`` over.
+    """
     lengths = tow.lengths
     half = 0.5 * model.gear.block_distance
     depth = DEPTH_SHARE * lengths
@@ -48,7 +51,7 @@ def first_guess(model: GearModel, tow: Tow, heading: float) -> State:
                 'ships closer together or more warp'
             )
         reach = -share * lengths
-        attack, lean = float(np.arctan2(-reach.mean(), lengths.mean())), 0.0
+        attack, lean = float(np.arctan2(-reach.mean(), lengths.mean())), np.pi * turned
     boards = np.stack(
         [-np.sqrt(lengths**2 - depth**2 - reach**2), (half + reach) * OUTWARD, -depth], 1
     )
