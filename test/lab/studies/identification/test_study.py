@@ -11,8 +11,9 @@ from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.running.live_nodes import LiveNodes
 from trawl_ros.lab.studies.identification.bound import ROWS, _covariance, information
-from trawl_ros.lab.studies.identification.costs import Live, Replay, live_rows, replay_rows
+from trawl_ros.lab.studies.identification.costs import NODE, Replay, live_rows, replay_rows
 from trawl_ros.lab.studies.identification.kept import FILE, KeptTrials
 from trawl_ros.lab.studies.identification.plant import Cut, Look
 from trawl_ros.lab.studies.identification.readings import (
@@ -187,9 +188,9 @@ def test_costs_are_held_against_what_is_asked():
     motion = Replay(3600.0, 119.0, 120.0), Replay(3600.0, 121.0, 122.0)
     assert [row.ok for row in replay_rows(Replay(3600.0, 17.0, 18.0), motion[0])] == [True, True]
     assert [row.ok for row in replay_rows(Replay(3600.0, 19.0, 18.0), motion[1])] == [False, False]
-    late, share = live_rows(Live((0.2, 1.4), 12.0, 600.0))
+    late, share = live_rows(LiveNodes({NODE: 12.0}, (0.2, 1.4), (), 2, 600.0))
     assert (late.value, late.ok, share.ok) == (1.4, False, True)
-    assert not live_rows(Live((), math.nan, 0.0))[0].ok
+    assert not live_rows(LiveNodes({NODE: math.nan}, (), (), 0, 0.0))[0].ok
 
 
 @pytest.mark.slow

@@ -6,23 +6,19 @@ import resource
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-import psutil
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.core.errors import RosMissing, TrawlError
-from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
-from trawl_ros.lab.running.own_graph import own_graph
-from trawl_ros.lab.running.processes import Processes
+from trawl_ros.lab.running.live_nodes import BAG, LiveNodes
 from trawl_ros.nodes.playback.excerpt import Excerpt
 
 REPLAY_S = 3600.0
@@ -35,9 +31,7 @@ LIVE_S = 990.0
 LATEST_S = 1.0
 MOST_OF_CORE = 20.0
 
-LOOK_S = 0.5
 NODE = 'identification_node'
-PLAYER = 'bag_player'
 
 IDENTIFY = 'import sys; from trawl_ros.cli.main import main; sys.exit(main())'
 
@@ -68,7 +62,7 @@ def replay(seconds: float = REPLAY_S, *, motion: bool = False) -> Replay:
     """
     with TemporaryDirectory() as name:
         folder = Path(name)
-        recorded_s = _cut(share_path('bags', 'sea_trial'), folder / 'bag', seconds)
+        recorded_s = _cut(share_path('bags', BAG), folder / 'bag', seconds)
         before, began = _children_s(), time.monotonic()
         done = subprocess.run(
             [
@@ -106,75 +100,7 @@ def replay_rows(steady: Replay, motion: Replay) -> list[MeasuredValue]:
     ]
 
 
-@dataclass(frozen=True)
-class Live:
-    """Live run of the node: delays (s) from a window's end to its estimate, and its share of a
-    core (%), by the processor time of the whole process after its start.
-    """
-
-    delays_s: tuple[float, ...]
-    share: float
-    wall_s: float
-
-
-def live(
-    seconds: float,
-    logs: Path,
-    on_progress: OnProgress,
-    stop: Callable[[], bool] = lambda: False,
-) -> Live:
-    """Play the beginning of the sample trial in real time to the node.
-
-    Parameters
-    ----------
-    seconds
-        Length of the stretch.
-    logs
-        Takes what the nodes say.
-    on_progress
-        Called now and then with the wall time (s) that has passed.
-    stop
-        Asked now and then whether to end early.
-
-    Raises
-    ------
-    TrawlError
-        If there is no ROS 2.
-    NodeFailed
-        If a node ends by itself, or cannot end cleanly.
-    """
-    try:
-        from trawl_ros.lab.running.estimate_monitor import EstimateMonitor
-    except ImportError as reason:
-        raise RosMissing('the node', reason) from reason
-    bag = str(share_path('bags', 'sea_trial'))
-    with (
-        own_graph(logs) as environment,
-        Processes(logs, environment) as processes,
-        EstimateMonitor(environment) as monitor,
-    ):
-        processes.start(NODE, use_sim_time=True)
-        processes.start(PLAYER, bag=bag, end=seconds, publish_clock=True, wait_for=[NODE])
-        node = psutil.Process(processes.pids()[NODE])
-        began: tuple[float, float] | None = None
-        cpu_s = 0.0
-        while not stop() and not processes.finished(PLAYER):
-            time.sleep(LOOK_S)
-            times = node.cpu_times()
-            now, cpu_s = time.monotonic(), times.user + times.system
-            if monitor.playing:
-                began = began or (now, cpu_s)
-                detail = f'{monitor.windows} windows'
-                passed_s = now - began[0]
-                on_progress(WorkProgress('node in real time', passed_s, seconds, 's', detail))
-        wall_s = time.monotonic() - began[0] if began else 0.0
-        share = 100.0 * (cpu_s - began[1]) / wall_s if began and wall_s else math.nan
-        delays = monitor.delays_s()
-        processes.stop(*(name for name in (PLAYER, NODE) if name in processes.pids()))
-    return Live(tuple(delays), share, wall_s)
-
-
-def live_rows(found: Live) -> list[MeasuredValue]:
+def live_rows(found: LiveNodes) -> list[MeasuredValue]:
     """Delay of estimates, and the node's share of a core."""
     delays = np.array(found.delays_s)
     there = len(delays) > 0
@@ -190,7 +116,7 @@ def live_rows(found: Live) -> list[MeasuredValue]:
         ),
         MeasuredValue(
             'node in real time: share of a core',
-            found.share,
+            found.shares[NODE],
             '%',
             at_most(MOST_OF_CORE),
             f'mean over {found.wall_s / 60.0:.1f} min of the sample trial',

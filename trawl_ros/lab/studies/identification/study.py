@@ -11,7 +11,14 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore, step_count
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.page import Section
-from trawl_ros.lab.studies.identification.costs import LIVE_S, live, live_rows, replay, replay_rows
+from trawl_ros.lab.running.live_nodes import live_nodes
+from trawl_ros.lab.studies.identification.costs import (
+    LIVE_S,
+    NODE,
+    live_rows,
+    replay,
+    replay_rows,
+)
 from trawl_ros.lab.studies.identification.figure import trials_figure
 from trawl_ros.lab.studies.identification.kept import KeptTrials
 from trawl_ros.lab.studies.identification.knowledge import model_error_rows, planning_rows
@@ -151,7 +158,7 @@ def run_study(
         on_progress(WorkProgress('replay'))
         costs = replay_rows(replay(), replay(motion=True))
         if plan.live_s > 0.0:
-            costs += live_rows(live(plan.live_s, folder / 'log', on_progress))
+            costs += live_rows(live_nodes({NODE: {}}, plan.live_s, folder / 'log', on_progress))
         sections.append(Section('Cost', costs))
     return StudyResult(tuple(sections), trials_figure(coverage, bound, prior))
 

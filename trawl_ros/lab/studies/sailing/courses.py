@@ -22,7 +22,7 @@ from trawl_ros.lab.studies.identification.plant import Look
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.equilibrium import find_equilibrium, require_usable
+from trawl_ros.solver.equilibrium import Equilibrium, find_usable
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
 
@@ -60,6 +60,7 @@ class Sea:
         self._model = build_model(gear).with_coefficients(coefficients)
         self._seed = list(seed)
         self._looks: dict[Manoeuvre, TowedLook | None] = {}
+        self._found: dict[Manoeuvre, Equilibrium] = {}
         self._number = WindowOptions().max_windows_per_state
 
     def look(self, manoeuvre: Manoeuvre) -> TowedLook | None:
@@ -70,11 +71,15 @@ class Sea:
 
     def _towed(self, manoeuvre: Manoeuvre) -> TowedLook | None:
         lengths = manoeuvre.port_length, manoeuvre.starboard_length
+        # As a plan and an adviser look it up: some are found from a neighbour alone.
+        near = min(self._found, key=manoeuvre.distance, default=None)
+        start = None if near is None else self._found[near]
         try:
-            steady = find_equilibrium(self._model, OperatingPoint(*lengths, manoeuvre.speed))
-            require_usable(self._model, steady)
+            point = OperatingPoint(*lengths, manoeuvre.speed)
+            steady = find_usable(self._model, point, start).equilibrium
         except NoSteadyState:
             return None
+        self._found[manoeuvre] = steady
         jacobian = sensitivities(self._model, steady)
         state = manoeuvre.length, manoeuvre.speed
         values = steady.observables.array()
