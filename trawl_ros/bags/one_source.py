@@ -6,13 +6,13 @@ to and fro between two courses at every reading, or give readings on a second co
 instead of, those that its rate asks for.
 """
 
-from collections import deque
-from itertools import pairwise
+from array import array
+from collections.abc import Sequence
 from statistics import median
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, StampArray
 from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
@@ -65,7 +65,8 @@ class SourceWatch:
     """Watch for a second source among the readings of one topic, as they come."""
 
     def __init__(self) -> None:
-        self._readings: deque[tuple[int, int, tuple[float, ...]]] = deque(maxlen=MEMORY)
+        # Numbers side by side, for there are as many of these as messages.
+        self._channels, self._stamps, self._values = array('q'), array('q'), array('d')
         self._count = 0
         self._why = ''
 
@@ -82,70 +83,104 @@ class SourceWatch:
         values = _values(sample)
         if values is None:
             return ''
-        self._readings.append((channel, sample.stamp, values))
+        self._channels.append(channel)
+        self._stamps.append(sample.stamp)
+        self._values.extend(values)
         self._count += 1
         if self._count % (BLOCK // 2) == 0:
+            del self._channels[:-MEMORY], self._stamps[:-MEMORY]
+            del self._values[: -MEMORY * len(values)]
             self._why = self._judge()
         return self._why
 
     def _judge(self) -> str:
-        readings = list(self._readings)
-        channels, stamps, values = zip(*readings[-BLOCK:], strict=True)
-        pairs = list(zip(stamps, stamps[1:], values, values[1:], strict=False))
-        met: set[int] = set()
-        returns = 0
-        for before, channel in zip((None, *channels), channels, strict=False):
-            returns += channel != before and channel in met
-            met.add(channel)
-        if returns >= RETURNS:
-            return f'it comes by turns from {len(met)} channels'
-        twice = sum(first == second and this != that for first, second, this, that in pairs)
-        if twice >= SHARE * BLOCK:
-            return f'{twice} of {len(stamps)} stamps come twice, with two readings'
-        back = sum(second < first for first, second, _, _ in pairs)
-        if back >= SHARE * BLOCK:
-            return f'{back} of {len(stamps)} stamps go back in time'
-        near = median(second - first for first, second, _, _ in pairs) <= LONGEST_STEP
-        if near and len(stamps) == BLOCK and any(map(_alternates, zip(*values, strict=True))):
-            return f'{len(stamps)} readings jump to and fro between two courses'
-        if visits := _visits(readings):
+        stamps = np.array(self._stamps)
+        readings = np.array(self._values).reshape(len(stamps), -1)
+        channels = self._channels[-BLOCK:]
+        if channels.count(channels[0]) < len(channels) and (why := _by_turns(channels)):
+            return why
+        steps, values = np.diff(stamps[-BLOCK:]), readings[-BLOCK:]
+        number = len(values)
+        if (least := steps.min()) <= 0:
+            again = ~np.all((values[1:] == values[:-1]) | np.isnan(values[1:]), axis=1)
+            twice = int(np.count_nonzero((steps == 0) & again))
+            if twice >= SHARE * BLOCK:
+                return f'{twice} of {number} stamps come twice, with two readings'
+            back = int(np.count_nonzero(steps < 0))
+            if back >= SHARE * BLOCK:
+                return f'{back} of {number} stamps go back in time'
+        near = least <= LONGEST_STEP and median(steps.tolist()) <= LONGEST_STEP
+        if near and number == BLOCK and _alternates(values):
+            return f'{number} readings jump to and fro between two courses'
+        if visits := _visits(stamps, readings):
             return f'{visits} of {len(readings)} readings lie on a second course beside the first'
         return ''
 
 
-def _alternates(values: tuple[float, ...]) -> bool:
-    steps = [after - before for before, after in pairwise(values)]
-    turns = sum(first * second < 0 for first, second in pairwise(steps))
-    if turns < ALTERNATING * (len(steps) - 1):
-        return False
-    beyond = [abs(after - before) for before, after in zip(values, values[2:], strict=False)]
-    return median(map(abs, steps)) > JUMP * median(beyond)
+def _by_turns(channels: Sequence[int]) -> str:
+    """Tell that readings come from channels (n,) by turns; '' if they do not."""
+    met: set[int] = set()
+    returns = 0
+    for before, channel in zip((None, *channels), channels, strict=False):
+        returns += channel != before and channel in met
+        met.add(channel)
+    return f'it comes by turns from {len(met)} channels' if returns >= RETURNS else ''
 
 
-def _visits(readings: list[tuple[int, int, tuple[float, ...]]]) -> int:
+def _alternates(values: FloatArray) -> bool:
+    """True if any course of some values (n, k) jumps to and fro."""
+    with np.errstate(over='ignore', invalid='ignore'):
+        steps = np.diff(values, axis=0)
+        turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0, axis=0)
+        for course in np.flatnonzero(turns >= ALTERNATING * (len(steps) - 1)):
+            beyond = abs(values[2:, course] - values[:-2, course])
+            if median(abs(steps[:, course]).tolist()) > JUMP * median(beyond.tolist()):
+                return True
+    return False
+
+
+def _visits(stamps: StampArray, readings: FloatArray) -> int:
     """Count the readings of a slower source between those of a faster one; 0 without one."""
-    stamps = np.array([stamp for _, stamp, _ in readings])
-    courses = np.array([values for _, _, values in readings]).T
-    if np.any(np.diff(stamps) < 0):
+    if np.any(stamps[1:] < stamps[:-1]):
         order = np.argsort(stamps, kind='stable')
-        stamps, courses = stamps[order], courses[:, order]
+        stamps, readings = stamps[order], readings[order]
     times = (stamps - stamps[0]).astype(float)
     # Values beyond any instrument are refused elsewhere.
     with np.errstate(over='ignore', invalid='ignore'):
-        return max(_beside(times, sign * course) for course in courses for sign in (1.0, -1.0))
+        finite = np.isfinite(readings)
+        if finite.all():
+            return _beside(times, readings)
+        courses = zip(readings.T, finite.T, strict=True)
+        return max(_beside(times[there], one[there, None]) for one, there in courses)
 
 
 def _beside(times: FloatArray, values: FloatArray) -> int:
-    """Count the readings that stand out upward (n,), if they are a source of their own; else 0."""
-    finite = np.isfinite(values)
-    times, values = times[finite], values[finite]
+    """Count the readings (n,) on courses (n, k) that stand out from one, upward or downward, if
+    they are a source of their own; else 0.
+    """
     if len(values) < 2 * VISITS:
         return 0
     out = _departures(values)
-    chosen = out > np.maximum(abs(values[2:] - values[:-2]), np.sort(out)[-VISITS] / 2.0)
-    if np.count_nonzero(chosen) < VISITS or not _alike(out[chosen]):
-        return 0
+    waves = abs(values[2:] - values[:-2])
+    ordered = np.sort(out, axis=0)
+    up = out > np.maximum(waves, ordered[-VISITS] / 2.0)
+    down = -out > np.maximum(waves, -ordered[VISITS - 1] / 2.0)
+    most = 0
+    for sign, every in ((1.0, up), (-1.0, down)):
+        for course in np.flatnonzero(np.count_nonzero(every, axis=0) >= VISITS):
+            most = max(most, _on_second(times, sign * values[:, course], every[:, course]))
+    return most
+
+
+def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
+    """Count the ``chosen`` (n - 2,) of the inner ones of values (n,), if they are a source of their
+    own; else 0.
+    """
+    # What stands out of noise comes at any time.
     if not _alike(np.diff(times[1:-1][chosen])):
+        return 0
+    out = _departures(values)
+    if not _alike(out[chosen]):
         return 0
     # Of the others, each with the number of chosen ones before it.
     others = np.concatenate(([True], ~chosen, [True]))
@@ -160,15 +195,16 @@ def _beside(times: FloatArray, values: FloatArray) -> int:
 
 
 def _departures(values: FloatArray) -> FloatArray:
-    """Return by how much values (n,) depart from the mean of their neighbours (n - 2,)."""
+    """Return by how much values (n, ...) depart from the mean of their neighbours (n - 2, ...)."""
     return values[1:-1] - (values[:-2] + values[2:]) / 2.0
 
 
 def _alike(sizes: FloatArray) -> bool:
     """True if most of some sizes (n,) deviate little."""
     # Of some ten numbers, which arrays take longer to sort.
-    middle = float(median(sizes.tolist()))
-    return middle > 0.0 and float(median(abs(sizes - middle).tolist())) <= SPREAD * middle
+    each = sizes.tolist()
+    middle = float(median(each))
+    return middle > 0.0 and median([abs(size - middle) for size in each]) <= SPREAD * middle
 
 
 def _values(sample: Sample) -> tuple[float, ...] | None:

@@ -18,6 +18,8 @@ from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 
 TopicMessage = tuple[str, Any]
 
+_IN_ORDER = list(WINCH_NAMES)
+
 UNKNOWN_VARIANCE = 1e6
 """rad² or m²: so large that every consumer reads it as 'not measured'."""
 
@@ -111,6 +113,10 @@ def joint_column(topic: str, joint_state: Any, field: str) -> dict[str, float]:
 
 def winch_columns(topic: str, message: Any) -> list[tuple[float, float]]:
     """Read lengths, speeds and tensions, each of port and starboard, from a JointState."""
+    read = (message.position, message.velocity, message.effort)
+    if message.name == _IN_ORDER and all(len(values) == len(_IN_ORDER) for values in read):
+        # As nearly all are: a tow has thousands of them.
+        return [(float(port), float(starboard)) for port, starboard in read]
     missing = [name for name in WINCH_NAMES if name not in message.name]
     if missing:
         raise MessageError(
