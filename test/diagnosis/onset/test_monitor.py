@@ -7,7 +7,8 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.diagnosis.onset.monitor import BEFORE, OnsetMonitor
+from trawl_ros.diagnosis.onset.stretches import StretchCutter
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
@@ -66,3 +67,10 @@ def test_a_gear_that_the_model_cannot_tow_is_told(monitor, onset_samples):
         assert monitor.feed(replace(sample, lengths=(20.0, 20.0)) if short else sample) == []
     assert monitor.watched == 0
     assert monitor.why_not
+
+
+def test_a_model_begun_anew_is_towed_along_what_is_looked_at_before(onset_samples):
+    """It begins in an equilibrium, and so nothing may have moved in its first stretch."""
+    cutter = StretchCutter(lambda pressure: pressure)
+    *_, last = (one for sample in onset_samples(8) for one in cutter.feed(sample))
+    assert last.place == BEFORE + 1

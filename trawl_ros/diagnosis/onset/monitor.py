@@ -35,9 +35,9 @@ LEARNING, REST, AT_REST = 20, 4, 5.0
 """Stretches in which the watch begins anew with what is linearised anew; stretches between two such
 changes; rarity beyond which none is made, for something may have begun."""
 
-BEFORE, QUIET = FEWEST + 1, 8
-"""Stretches before the newest from which the model is towed, and those before these in which
-nothing may have moved."""
+BEFORE, QUIET = FEWEST - 1, 8
+"""Stretches up to the newest, behind the first that a model begun anew with the next is towed
+along; and the last of those before, that first among them, in which nothing may have moved."""
 
 WHITE_LIMIT, MARGIN = 6.33, 1.42
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
@@ -259,7 +259,13 @@ class OnsetMonitor:
         if rarest > AT_REST and not self._learns_from_afar(towed):
             return False
         # The model would begin in an equilibrium while the gear was on its way to one.
-        return not any(list(watch.moved)[:-BEFORE]) and self._far(towed)
+        rests = not any(list(watch.moved)[:-BEFORE])
+        return self._far(towed) and (rests or not self._may_begin_anew)
+
+    @property
+    def _may_begin_anew(self) -> bool:
+        watch = self._watch
+        return watch.learned + watch.since <= LEARNING and not watch.absorbed
 
     def _learns_from_afar(self, towed: TowedStretch | None) -> bool:
         """True in the first minutes while derivatives are of boards far from those learned."""
@@ -278,15 +284,15 @@ class OnsetMonitor:
         """Tow anew with the coefficients as they were learned."""
         assert watch.filter is not None
         learned = watch.filter.coefficients
-        watch.learned += watch.since
-        if watch.learned <= LEARNING and not watch.absorbed:
+        if self._may_begin_anew:
             # Estimates of all else came with derivatives from far off.
             watch.filter = watch.responses = None
             watch.bank.forget()
+            watch.model.begin_anew(learned)
         else:
             watch.filter.doubt(learned - watch.model.coefficients)
-        watch.since = 0
-        watch.model.begin_anew(learned)
+            watch.model.go_on_with(learned)
+        watch.learned, watch.since = watch.learned + watch.since, 0
 
     def _tell(
         self, last: LastStretch, means: FloatArray, towed: TowedStretch | None,

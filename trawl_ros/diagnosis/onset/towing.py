@@ -174,11 +174,15 @@ class ModelTow:
         """Warp lengths (m) and speed (m/s) of the equilibrium that the motion began in."""
         return None if self._motion is None else self._began
 
-    def begin_anew(self, coefficients: FloatArray | None = None) -> None:
-        """Begin in an equilibrium with the next stretch, by other coefficients where given."""
-        self._motion = None
-        if coefficients is not None:
-            self.coefficients = coefficients
+    def begin_anew(self, coefficients: FloatArray) -> None:
+        """Begin in an equilibrium with the next stretch, by other coefficients."""
+        self._motion, self.coefficients = None, coefficients
+
+    def go_on_with(self, coefficients: FloatArray) -> None:
+        """Go on by other coefficients without beginning anew: the gear may be on its way."""
+        if self._motion is not None:
+            self._motion.go_on_with(coefficients)
+        self.coefficients = coefficients
 
     def advance(self, last: LastStretch) -> TowedStretch | str:
         """Tow along a stretch.
@@ -229,7 +233,6 @@ class ModelTow:
         for _ in range(last.place * last.tow.steps):
             self._motion.advance(last.tow.step_s)
         self._require_upright()
-        self._sound = self.coefficients
 
     def _require_upright(self) -> None:
         assert self._motion is not None
@@ -248,6 +251,7 @@ class ModelTow:
         self._require_upright()
         if np.max(motion.motion.state.nodes[:, 2]) > HIGHEST_M:
             raise _NotPredicted('the gear of the model breaks the surface', ends=False)
+        self._sound = self.coefficients
         # Channels without a reading in this stretch take the plain mean; nothing is compared.
         weights = np.full((len(OBSERVABLES), tow.steps + 1), 1.0 / (tow.steps + 1))
         for name, own in zip(tow.channels, tow.weights[place], strict=True):
