@@ -53,6 +53,18 @@ def test_a_warm_start_finds_the_root_that_a_cold_one_finds(
     assert apart(find_equilibrium(model, point, known), find_equilibrium(model, point)) < SAME
 
 
+@pytest.mark.parametrize('length', [200.0, 725.0, 1000.0])
+def test_far_changes_of_the_warps_are_leapt_over(
+    model: GearModel, known: Equilibrium, monkeypatch: pytest.MonkeyPatch, length: float
+) -> None:
+    point = OperatingPoint(length, length, 2.1)
+    cold = find_equilibrium(model, point)
+    monkeypatch.setattr(
+        'trawl_ros.solver.equilibrium.relax', lambda *_, **__: pytest.fail('drifts')
+    )
+    assert apart(find_equilibrium(model, point, known, cold=False), cold) < SAME
+
+
 def test_another_board_is_reached_along_the_tangent(model: GearModel, known: Equilibrium) -> None:
     coefficients = model.coefficients * 1.02
     other = model.with_coefficients(coefficients)

@@ -34,8 +34,9 @@ from trawl_ros.solver.stability import Stability, stability
 from trawl_ros.solver.warm_start import Tangent, warm_start_in_parts
 
 FAR = 0.3
-"""Part of the warps' length from which a change is drifted through rather than leapt over, which
-takes longer. Where the one way fails, the other still is quicker than a cold start."""
+"""Part of the warps' length from which a change that Newton's method does not make is drifted
+through rather than leapt over, which takes longer. Where the one way fails, the other still is
+quicker than a cold start."""
 
 
 @dataclass(frozen=True)
@@ -145,13 +146,12 @@ def find_equilibrium(
 def _from_known(model: GearModel, start: Equilibrium, tow: Tow) -> tuple[State, int, float]:
     """Search from a known equilibrium: along its tangent, or from it moved along its warps."""
     iterations = 0
-    far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR)
-    known = start.state, start.tow, tow, start.tangent
-    if not far and (found := warm_start_in_parts(model, *known)):
+    if found := warm_start_in_parts(model, start.state, start.tow, tow, start.tangent):
         state, iterations, residual = found
         if residual <= TOLERANCE:
             return found
     here = shifted_to(model, start.state, start.tow, tow)
+    far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR)
     ways = (WARM_TIME_STEP, WARM_LIMIT), (DRIFT_TIME_STEP, DRIFT_LIMIT)
     for time_step, limit in ways[::-1] if far else ways:
         state, more, residual = relax(
