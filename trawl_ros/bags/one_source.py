@@ -176,7 +176,7 @@ def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
     """Count the ``chosen`` (n - 2,) of the inner ones of values (n,), if they are a source of their
     own; else 0.
     """
-    # What stands out of noise comes at any time.
+    # Values that stand out of noise come at any time.
     if not _alike(np.diff(times[1:-1][chosen])):
         return 0
     out = _departures(values)

@@ -222,12 +222,13 @@ def test_of_two_effects_both_count_and_one_is_told_apart():
     pairs = [
         scored('NAMED', ['heave', 'net_drag'], hidden=hidden, series='pair'),
         scored('NAMED', ['heave'], hidden=hidden, series='pair'),
-        scored('NAMED', ['speed_log'], hidden=hidden, series='pair'),
+        scored('NAMED', ['kite'], hidden=hidden, series='pair'),
         scored('AMBIGUOUS', ['heave'], hidden=hidden, series='pair', ambiguous=['net_drag']),
     ]
     assert [row.value for row in pair_rows(pairs, ALONE)[:2]] == [25.0, 25.0]
     assert [kind_of(trial, ALONE) for trial in pairs] == [
-        'right name', 'one of two', 'wrong name', 'several names, the right one among them',
+        'right name', 'a part of what is hidden', 'wrong name',
+        'several names, the right one among them',
     ]  # fmt: skip
     beside = scored('NAMED', ['catch_build_up', 'heave'])
     assert kind_of(beside, ALONE) == 'right name and another beside it'
@@ -244,6 +245,9 @@ def test_of_three_effects_two_are_to_be_found_and_no_other():
     rows = pair_rows(triples, ALONE)
     assert value(rows, 'two of three effects at least, and no other, at 3 times').value == 50.0
     assert value(rows, 'anything else named where three are hidden').value == 25.0
+    assert [kind_of(trial, ALONE) for trial in triples] == [
+        'right name', 'a part of what is hidden', 'a part of what is hidden', 'wrong name',
+    ]  # fmt: skip
 
 
 def test_a_repair_that_makes_a_channel_worse_is_counted():

@@ -10,16 +10,14 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import (
     Classes,
-    both_named,
     chosen,
     hidden_names,
-    named_right,
     names_of,
-    one_named,
     reported,
     right,
     said_of,
     verdict_word,
+    wrong_named,
 )
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
 from trawl_ros.report import style
@@ -32,7 +30,7 @@ KINDS = {
     'no discrepancy seen': '#dfe3e6',
     'UNKNOWN': '#8a9399',
     'NOT_TESTABLE': '#b9c2d0',
-    'one of two': '#c9e4a5',
+    'a part of what is hidden': '#c9e4a5',
     'several names, all wrong': '#f3b98b',
     'wrong name': '#c8412b',
 }
@@ -59,12 +57,12 @@ def kind_of(trial: Scored, classes: Classes) -> str:
     if answer in ('UNKNOWN', 'NOT_TESTABLE'):
         return answer
     if answer == 'NAMED':
-        if both_named(trial, classes) or (hidden_names(trial) and named_right(trial, classes)):
-            return 'right name'
-        if one_named(trial, classes):
-            return 'one of two'
-        if hidden_names(trial) and right(trial, names_of(trial), classes):
-            return 'right name and another beside it'
+        hidden, named = hidden_names(trial), said_of(trial)['effects']
+        stray = wrong_named(trial, classes) or len(named) > len(hidden)
+        if hidden and right(trial, names_of(trial), classes):
+            return 'right name and another beside it' if stray else 'right name'
+        if not stray:
+            return 'a part of what is hidden'
         among = bool(hidden_names(trial)) and right(trial, reported(trial), classes)
         return 'several names, the right one among them' if among else 'wrong name'
     if answer == 'AMBIGUOUS':
@@ -113,7 +111,7 @@ def _draw_verdicts(axes: Axes, trials: Sequence[Scored], classes: Classes) -> No
         axes.barh(at, shares[kind], left=left, color=colour, label=kind, height=0.7)
         left += shares[kind]
     labels = [
-        f'{words}\n{len(chosen(trials, series, strength))} trials'
+        f'{words}: {len(chosen(trials, series, strength))} trials'
         for series, strength, words in there
     ]
     axes.set_yticks(at, labels)
