@@ -9,12 +9,16 @@ import numpy as np
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import FINEST_S, HaulManoeuvre, haul_of
+from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.timing import timed
+from trawl_ros.model.assembly import linearised
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver.motion.course import InputPoint
+from trawl_ros.solver.linear.factor import Factor, factorised
+from trawl_ros.solver.motion.course import InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.motion.partials import effect_pushes, pushes
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
 STEP_S = 0.2
@@ -29,6 +33,16 @@ TWENTY = MotionParameters(
 """Twelve coefficients, drag and weight of the net, added mass, errors of counters and log."""
 
 MEMORY_RATIO = 1.05
+
+PARTS: dict[str, Part] = {
+    'factorisations': factorised,
+    'solutions': Factor.solve,
+    'derivatives of the forces': linearised,
+    'forces by parameters': pushes,
+    'forces by effects': effect_pushes,
+    'boundary and its derivatives': course_point,
+}
+"""Functions that a step with derivatives is made of."""
 
 NONE = MotionParameters(coefficients=False)
 
@@ -58,6 +72,8 @@ def measure(small: bool) -> Findings:
         for number, parameters in enumerate((NONE, TWENTY)):
             tow = DifferentiatedTow(model, parameters, inputs)
             times[number, repeat] = [_step_s(tow) for _ in range(steps)]
+    tow = DifferentiatedTow(model, TWENTY, inputs)
+    taken = shares(lambda: [_step_s(tow) for _ in range(steps)], PARTS)
     # Other programs lengthen some steps of some repeats, never all of one step.
     alone, along = 1e3 * times.min(axis=1).mean(axis=1)
     return Findings(
@@ -68,7 +84,7 @@ def measure(small: bool) -> Findings:
                 'ms',
                 at_most(STEP_MS),
                 f'mean of {steps} steps of hauling, each the least of {repeats}; of state and '
-                f'observables; {model.dof} degrees of freedom',
+                f'observables; {model.dof} degrees of freedom; {taken}',
             ),
             MeasuredValue('the same step without derivatives', alone, 'ms'),
             MeasuredValue(

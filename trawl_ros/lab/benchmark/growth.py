@@ -32,7 +32,8 @@ STEP_S = 0.2
 @dataclass(frozen=True)
 class GrowthSize:
     """One refinement: its ``nodes`` in the net, and CPU times (s) of a time step, a steady
-    state from a known one 20 m of warp away, and one factorisation with its solution.
+    state from a known one 20 m of warp away, found in so many ``iterations``, and one factorisation
+    with its solution.
     ``factor_mb`` is the size of the factors, ``peak_mb`` the most that the process ever held.
     """
 
@@ -40,6 +41,7 @@ class GrowthSize:
     nodes: int
     step_s: float
     warm_s: float
+    iterations: int
     factor_s: float
     factor_mb: float
     peak_mb: float
@@ -65,6 +67,10 @@ def measure(small: bool) -> Findings:
     step_there = exponent([s.nodes for s in upper], [s.step_s for s in upper])
     warm_there = exponent([s.nodes for s in upper], [s.warm_s for s in upper])
     linear_there = exponent([s.nodes for s in upper], [s.factor_s for s in upper])
+    slower = (
+        f'there one factorisation with its solution has {linear_there:.2f}, and '
+        'that of a sheet by nested dissection tends to 1.5'
+    )
     rows = (
         MeasuredValue(
             'net nodes of the largest net', last.nodes, target=at_least(MOST_NODES), note=refused
@@ -74,20 +80,23 @@ def measure(small: bool) -> Findings:
             step_there,
             target=at_most(EXPONENT),
             note=f'{span_there}, hauling in steps of {STEP_S:g} s; {1e3 * sizes[0].step_s:.1f} to '
-            f'{1e3 * last.step_s:.0f} ms over all sizes, {span}, with exponent {step:.2f}',
+            f'{1e3 * last.step_s:.0f} ms over all sizes, {span}, with exponent {step:.2f}; '
+            f'{slower}',
         ),
         MeasuredValue(
             'exponent of the time per steady state, warm, finer half of the sizes',
             warm_there,
             target=at_most(EXPONENT),
             note=f'{span_there}; {1e3 * sizes[0].warm_s:.0f} to {1e3 * last.warm_s:.0f} ms over '
-            f'all sizes, {span}, with exponent {warm:.2f}',
+            f'all sizes, {span}, with exponent {warm:.2f}; {slower}, and iterations are '
+            f'{", ".join(str(size.iterations) for size in upper)}, by which bars become slack or '
+            'taut on the way',
         ),
         MeasuredValue(
             'exponent of one factorisation and solution',
             linear,
             note=f'{1e3 * sizes[0].factor_s:.2f} to {1e3 * last.factor_s:.0f} ms; over the finer '
-            f'half {linear_there:.2f}, where that of a sheet by nested dissection tends to 1.5',
+            f'half {linear_there:.2f}',
         ),
         MeasuredValue(f'memory of the factors at {last.nodes} net nodes', last.factor_mb, 'MB'),
         MeasuredValue(
@@ -122,6 +131,7 @@ def _size(model: GearModel, *, small: bool) -> GrowthSize:
         nodes=len(model.layout.net),
         step_s=median_s(lambda: haul.run(STEP_S), repeats) / steps,
         warm_s=median_s(lambda: find_equilibrium(model, point, known), repeats),
+        iterations=find_equilibrium(model, point, known).iterations,
         factor_s=factor_s,
         factor_mb=factor_mb,
         peak_mb=peak_mb(),
