@@ -67,7 +67,7 @@ def test_the_picture_of_causes_on_deck_has_them_and_its_caption_says_so():
     drawing = verdicts_figure(trials, {})
     above, below = drawing.figure.axes
     assert [tick.get_text() for tick in above.get_yticklabels()] == [
-        'on deck, 3 ×\n1 trials', 'on deck, 6 ×\n1 trials'
+        'on deck, 3 ×: 1 trials', 'on deck, 6 ×: 1 trials'
     ]  # fmt: skip
     assert [tick.get_text() for tick in below.get_yticklabels()] == ['kite gone', 'rigging epsilon']
     assert 'cause on deck' in drawing.caption

@@ -84,8 +84,8 @@ def run_soak(
         gear = write_coarse_gear(scratch, plan.gear) if plan.coarse else plan.gear
         logs = folder / 'log'
         fast = _run(gear, plan.hours, plan.truth_rate_hz, 0.0, scratch, logs, on_progress, stop)
-        files = list((scratch / 'bag').iterdir())
-        bag_mb = sum(file.stat().st_size for file in files) / 1e6
+        # Ended early, there may be no bag yet, in which nothing is found.
+        bag_mb = sum(file.stat().st_size for file in (scratch / 'bag').glob('*')) / 1e6
     real: list[Glance] = []
     if plan.real_time_s and not stop():
         hours = (SETTLE_S + plan.real_time_s) / 3600.0
