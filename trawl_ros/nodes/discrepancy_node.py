@@ -5,9 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from std_srvs.srv import Trigger
-
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
@@ -78,7 +75,6 @@ class DiscrepancyNode(TrawlNode):
         *WINDOW_SPECS,
     )  # fmt: skip
     DRAINS: ClassVar = True
-    AWAITS: ClassVar = True
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('discrepancy_node', **kwargs)
@@ -108,9 +104,7 @@ class DiscrepancyNode(TrawlNode):
         )
         for topic in READ_TOPICS:
             self.listen(topic, self._feeder(topic), CONSUMER)
-        # Alone in its group: samples still come in while the service waits for a diagnosis.
-        alone = MutuallyExclusiveCallbackGroup()
-        self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
+        self.offer_awaiting(FINISH, self._finish)
         self.offer(ACKNOWLEDGE, self._acknowledge)
         self.offer(DISMISS, self._dismiss)
         self._watching.start()

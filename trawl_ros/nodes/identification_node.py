@@ -6,9 +6,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, ClassVar
 
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from std_srvs.srv import Trigger
-
 from trawl_ros.core.files import empty_folder
 from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -92,7 +89,6 @@ class IdentificationNode(TrawlNode):
         *WINDOW_SPECS,
     )  # fmt: skip
     DRAINS: ClassVar = True
-    AWAITS: ClassVar = True
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('identification_node', **kwargs)
@@ -129,9 +125,7 @@ class IdentificationNode(TrawlNode):
         self._publish(self._worker.outcome)
         for topic in SAMPLES:
             self.listen(topic, self._feeder(topic), CONSUMER)
-        # Alone in its group: samples still come in while the service waits for the worker.
-        alone = MutuallyExclusiveCallbackGroup()
-        self.create_service(Trigger, FINISH, self._finish, callback_group=alone)
+        self.offer_awaiting(FINISH, self._finish)
         self._worker.start()
         if self._adviser is not None:
             self._adviser.start()

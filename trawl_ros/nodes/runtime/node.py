@@ -1,19 +1,22 @@
 """Base class of all nodes: parameters, diagnostics, a clean end."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.qos import DurabilityPolicy
+from rclpy.service import Service
 from rclpy.timer import Timer
+from std_srvs.srv import Trigger
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
+from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
 from trawl_ros.nodes.runtime.graph_checks import (
     Listening,
@@ -59,12 +62,10 @@ class TrawlNode(ConnectedNode):
     DRAINS: ClassVar[bool] = False
     """True if messages on their way are still to be taken in when told to stop."""
 
-    AWAITS: ClassVar[bool] = False
-    """True if callbacks await something, which the events executor does not know."""
-
     def __init__(self, name: str, **kwargs: Any) -> None:
         # Before ROS itself listens to /clock.
         self._troubles: dict[str, str] = {}
+        self._awaiting: list[Service] = []
         super().__init__(name, **kwargs)
         self.headway = Headway()
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
@@ -110,6 +111,17 @@ class TrawlNode(ConnectedNode):
                 self._note_trouble(callback.__qualname__, error_of_program(reason))
 
         return self.create_timer(period_s, call, clock=self.steady_clock)
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Services that an executor answers."""
+        return (service for service in super().services if service not in self._awaiting)
+
+    def offer_awaiting(self, service: str, answer: Answer) -> None:
+        """Offer a Trigger service that a coroutine answers; messages come in meanwhile."""
+        offered = self.create_service(Trigger, service, answer)
+        self._awaiting.append(offered)
+        self.every(PERIOD_S, AwaitingService(offered, answer).go_on)
 
     def close(self) -> None:
         """Finish work and report the final counts; a second call does nothing."""

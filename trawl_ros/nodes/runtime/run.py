@@ -141,7 +141,7 @@ def _spin(make: Callable[[], TrawlNode], stop: _StopSignals) -> int:
     for sentence in (*misspelt(node), security.objection()):
         if sentence:
             node.get_logger().warning(sentence)
-    executor = SingleThreadedExecutor() if node.AWAITS else NodeExecutor()
+    executor = NodeExecutor()
     executor.add_node(node)
     try:
         while not stop.wishes and node.exit_code is None:

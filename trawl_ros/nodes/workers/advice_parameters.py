@@ -17,8 +17,8 @@ def _listed(values: tuple[float, ...]) -> str:
 
 ADVICE_SPECS = (
     Flag('advise', True, 'Whether to look for the manoeuvre that would teach most.'),
-    Number('advise_share', 0.1, 'of a core', 0.01, 1.0, 'Most of a core that looking manoeuvres up '
-           'takes; a simulation that runs fast wants more.'),
+    Number('advise_share', 0.03, 'of a core', 0.01, 1.0, 'Most of a core that looking manoeuvres '
+           'up takes; a simulation that runs fast wants more.'),
     Text('advise_lengths_m', _listed(DEFAULT.lengths), 'Warp lengths among which to choose, m.'),
     Text('advise_speeds_m_s', _listed(DEFAULT.speeds), 'Speeds among which to choose, m/s.'),
 )  # fmt: skip
