@@ -24,7 +24,7 @@ class AwaitingService:
     service
         Of a node that does not list it among its services.
     answer
-        Coroutine function from request and response to the response.
+        Coroutine function from request and response to the response; raises nothing.
     """
 
     def __init__(self, service: Service, answer: Answer) -> None:
@@ -45,6 +45,3 @@ class AwaitingService:
             except StopIteration as end:
                 self._pending.remove(one)
                 self._service.send_response(end.value, header)
-            except Exception:
-                self._pending.remove(one)
-                raise

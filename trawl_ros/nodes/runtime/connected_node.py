@@ -201,14 +201,19 @@ class ConnectedNode(Node):
         def answer(request: Any, response: Any) -> Any:
             try:
                 response.success, response.message = True, act()
-            except TrawlError as reason:
-                response.success, response.message = False, str(reason)
             except Exception as reason:
-                response.success, response.message = False, error_of_program(reason)
-                self.get_logger().error(f'{service}: {response.message}')
+                response.success, response.message = False, self.refusal(service, reason)
             return response
 
         self.create_service(Trigger, service, answer)
+
+    def refusal(self, service: str, reason: Exception) -> str:
+        """Return what a service answers where an error kept it; log one of the program."""
+        if isinstance(reason, TrawlError):
+            return str(reason)
+        sentence = error_of_program(reason)
+        self.get_logger().error(f'{service}: {sentence}')
+        return sentence
 
     def stop_listening(self, topic: str) -> None:
         """Destroy a subscription; its counts stay."""

@@ -118,10 +118,21 @@ class TrawlNode(ConnectedNode):
         return (service for service in super().services if service not in self._awaiting)
 
     def offer_awaiting(self, service: str, answer: Answer) -> None:
-        """Offer a Trigger service that a coroutine answers; messages come in meanwhile."""
-        offered = self.create_service(Trigger, service, answer)
+        """Offer a Trigger service that a coroutine answers, messages coming in meanwhile; an error
+        of it is its refusal, with reason.
+        """
+
+        async def refusing(request: Any, response: Any) -> Any:
+            try:
+                return await answer(request, response)
+            except Exception as reason:
+                # Unanswered, who asked would wait for good.
+                response.success, response.message = False, self.refusal(service, reason)
+                return response
+
+        offered = self.create_service(Trigger, service, refusing)
         self._awaiting.append(offered)
-        self.every(PERIOD_S, AwaitingService(offered, answer).go_on)
+        self.every(PERIOD_S, AwaitingService(offered, refusing).go_on)
 
     def close(self) -> None:
         """Finish work and report the final counts; a second call does nothing."""
