@@ -20,7 +20,7 @@ from trawl_ros.instruments.sonar.sweep import Sweep
 from trawl_ros.instruments.trawl_sonar import SonarInstruments, TrawlSonar
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.water import Water
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import (
     RangeSample,
     Sample,

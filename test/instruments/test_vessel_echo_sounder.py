@@ -12,7 +12,7 @@ from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParamet
 from trawl_ros.instruments.sonar.schools import inside
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.water import Water
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import RangeSample
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import SchoolTruth, SeabedTruth, Truth, VesselTruth

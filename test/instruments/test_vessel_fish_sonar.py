@@ -11,7 +11,7 @@ from trawl_ros.instruments.fish_sonar import FishSonar
 from trawl_ros.instruments.parameters import FishSonarParameters, load_instruments
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.model.water import Water
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import VelocitySample
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import SchoolTruth, VesselTruth

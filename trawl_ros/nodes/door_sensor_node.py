@@ -7,8 +7,8 @@ from trawl_ros.instruments.doors import DoorInstruments
 from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.messages.truth_from_messages import door_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample
 
 PORT, STARBOARD = 'truth/door/port/odom', 'truth/door/starboard/odom'

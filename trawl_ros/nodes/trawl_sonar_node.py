@@ -7,8 +7,8 @@ from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.messages.truth_from_messages import net_truth, schools_truth, seabed_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample
 
 OPENING, POSE, SECTION = 'truth/net/opening', 'truth/sonar/pose', 'truth/sonar/section'

@@ -8,8 +8,8 @@ from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.messages.truth_from_messages import schools_truth, seabed_truth, vessel_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.parameters import Number, Parameters
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample
 
 ODOMETRY, THROUGH_WATER = 'truth/vessel/odom', 'truth/vessel/velocity_water'

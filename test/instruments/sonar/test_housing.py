@@ -12,7 +12,7 @@ from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import BottomParameters, load_instruments
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.model.water import Water
-from trawl_ros.nodes.runtime.partial_truth import partial_truth
+from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import RangeSample, Sample
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import NetTruth, SeabedTruth, Truth

@@ -1,4 +1,4 @@
-"""Partial truth for instruments of a node: the parts that are not received are NaN."""
+"""Partial truth, for instruments that receive a part of it: what is not received is NaN."""
 
 import math
 
