@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
-from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.diagnosis.mimics.table import mimic_table
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.effects.registry import catalogue
@@ -36,7 +36,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.rules_hash import rules_hash
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import reported, right
 from trawl_ros.lab.studies.discrepancy.scoring.worth import repair_rows
 from trawl_ros.lab.studies.discrepancy.stages import run_blind
-from trawl_ros.lab.studies.discrepancy.trials.making import make
+from trawl_ros.lab.studies.discrepancy.trials.making import likelihood_of, make
 from trawl_ros.lab.studies.discrepancy.trials.plan import FINER, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL
@@ -44,6 +44,7 @@ from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
 from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows, write_windows
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.stability import stability
 
 SEED = 5
 ALONE = {name: (name,) for name in INSIDE} | {'heave': ('heave', 'speed_log')}
@@ -175,6 +176,37 @@ def test_what_is_not_possible_is_not_testable():
     assert made is None
     assert not key.testable
     assert 'warp_strumming' in key.why_not
+
+
+def test_a_plant_is_stable_in_all_its_states():
+    # Of the first boards of this number long warps are stable; at 300 m and 2 m/s they lean over
+    # by a factor e in 14 s.
+    drawn = draw_plant('kaifuha', FINER, 48, 4)
+    for clean in drawn.clean.values():
+        assert stability(drawn.model, clean.state.state, clean.state.tow).stable
+
+
+def test_what_tips_the_gear_over_is_neither_towed_nor_detectable(plant):
+    heavy = INSIDE['cross_current'](np.random.default_rng(0))
+    with pytest.raises(NoSteadyState):
+        plant.towed([(heavy, 1.5)], FULL)
+    likely = likelihood_of('kaifuha', FINER, SEED, 0, 'full')
+    # Nothing shows of it until it tips the gear.
+    hidden = replace(
+        heavy, name='tips', most=(0.0, 2.0), probe=1.5,
+        gear=lambda size, model, at: heavy.gear(1.5, model, at) if size > 0.3 else model,
+        shown=lambda size, shown, at: shown | {'door_spread': shown['door_spread'] + 1e-3 * size},
+    )  # fmt: skip
+    assert likely.detectable(hidden, 1.0, beside_catalogue=False) == np.inf
+
+
+def test_swapped_doors_are_there_or_not():
+    spec = Spec('deck', 5, ('doors_swapped',), 3.0, (1.0,), 0)
+    key, _ = make(spec, 'kaifuha', FINER, SEED)
+    assert key.sizes == (1.0,)
+    weak, made = make(replace(spec, strength=1.1 / key.detectable[0]), 'kaifuha', FINER, SEED)
+    assert made is None
+    assert 'is not possible' in weak.why_not
 
 
 def test_windows_survive_their_file(tmp_path):

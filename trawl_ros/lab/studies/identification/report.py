@@ -53,7 +53,7 @@ def _method(plan: EstimationStudyPlan) -> str:
     return (
         f'A trial draws the twelve coefficients from the prior of the gear file, until the plant '
         f'can be towed with them in all its steady states: under water, with the boards within '
-        f'the range of their law, and stable in the first and the last. It has {plan.tows} tows of '
+        f'the range of their law, and stable. It has {plan.tows} tows of '
         f'{len(TOWS[0])} states, 300 to 900 m of warp at 2.0 to 2.4 m/s, and a further tow of '
         f'{len(HELD_OUT)} states that is predicted and not fitted. Windows are not towed but '
         f'worked out: readings of a minute are the observables of the plant with noise as in '

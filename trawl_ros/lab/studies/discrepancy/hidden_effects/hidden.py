@@ -46,6 +46,8 @@ class Hidden:
         Of the size, and one by which it is seen how much it shows.
     most
         Largest size that is possible, to both sides; 0 where a side is none.
+    whole
+        True if it is there as a whole or not at all, whatever its size.
     towed, gear, shown
         True inputs of the gear beside those the instruments show; the gear with the effect;
         what sensors show.
@@ -58,6 +60,7 @@ class Hidden:
     towed: Callable[[float, FloatArray, Situation], FloatArray] = _towed
     gear: Callable[[float, GearModel, Situation], GearModel] = _gear
     shown: Callable[[float, Readings, Situation], Readings] = _shown
+    whole: bool = False
 
     @property
     def signs(self) -> tuple[float, ...]:

@@ -220,7 +220,7 @@ def doors_swapped(chance: np.random.Generator) -> Hidden:
         port = {left: readings[right] for left, right in names}
         return readings | port | {right: readings[left] for left, right in names}
 
-    return Hidden('doors_swapped', '', 1.0, (0.0, 1e9), shown=shown)
+    return Hidden('doors_swapped', '', 1.0, (0.0, 1.0), shown=shown, whole=True)
 
 
 def cells_one_side(chance: np.random.Generator) -> Hidden:
@@ -232,7 +232,7 @@ def cells_one_side(chance: np.random.Generator) -> Hidden:
         port, starboard = CABLES
         return readings | {port: readings[starboard], starboard: readings[port]}
 
-    return Hidden('cells_swapped', '', 1.0, (0.0, 1e9), shown=shown)
+    return Hidden('cells_swapped', '', 1.0, (0.0, 1.0), shown=shown, whole=True)
 
 
 def pitch_askew(chance: np.random.Generator) -> Hidden:

@@ -85,6 +85,10 @@ def hide(spec: Spec, gear: str, cut: Cut, seed: int) -> Hiding:
     for hidden, size in zip(drawn, sizes, strict=True):
         if not abs(size) <= hidden.most[0 if size < 0.0 else 1]:
             why_not = f'{hidden.name} of {size:.3g} {hidden.unit} is not possible'
+    sizes = tuple(
+        float(np.sign(size)) if hidden.whole else size
+        for hidden, size in zip(drawn, sizes, strict=True)
+    )
     coefficients = tuple(map(float, plant.coefficients))
     key = Key(spec, sizes, units, detectable, not why_not, why_not, coefficients, {})
     # The instruments of a trial stay the same when she is out again.

@@ -93,7 +93,8 @@ class Plant:
         if gear is not self.model or not np.array_equal(shown, inputs):
             port, starboard, speed = map(float, shown)
             point = OperatingPoint(port, starboard, speed)
-            values = find_equilibrium(gear, point, clean.state).observables.array()
+            found = require_usable(gear, find_equilibrium(gear, point, clean.state))
+            values = found.equilibrium.observables.array()
         readings = dict(zip(OBSERVABLES, map(float, values), strict=True))
         for hidden, size in effects:
             readings = hidden.shown(size, readings, at)
@@ -103,15 +104,14 @@ class Plant:
 def _solved(model: GearModel, state: State, known: Mapping[State, Clean]) -> Clean:
     near = known[nearest(state, tuple(known))].state if known else None
     found = find_equilibrium(model, OperatingPoint(state[0], *state), near)
-    if found.surfaced or found.outside_law:
-        raise NoSteadyState('the gear surfaces, or a board is outside its law', 'outside law')
+    require_usable(model, found)
     by = sensitivities(model, found)
     look = Look(state, found.observables.array(), by[:, 12:], by[:, :12])
     return Clean(look, slow_mode(model, found).shape, found)
 
 
 def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
-    """Draw a board that can be towed in all states.
+    """Draw a board that can be towed in all states: stable in each, not only solved.
 
     Parameters
     ----------
@@ -138,7 +138,6 @@ def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
         try:
             for state in order:
                 clean[state] = _solved(board, state, clean)
-            require_usable(board, clean[order[0]].state)
         except NoSteadyState:
             continue
         return Plant(board, drawn, clean)

@@ -60,9 +60,15 @@ class Likelihood:
             The effect, and to which side.
         beside_catalogue
             True if what the best effect of the catalogue could mimic does not count.
+
+        Returns
+        -------
+        float
+            In units of the effect; of what is there as a whole or not at all, the part of its
+            strength that would do.
         """
         most = hidden.most[0] if sign < 0.0 else hidden.most[1]
-        size, low, high = min(hidden.probe, most), 0.0, np.inf
+        size, low, high, enough = min(hidden.probe, most), 0.0, np.inf, np.inf
         for _ in range(ROUNDS):
             try:
                 seen = self._sigmas(hidden, sign * size, beside_catalogue)
@@ -72,12 +78,17 @@ class Likelihood:
             if seen <= 0.0:
                 return np.inf
             wanted = size * SIGMAS / seen
-            if abs(wanted / size - 1.0) < CLOSE or (wanted > most and np.isinf(high)):
+            close = abs(wanted / size - 1.0) < CLOSE
+            if close or hidden.whole or (wanted > most and np.isinf(high)):
                 return float(wanted)
-            low, high = (size, high) if wanted > size else (low, size)
-            # A gear that falls over to one side does so at some size, and hardly leans before.
+            if wanted > size:
+                low = size
+            else:
+                high = enough = size
+            # A gear that leans far to one side does so at some size, and hardly before.
             size = wanted if low < wanted < high else 0.5 * (low + high)
-        return float(high)
+        # Beyond what is too small to be seen the gear cannot be towed, or it is that strong.
+        return float(enough)
 
     def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
         """Strength of an effect in standard deviations."""
