@@ -59,7 +59,8 @@ def finding(
         alike=tuple(
             table.candidates[one.candidate].name
             for weighed, one in others
-            if weighed > most - ALIKE
+            # With more values and no worse a fit it holds the best as a special case.
+            if weighed > most - ALIKE or one.ratio >= best.ratio
         ),
         rarity=evidence[0].rarity,
         limit=limit,

@@ -12,7 +12,7 @@ from scipy.special import chdtrc, chdtri
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
-from trawl_ros.diagnosis.onset.whitening import MOST, Whitened, WhiteningFilter
+from trawl_ros.diagnosis.onset.whitening import Whitened, WhiteningFilter
 
 FEWEST = 2
 """Stretches since an onset, at least, before it counts."""
@@ -113,7 +113,7 @@ class RatioBank:
         own = signatures[:, white.rows] - white.model @ self._means
         marks = np.moveaxis(white.whitened(np.moveaxis(own, 1, 0)), 0, 1)
         self._means += white.gain @ own
-        told = np.clip(white.whitened(white.residual), -MOST, MOST)
+        told = white.whitened(white.residual)
         self.products += np.einsum('wrp,r->wp', marks, told)
         self.squares += np.matmul(np.swapaxes(marks, 1, 2), marks)
         return marks

@@ -27,9 +27,6 @@ from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
 
-RENEWAL = 5
-"""Steps after which what effects push by is computed anew: twice in each stretch."""
-
 ROWS = [OBSERVABLES.index(name) for name in WATCHED]
 
 
@@ -226,7 +223,7 @@ class ModelTow:
         self._following = _Following(last.tow)
         model = self._gear.model.with_coefficients(self.coefficients)
         self._motion = DifferentiatedTow(
-            model, self._parameters, self._following, self._gear.acting, renewal=RENEWAL
+            model, self._parameters, self._following, self._gear.acting
         )
         port, starboard, speed = map(float, self._following(0.0).inputs)
         self._began = (port, starboard, speed)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import cho_solve, solve_triangular
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.diagnosis.onset.candidates import WATCHED
@@ -63,7 +63,7 @@ class Whitened:
     residual
         As they are.
     root : (r, r) array
-        Lower root of their covariance.
+        Lower root of their covariance, as wide as none of them is beyond `MOST`.
     rows
         Flags (k,) of the watched channels that are among them.
     gain : (s, r) array
@@ -208,16 +208,18 @@ class WhiteningFilter:
         residual = (means - towed.values - shift)[rows] - model @ self.mean
         own = np.array([CHANNELS[name].noise for name in WATCHED])
         white = (noise**2 + (ErrorSizes().drift[0] * own) ** 2)[rows] * self._inflation**2
-        covariance = model @ self.variance @ model.T + np.diag(white)
-        root = np.linalg.cholesky(covariance)
-        gain = np.linalg.solve(covariance, model @ self.variance).T
-        found = Whitened(residual, root, rows, gain, model)
-        # A reading far off moves the filter no more than one at the edge of what errors make.
-        bounded = root @ np.clip(found.whitened(residual), -MOST, MOST)
-        self.mean = self.mean + gain @ bounded
+        root = np.linalg.cholesky(model @ self.variance @ model.T + np.diag(white))
+        # A reading far off is one at the edge of errors that large: in the filter and in all that
+        # a signature leaves in it, or what explains such readings would not be what made them.
+        far = np.abs(solve_triangular(root, residual, lower=True)) / MOST
+        wider = root * np.sqrt(np.maximum(far, 1.0) ** 2 - 1.0)
+        errors = np.diag(white) + wider @ wider.T
+        root = root * np.maximum(far, 1.0)
+        gain = cho_solve((root, True), model @ self.variance).T
+        self.mean = self.mean + gain @ residual
         kept = np.eye(self.size) - gain @ model
-        self.variance = kept @ self.variance @ kept.T + gain @ np.diag(white) @ gain.T
-        return found
+        self.variance = kept @ self.variance @ kept.T + gain @ errors @ gain.T
+        return Whitened(residual, root, rows, gain, model)
 
     def advance(self, states: FloatArray) -> None:
         """Advance states (s, ...) in time by a stretch, in place."""
@@ -313,4 +315,4 @@ def _starts(coefficients: int) -> tuple[int, ...]:
 
 
 MOST = 4.0
-"""Whitened innovations beyond this are taken for this: one reading alone is no onset."""
+"""Size of whitened innovations, at most: one reading alone is no onset."""

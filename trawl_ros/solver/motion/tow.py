@@ -52,9 +52,6 @@ class DifferentiatedTow:
         Effects that are there.
     start
         Equilibrium nearby from which that is sought.
-    renewal
-        Steps after which the pushes by values of effects are computed anew, which cost most; in
-        between they are taken to stay.
 
     Attributes
     ----------
@@ -82,14 +79,11 @@ class DifferentiatedTow:
         inputs: Callable[[float], InputPoint],
         acting: EffectSet = NO_EFFECTS,
         start: Equilibrium | None = None,
-        renewal: int = 1,
     ) -> None:
         self._plain, self._acting, self._inputs = model, acting, inputs
         self.parameters, self.time = parameters, 0.0
         self._net: tuple[BarProperties, NetLoads] | None = None
-        self._by_effects: FloatArray | None = None
         self._showing: frozenset[str] = frozenset()
-        self._renewal, self._steps = renewal, 0
         point = inputs(0.0)
         self._point = point
         self.model = acting.gear(model, point.situation)
@@ -157,14 +151,10 @@ class DifferentiatedTow:
     ) -> FloatArray:
         if self._net is None or self._net[0] is not model.bars:
             self._net = model.bars, net_loads(model)
-        if self._by_effects is None or self._steps % self._renewal == 0:
-            gear = GearAtPoint(self._plain, self._acting, point)
-            self._by_effects = effect_pushes(gear, self.parameters, end)
-            self._showing = effects_that_show(gear, self.parameters)
-        self._steps += 1
-        return pushes(
-            model, self.parameters, end, course.slopes, self._net[1], self._by_effects
-        )  # fmt: skip
+        gear, own = GearAtPoint(self._plain, self._acting, point), self.parameters
+        self._showing = effects_that_show(gear, own)
+        by_effects = effect_pushes(gear, own, end)
+        return pushes(model, own, end, course.slopes, self._net[1], by_effects)
 
     def go_on_with(self, coefficients: FloatArray) -> None:
         """Take other coefficients (12,) of the boards, in the motion that these would have led to.
@@ -179,7 +169,6 @@ class DifferentiatedTow:
         self.motion = Motion(state, motion.acceleration + rates[1], motion.averaged + rates[2])
         self._plain = self._plain.with_coefficients(coefficients)
         self.model = self._acting.gear(self._plain, self._point.situation)
-        self._by_effects = None
 
     def forget(self, columns: Slice) -> None:
         """Set derivatives by some parameters to nought, as if these began to act now."""

@@ -12,7 +12,7 @@ from trawl_ros.lab.studies.onset.limit import drawn_rarest
 from trawl_ros.lab.studies.onset.report import write_onset
 from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
 from trawl_ros.lab.studies.onset.study import OnsetPlan
-from trawl_ros.lab.studies.onset.trial import Beginning, OnsetTrial
+from trawl_ros.lab.studies.onset.trial import Beginning, OnsetTrial, make_trial
 from trawl_ros.records.observables import OBSERVABLES
 
 FOUND = OnsetTrial(
@@ -70,3 +70,13 @@ def test_candidates_without_a_mark_are_never_rare_and_one_that_has_some_is_as_ch
     marks[:, 0, column] = 1e6 / table.scale[column]
     rarest = drawn_rarest(table, [marks, marks], 4000, chance)
     assert np.mean(rarest > 2.0) == pytest.approx(0.01, abs=0.006)
+
+
+@pytest.mark.slow
+def test_a_bridle_that_gives_way_is_named():
+    # Large, and stiff: what it pulls with turns with the bridles from step to step.
+    found = make_trial('kaifuha', 2500, 1, 35.0, clean=False)
+    assert found.effect == 'bridle_length'
+    assert found.raised_s - found.begin_s < 120.0
+    assert 'bridle_length' in (found.name, *found.alike)
+    assert found.false == 0
