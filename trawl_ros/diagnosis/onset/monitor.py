@@ -31,6 +31,10 @@ MOVED = 4.0
 """Change of a channel by what coefficients were learned to be, in the model's own error, beyond
 which the tow is linearised anew: a tenth of it may be wrong, or more."""
 
+CLOSE = 8.0
+"""The same within which boards are found once, through `REST` stretches, before anything is judged:
+derivatives of boards farther off are of another gear. Beyond it an effect may lead later."""
+
 LEARNING, REST, AT_REST = 20, 4, 5.0
 """Stretches in which the watch begins anew with what is linearised anew; stretches between two such
 changes; rarity beyond which none is made, for something may have begun."""
@@ -100,18 +104,20 @@ class _Absorbed:
 
 @dataclass
 class _Watch:
-    """State of a tow under watch; ``since`` counts stretches since it was linearised last, and
-    ``learned`` those before.
+    """State of a tow under watch; ``since`` counts stretches since it was linearised last,
+    ``learned`` those before, and ``close`` those up to now in which boards were close.
     """
 
     model: ModelTow
     bank: RatioBank
+    known: Knowledge
     filter: WhiteningFilter | None = None
     responses: OnsetResponses | None = None
     absorbed: list[_Absorbed] = field(default_factory=list)
     taken: int = 0
     since: int = 0
     learned: int = 0
+    close: int = 0
     moving: tuple[bool, bool] = (False, False)
     moved: deque[bool] = field(default_factory=lambda: deque(maxlen=QUIET + BEFORE))
 
@@ -179,7 +185,7 @@ class OnsetMonitor:
     def _new_watch(self) -> _Watch:
         model = ModelTow(self._gear, self._known.values)
         size = states_for(len(self._known.values))
-        return _Watch(model, RatioBank(self.table, self.options.window, size))
+        return _Watch(model, RatioBank(self.table, self.options.window, size), self._known)
 
     def feed(self, sample: Sample) -> list[Finding]:
         """Take a sample; return findings that are new or have changed."""
@@ -234,9 +240,11 @@ class OnsetMonitor:
         marks = watch.bank.step(watch.filter, white, signatures)
         evidence = tuple(watch.bank.best()) if white is not None else ()
         self._tell(last, means, model, white, marks, evidence)
-        if evidence and not self._learns_from_afar(model):
+        if evidence and not self._learns:
             yield from self._judge(last, evidence)
         watch.since += white is not None
+        if model is not None and white is not None and watch.close < REST:
+            watch.close = watch.close + 1 if self._away(model) < CLOSE else 0
         if model is not None and self._has_moved(model, evidence):
             self._linearise(watch)
 
@@ -246,39 +254,44 @@ class OnsetMonitor:
         oldest = self.options.window
         watch.responses = onset_responses(self._gear, watch.model.coefficients, steady, oldest)
         if watch.filter is None:
+            known = watch.known
             watch.filter = WhiteningFilter(
-                self._known.values, self._known.covariance, watch.responses,
-                self.options.inflation,
-            )  # fmt: skip
+                known.values, known.covariance, watch.responses, self.options.inflation
+            )
 
     def _has_moved(self, towed: TowedStretch, evidence: Sequence[OnsetEvidence]) -> bool:
         watch = self._watch
         rarest = evidence[0].rarity if evidence else 0.0
         if watch.filter is None or watch.since < REST or self.open is not None:
             return False
-        if rarest > AT_REST and not self._learns_from_afar(towed):
+        anew = self._may_begin_anew
+        if anew and rarest > AT_REST and not self._learns:
             return False
         # The model would begin in an equilibrium while the gear was on its way to one.
         rests = not any(list(watch.moved)[:-BEFORE])
-        return self._far(towed) and (rests or not self._may_begin_anew)
+        return self._far(towed) and (rests or not anew)
 
     @property
     def _may_begin_anew(self) -> bool:
         watch = self._watch
-        return watch.learned + watch.since <= LEARNING and not watch.absorbed
+        early = watch.learned + watch.since <= LEARNING or self._learns
+        return early and not watch.absorbed
 
-    def _learns_from_afar(self, towed: TowedStretch | None) -> bool:
-        """True in the first minutes while derivatives are of boards far from those learned."""
-        watch = self._watch
-        early = watch.learned + watch.since <= LEARNING
-        return early and towed is not None and self._far(towed)
+    @property
+    def _learns(self) -> bool:
+        """True until boards have been close to those that derivatives are of."""
+        return self._watch.close < REST
 
     def _far(self, towed: TowedStretch) -> bool:
+        return self._away(towed) > MOVED
+
+    def _away(self, towed: TowedStretch) -> float:
+        """Largest change of a channel by what boards were learned to be, in the model's error."""
         watch = self._watch
         if watch.filter is None:
-            return False
+            return 0.0
         moved = watch.filter.coefficients - watch.model.coefficients
-        return bool(np.max(np.abs(towed.by_coefficients @ moved) / towed.model_error) > MOVED)
+        return float(np.max(np.abs(towed.by_coefficients @ moved) / towed.model_error))
 
     def _linearise(self, watch: _Watch) -> None:
         """Tow anew with the coefficients as they were learned."""
@@ -286,6 +299,8 @@ class OnsetMonitor:
         learned = watch.filter.coefficients
         if self._may_begin_anew:
             # Estimates of all else came with derivatives from far off.
+            watch.filter.doubt(learned - watch.model.coefficients)
+            watch.known = Knowledge(learned, watch.filter.covariance)
             watch.filter = watch.responses = None
             watch.bank.forget()
             watch.model.begin_anew(learned)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_solve, solve_triangular
+from scipy.linalg import solve_triangular
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.diagnosis.onset.candidates import WATCHED
@@ -141,6 +141,13 @@ class WhiteningFilter:
         values: FloatArray = self._start + self._known @ self.mean[self._part(0)]
         return values
 
+    @property
+    def covariance(self) -> FloatArray:
+        """Covariance (12, 12) of the coefficients."""
+        own = self._part(0)
+        found: FloatArray = self._known @ self.variance[own, own] @ self._known.T
+        return found
+
     def loosen(self) -> None:
         """Take calibration for as little known as at the beginning."""
         diagonal = np.einsum('ii->i', self.variance)
@@ -211,11 +218,13 @@ class WhiteningFilter:
         root = np.linalg.cholesky(model @ self.variance @ model.T + np.diag(white))
         # A reading far off is one at the edge of errors that large: in the filter and in all that
         # a signature leaves in it, or what explains such readings would not be what made them.
-        far = np.abs(solve_triangular(root, residual, lower=True)) / MOST
-        wider = root * np.sqrt(np.maximum(far, 1.0) ** 2 - 1.0)
+        far = np.maximum(np.abs(solve_triangular(root, residual, lower=True)) / MOST, 1.0)
+        # The filter is moved as by the edge itself: where boards are not known yet, all is far off.
+        known = solve_triangular(root, model @ self.variance, lower=True) / far[:, None]
+        gain = solve_triangular(root, known, trans='T', lower=True).T
+        wider = root * np.sqrt(far**2 - 1.0)
         errors = np.diag(white) + wider @ wider.T
-        root = root * np.maximum(far, 1.0)
-        gain = cho_solve((root, True), model @ self.variance).T
+        root = root * far
         self.mean = self.mean + gain @ residual
         kept = np.eye(self.size) - gain @ model
         self.variance = kept @ self.variance @ kept.T + gain @ errors @ gain.T
