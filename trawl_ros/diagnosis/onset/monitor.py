@@ -46,7 +46,7 @@ along; and the last of those before, that first among them, in which nothing may
 WHITE_LIMIT, MARGIN = 6.33, 1.42
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
 ``trawl study onset --limit 200 --seed 7100``; and the factor on it for what is not quite white, by
-hand. In the clean tows that score the watch the largest is 3.2 (docs/studies/onset.md)."""
+hand. docs/studies/onset.md has how rare innovations of clean tows are."""
 
 
 @dataclass(frozen=True)
