@@ -7,7 +7,7 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.monitor import BEFORE, OnsetMonitor
+from trawl_ros.diagnosis.onset.monitor import BEFORE, LEARNS, REST, OnsetMonitor
 from trawl_ros.diagnosis.onset.stretches import StretchCutter
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
@@ -74,3 +74,22 @@ def test_a_model_begun_anew_is_towed_along_what_is_looked_at_before(onset_sample
     cutter = StretchCutter(lambda pressure: pressure)
     *_, last = (one for sample in onset_samples(8) for one in cutter.feed(sample))
     assert last.place == BEFORE + 1
+
+
+def test_while_boards_are_far_from_what_is_learned_nothing_is_raised_and_that_is_told(
+    onset_gear, onset_samples
+):
+    told, judged = [], []
+    monitor = OnsetMonitor(
+        onset_gear,
+        effects=FEW,
+        on_stretch=lambda one: (told if one.why_not else judged).append(one),
+    )
+    # Cells that begin to show too much meanwhile are learned with the boards.
+    found = [one for sample in onset_samples(9, 350.0) for one in monitor.feed(sample)]
+    assert found == []
+    learning = [one for one in told if one.why_not == LEARNS]
+    assert len(learning) >= REST
+    assert all(one.evidence == () for one in learning)
+    assert monitor.unwatched == len(told)
+    assert monitor.watched == len(judged)

@@ -59,7 +59,7 @@ def finding(
         alike=tuple(
             table.candidates[one.candidate].name
             for weighed, one in others
-            # With more values and no worse a fit it holds the best as a special case.
+            # A candidate that fits no worse is not told apart, however many values it takes.
             if weighed > most - ALIKE or one.ratio >= best.ratio
         ),
         rarity=evidence[0].rarity,

@@ -36,8 +36,12 @@ CLOSE = 8.0
 derivatives of boards farther off are of another gear. Beyond it an effect may lead later."""
 
 LEARNING, REST, AT_REST = 20, 4, 5.0
-"""Stretches in which the watch begins anew with what is linearised anew; stretches between two such
-changes; rarity beyond which none is made, for something may have begun."""
+"""Stretches in which the watch begins anew with what is linearised anew, and longer until boards
+are close; stretches between two such changes; rarity beyond which it does not, for something may
+have begun."""
+
+LEARNS = 'boards are learned first, for they are far from those that the model is towed with'
+"""Reason for which nothing is judged."""
 
 BEFORE, QUIET = FEWEST - 1, 8
 """Stretches up to the newest, behind the first that a model begun anew with the next is towed
@@ -76,7 +80,7 @@ class WatchedStretch:
     """Stretch as it was watched: the readings beside the model's, and the evidence after it.
 
     ``marks`` (w, r, p) are what the candidates would leave in the innovations, by age.
-    ``why_not`` is the reason where nothing was compared.
+    ``why_not`` is the reason where nothing was judged.
     """
 
     end_ns: int
@@ -145,9 +149,9 @@ class OnsetMonitor:
     findings
         All of them, by number; the newest may still be open.
     watched, unwatched
-        Numbers of stretches that were compared, and that could not be.
+        Numbers of stretches that were judged, and that could not be.
     why_not
-        Reason why the newest stretch was not compared; empty where it was.
+        Reason why the newest stretch was not judged; empty where it was.
     """
 
     def __init__(
@@ -238,9 +242,13 @@ class OnsetMonitor:
             ages = np.arange(self.options.window)
             signatures = watch.responses.since(lasting, ages, self._growing)
         marks = watch.bank.step(watch.filter, white, signatures)
-        evidence = tuple(watch.bank.best()) if white is not None else ()
+        evidence: tuple[OnsetEvidence, ...] = ()
+        if white is not None and self._learns:
+            self.why_not = LEARNS
+        elif white is not None:
+            evidence = tuple(watch.bank.best())
         self._tell(last, means, model, white, marks, evidence)
-        if evidence and not self._learns:
+        if evidence:
             yield from self._judge(last, evidence)
         watch.since += white is not None
         if model is not None and white is not None and watch.close < REST:
@@ -314,7 +322,7 @@ class OnsetMonitor:
         white: Whitened | None, marks: FloatArray | None,
         evidence: tuple[OnsetEvidence, ...],
     ) -> None:  # fmt: skip
-        if white is None:
+        if white is None or self.why_not:
             self.unwatched += 1
         else:
             self.watched += 1

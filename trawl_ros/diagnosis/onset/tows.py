@@ -29,7 +29,7 @@ class OnsetsInTow:
     start_ns
         Stamp of its first sample.
     watched, unwatched
-        Stretches of 30 s that were compared with the model, and that could not be.
+        Stretches of 30 s that were judged, and that could not be.
     why_not
         Reason why the last of these could not be.
     findings
