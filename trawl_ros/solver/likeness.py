@@ -3,10 +3,12 @@
 An effect of an instrument changes no gear at all, one on a rope no board.
 """
 
+from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 
 import numpy as np
 
+from trawl_ros.model.board import Board
 from trawl_ros.model.gear_model import GearModel
 
 NO_FORCE = frozenset({'gear', 'first_guess'})
@@ -29,18 +31,36 @@ def same_observables(one: GearModel, other: GearModel) -> bool:
     """True if two gears have the same observables in any state."""
     return (
         _same(one.water, other.water)
-        and _same(one.board.middles, other.board.middles)
+        and _same_middles(one.board, other.board)
         and _same(one.layout.headrope, other.layout.headrope)
         and _same(one.layout.footrope, other.layout.footrope)
-        and _same(_top_of_warps(one), _top_of_warps(other))
+        and _same_top_of_warps(one, other)
     )
 
 
+def _same_middles(one: Board, other: Board) -> bool:
+    """True if two boards have the same middles; these are worked out where what they are made of
+    is another.
+    """
+    made_of = 'points', 'installation', 'rerigged'
+    return _shared(one, other, made_of) or _same(one.middles, other.middles)
+
+
+def _same_top_of_warps(one: GearModel, other: GearModel) -> bool:
+    """True if all is the same of which tensions at the blocks and angles of the warps are made."""
+    made_of = 'warp_segments', 'warp_side', 'ends', 'rest', 'bars', 'layout'
+    return _shared(one, other, made_of) or _same(_top_of_warps(one), _top_of_warps(other))
+
+
 def _top_of_warps(model: GearModel) -> tuple[object, ...]:
-    """Properties of which tensions at the blocks and angles of the warps are made."""
     top = model.layout.top_warp_bars
     arrays = model.warp_side, model.ends, model.rest, *model.bars.columns
     return model.warp_segments, *(array[top] for array in arrays)
+
+
+def _shared(one: object, other: object, names: Sequence[str]) -> bool:
+    """True if two records share the very objects of these names."""
+    return all(getattr(one, name) is getattr(other, name) for name in names)
 
 
 def _same(one: object, other: object) -> bool:

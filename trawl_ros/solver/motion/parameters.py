@@ -1,6 +1,7 @@
 """Parameters by which a tow in motion is differentiated."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from trawl_ros.core.arrays import Slice
 from trawl_ros.effects.base.effect import Effect
@@ -35,7 +36,7 @@ class MotionParameters:
     inputs: tuple[str, ...] = ()
     motions: int = 0
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names (m) of all parameters in their order."""
         return (
@@ -49,7 +50,7 @@ class MotionParameters:
     def __len__(self) -> int:
         return len(self.names)
 
-    @property
+    @cached_property
     def _starts(self) -> tuple[int, ...]:
         sizes = (
             len(COEFFICIENTS) if self.coefficients else 0,
