@@ -6,8 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.evidence import Evidence
-from trawl_ros.diagnosis.weighing import Weighed, rivals_of_best, sparing
+from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.weighing import Weighed, possible_first, rivals_of_best, sparing
+from trawl_ros.effects.registry import catalogue
 
 READINGS = 400
 PENALTY = np.log(READINGS)
@@ -45,6 +48,7 @@ def weighed(trial, name, explained):
         estimate=SimpleNamespace(values=values),
         fit=SimpleNamespace(prior=SimpleNamespace(blocks=lambda _: (range(number),))),
         at_bound=lambda: False,
+        in_part=lambda: False,
     )
     criterion = explained - number * PENALTY
     return Weighed(refit, explained, criterion, criterion, np.ones(3), 1.0, (), 0.0)
@@ -69,3 +73,21 @@ def test_what_does_not_look_alike_is_a_rival_by_all_its_values(trial):
     assert rivals_of_best(trial, (best, other)) == ('kite',)
     far = replace(other, delta_bic=best.delta_bic - 6.5)
     assert rivals_of_best(trial, (best, far)) == ()
+
+
+def test_a_part_of_what_is_there_as_a_whole_stands_behind_all_and_is_no_rival(trial):
+    best, other = weighed(trial, 'floats', 144.0), weighed(trial, 'kite', 120.0)
+    best.refit.in_part = lambda: True
+    assert possible_first((best, other)) == (other, best)
+    assert rivals_of_best(trial, (other, best)) == ()
+
+
+@pytest.mark.parametrize(
+    ('share', 'std', 'is_part'),
+    [(-0.22, 0.05, True), (0.3, 0.1, True), (0.4, 0.3, False), (0.8, 0.02, False)],
+)
+def test_a_share_is_a_part_where_the_whole_is_surely_out_of_reach(share, std, is_part):
+    swapped = Candidate(catalogue()['swapped_doors'], catalogue()['swapped_doors'].neutral)
+    fit = SimpleNamespace(prior=SimpleNamespace(slice_of=lambda _: slice(12, 13)))
+    estimate = SimpleNamespace(values=np.full(13, share), std=np.full(13, std))
+    assert Refit((swapped,), SimpleNamespace(fit=fit), estimate).in_part() is is_part

@@ -115,7 +115,7 @@ def name(
         gain=best.gain[0],
         gain_low=best.gain[1],
         share=best.share,
-        at_bound=best.refit.at_bound(),
+        at_bound=best.refit.at_bound() or best.refit.in_part(),
         left_over=left.probability,
         left_share=left.share,
         rivals=rivals,

@@ -36,6 +36,9 @@ way some windows lose their steady state. What the model is wrong by changes wit
 warps, which would pass for an effect. Readings that scatter less than is stated make neither model
 nor the form of an effect better, so that what these are wrong by must not count the more."""
 
+SURE = 3.0
+"""So many std from the whole a share is surely less than that."""
+
 POOR = 3.0
 """A misfit from where the boards are fitted anew, another way."""
 
@@ -95,6 +98,14 @@ class Refit:
         effects = self.fit.prior.slice_of('effect')
         low, high = self.fit.prior.on_bounds(self.estimate.values)
         return bool(np.any(low[effects] | high[effects]))
+
+    def in_part(self) -> bool:
+        """True if an effect that is there as a whole or not at all would surely be there in part,
+        and nearer to nothing.
+        """
+        whole = [own.whole for one in self.wanted for own in one.effect.parameters]
+        most = self.values + SURE * self.estimate.std[self.fit.prior.slice_of('effect')]
+        return bool(np.any(np.array(whole, bool) & (self.values < 0.5) & (most < 1.0)))
 
 
 def fit_boards(

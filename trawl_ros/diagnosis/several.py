@@ -123,7 +123,8 @@ class SetsTried:
         self._known.add(frozenset(names))
         self.on_progress(told(*names))
         fitted = refitted(self.predictor, self.base, self.test, wanted)
-        if fitted is not None:
+        # A set with a part of what is there as a whole is another in disguise.
+        if fitted is not None and not (len(wanted) > 1 and fitted.in_part()):
             self.refits.append(fitted)
 
     def add_class_of(self, best: Weighed) -> None:

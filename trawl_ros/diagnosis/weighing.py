@@ -237,7 +237,10 @@ def _nearest(test: ScoreTest, refit: Refit) -> float:
 
 
 def possible_first(weighed: tuple[Weighed, ...]) -> tuple[Weighed, ...]:
-    """Effects in order, those on a bound behind one that does nearly as well."""
+    """Effects in order, those on a bound behind one that does nearly as well, and behind all others
+    those of which only a part would be there.
+    """
+    weighed = tuple(sorted(weighed, key=lambda entry: entry.refit.in_part()))
     best = weighed[0]
     if not best.refit.at_bound():
         return weighed
@@ -260,7 +263,7 @@ def rivals_of_best(test: ScoreTest, weighed: Sequence[Weighed]) -> tuple[str, ..
     rivals = []
     for other in weighed[1:]:
         new = [name for name in other.refit.names if name not in best.refit.names]
-        if other.refit.at_bound():
+        if other.refit.at_bound() or other.refit.in_part():
             continue
         if new and of_class.issuperset(new):
             if sparing(test, other.refit, other.delta_chi2) > least:

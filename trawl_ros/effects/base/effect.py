@@ -39,6 +39,8 @@ class Parameter:
         Bounds of its possible values; assumed.
     std
         Prior standard deviation about the neutral value, assumed; scales the estimate.
+    whole
+        True for a share of what is there as a whole, 1, or not at all, 0.
 
     Examples
     --------
@@ -53,6 +55,7 @@ class Parameter:
     low: float
     high: float
     std: float
+    whole: bool = False
 
 
 @dataclass(frozen=True)

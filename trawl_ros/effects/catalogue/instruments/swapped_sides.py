@@ -27,7 +27,7 @@ def _swapped(name: str, whose: str, channels: tuple[str, ...], direct: str) -> S
         name=name,
         sentence=f'{whose} of port and starboard are swapped (a share of 1).',
         # A share between is nothing real, but what noise and asymmetry make of one.
-        parameters=(Parameter('share', '', 0.0, -0.3, 1.3, 0.5),),
+        parameters=(Parameter('share', '', 0.0, -0.3, 1.3, 0.5, whole=True),),
         excited_by='whatever differs between the sides: lean, unequal warps',
         direct=direct,
         causes='sensors hung on the wrong door, cables on the wrong plug, sides mistaken in the '
