@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.interpolate import PchipInterpolator
 
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.water import ATMOSPHERE, Water
@@ -45,6 +46,19 @@ def test_the_current_does_not_overshoot_between_levels(rich_water: Water) -> Non
         between = rich_water.current(-np.linspace(low, high, 50))[:, :2]
         assert (between >= np.minimum(a, b) - 1e-12).all()
         assert (between <= np.maximum(a, b) + 1e-12).all()
+
+
+@pytest.mark.parametrize('number', [2, 3, 4, 9])
+def test_its_cubics_are_those_of_scipy(number: int) -> None:
+    chance = np.random.default_rng(number)
+    for flat in (1.0, 0.0):
+        depths = np.cumsum(chance.uniform(0.1, 80.0, number))
+        currents = chance.normal(size=(number, 2))
+        # Levels of one current, steep ends and turns are where its slopes are cut.
+        currents[1:3] *= flat
+        found = Water(depths=depths, currents=currents).profile[1][:-1]
+        expected = PchipInterpolator(depths, currents).c.transpose(1, 2, 0)
+        np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-13)
 
 
 def test_its_slope_is_its_derivative(rich_water: Water) -> None:

@@ -1,5 +1,7 @@
 """Current of the water at a height, as compiled loops take it."""
 
+import numpy as np
+
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.compiled import compiled, inner
 
@@ -29,3 +31,42 @@ def fill_currents(
     """Currents (n, 3) at heights (n,) and their derivatives by height."""
     for n in range(len(z)):
         current_at(knots, cubics, z[n], flow[n], slope[n])
+
+
+@compiled
+def fill_cubics(depths: FloatArray, currents: FloatArray, cubics: FloatArray) -> None:
+    """Cubics (k - 1, 2, 4) of currents (k, 2) between k depths, two at least: PCHIP (Fritsch and
+    Butland 1984), as scipy's, whose interpolator takes a tenth of a millisecond to be made.
+    """
+    last = len(depths) - 1
+    wide = np.diff(depths)
+    for axis in range(2):
+        steep = (currents[1:, axis] - currents[:-1, axis]) / wide
+        slope = np.zeros(last + 1)
+        for k in range(1, last):
+            before, behind = steep[k - 1], steep[k]
+            if before * behind > 0.0:
+                first, second = 2.0 * wide[k] + wide[k - 1], wide[k] + 2.0 * wide[k - 1]
+                slope[k] = (first + second) / (first / before + second / behind)
+        if last == 1:
+            slope[:] = steep[0]
+        else:
+            slope[0] = _end_slope(wide[0], wide[1], steep[0], steep[1])
+            slope[last] = _end_slope(wide[-1], wide[-2], steep[-1], steep[-2])
+        for k in range(last):
+            bend = (slope[k] + slope[k + 1] - 2.0 * steep[k]) / wide[k]
+            cubics[k, axis, 0] = bend / wide[k]
+            cubics[k, axis, 1] = (steep[k] - slope[k]) / wide[k] - bend
+            cubics[k, axis, 2] = slope[k]
+            cubics[k, axis, 3] = currents[k, axis]
+
+
+@inner
+def _end_slope(wide: float, next_wide: float, steep: float, next_steep: float) -> float:
+    """Slope at an end: of the parabola through three points, where that keeps the shape."""
+    slope = ((2.0 * wide + next_wide) * steep - wide * next_steep) / (wide + next_wide)
+    if np.sign(slope) != np.sign(steep):
+        return 0.0
+    if np.sign(steep) != np.sign(next_steep) and abs(slope) > 3.0 * abs(steep):
+        return 3.0 * steep
+    return slope

@@ -42,14 +42,14 @@ class Water:
         """The current for compiled loops: depths (k,) and, from each on down, the cubics
         (k, 2, 4) of both currents in the depth below it, highest power first.
         """
-        # Instruments ask for pressures and depths only, and have no use for scipy.
-        from scipy.interpolate import PchipInterpolator
+        # Instruments ask for pressures and depths only, and have no use for a compiler.
+        from trawl_ros.model.current import fill_cubics
 
-        knots = np.zeros(1) if len(self.depths) == 0 else np.array(self.depths, float)
+        knots = np.zeros(1) if len(self.depths) == 0 else np.ascontiguousarray(self.depths, float)
         cubics = np.zeros((len(knots), 2, 4))
         cubics[: len(self.currents), :, 3] = self.currents
         if len(self.depths) > 1:
-            cubics[:-1] = PchipInterpolator(self.depths, self.currents).c.transpose(1, 2, 0)
+            fill_cubics(knots, np.ascontiguousarray(self.currents, float), cubics[:-1])
         return knots, cubics
 
     def with_more_current(self, depths: FloatArray, currents: FloatArray) -> 'Water':

@@ -18,9 +18,17 @@ from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.partials import GearAtPoint
 
 
-def effects_that_show(gear: GearAtPoint, parameters: MotionParameters) -> frozenset[str]:
-    """Names of the effects that change observables of a gear that stays where it is."""
-    return frozenset(effect.name for effect in parameters.effects if _shows(gear, effect))
+def effects_that_show(
+    gear: GearAtPoint, parameters: MotionParameters, known: frozenset[str] = frozenset()
+) -> frozenset[str]:
+    """Names of the effects that change observables of a gear that stays where it is, those
+    ``known`` to have done so before among them.
+    """
+    return known.union(
+        effect.name
+        for effect in parameters.effects
+        if effect.name not in known and _shows(gear, effect)
+    )
 
 
 def _shows(gear: GearAtPoint, effect: Effect) -> bool:

@@ -152,7 +152,7 @@ class DifferentiatedTow:
         if self._net is None or self._net[0] is not model.bars:
             self._net = model.bars, net_loads(model)
         gear, own = GearAtPoint(self._plain, self._acting, point), self.parameters
-        self._showing = effects_that_show(gear, own)
+        self._showing = effects_that_show(gear, own, self._showing)
         by_effects = effect_pushes(gear, own, end)
         return pushes(model, own, end, course.slopes, self._net[1], by_effects)
 
