@@ -7,11 +7,11 @@ import numpy as np
 from trawl_ros.diagnosis.mimics.gear_file_change import changes_of
 from trawl_ros.effects.base.effect import Effect, Situation
 from trawl_ros.effects.registry import catalogue
-from trawl_ros.model.assembly import forces
+from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.solver.equilibrium import SteadyState
-from trawl_ros.solver.likeness import same_forces, same_observables
+from trawl_ros.solver.likeness import same_forces, same_mass, same_observables
 
 AT = Situation((500.0, 500.0, 2.1), hours=1.0)
 
@@ -26,7 +26,7 @@ def changed(model: GearModel) -> Iterator[tuple[Effect, GearModel, GearModel]]:
 
 
 def test_what_is_said_to_be_the_same_is_the_same(model: GearModel, steady: SteadyState) -> None:
-    found, left_out, seen = steady.equilibrium, 0, 0
+    found, left_out, seen, heavy = steady.equilibrium, 0, 0, 0
     for effect, up, down in changed(model):
         if same_forces(up, down):
             left_out += 1
@@ -36,7 +36,12 @@ def test_what_is_said_to_be_the_same_is_the_same(model: GearModel, steady: Stead
             seen += 1
             both = [observe(gear, found.state, found.tow).array() for gear in (up, down)]
             assert np.array_equal(*both), effect.name
+        if same_mass(up, down):
+            heavy += 1
+            both = [mass(gear, found.state, found.tow) for gear in (up, down)]
+            assert np.array_equal(*both), effect.name
     assert left_out >= 15
+    assert heavy >= 20
     assert seen >= 60
 
 

@@ -38,6 +38,19 @@ def same_observables(one: GearModel, other: GearModel) -> bool:
     )
 
 
+def same_mass(one: GearModel, other: GearModel) -> bool:
+    """True if two gears surely have the same mass in any state: its parts are shared."""
+    whole = 'ends', 'rest', 'warp_side', 'lump_mass', 'lump_added', 'kite', 'layout', 'pattern'
+    return (
+        _shared(one, other, whole)
+        and _shared(one.bars, other.bars, ('mass', 'volume', 'added_normal', 'added_tangential'))
+        and _shared(one.board, other.board, ('mass', 'inertia', 'added_mass', 'points'))
+        and _shared(one.board, other.board, ('installation', 'rerigged'))
+        and one.water.density == other.water.density
+        and one.water.density_gradient == other.water.density_gradient
+    )
+
+
 def _same_middles(one: Board, other: Board) -> bool:
     """True if two boards have the same middles; these are worked out where what they are made of
     is another.

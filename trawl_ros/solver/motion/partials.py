@@ -5,6 +5,7 @@ are linear in both; an effect's values by central differences of the gear that i
 """
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.slopes.along import add_forces_along_tow, board_inertia
 from trawl_ros.model.state import State, Tow, TowSlopes
+from trawl_ros.solver.likeness import same_mass
 from trawl_ros.solver.motion.course import InputPoint, by_values
 from trawl_ros.solver.motion.parameters import MotionParameters
 
@@ -114,14 +116,27 @@ def pushes(
 
 def effect_pushes(gear: GearAtPoint, parameters: MotionParameters, end: StepEnd) -> FloatArray:
     """Derivatives (dof, m) of F - M a by the values of effects, of what they do to the gear."""
-    own = parameters.of_effects
+    own, still = parameters.of_effects, _GearAtEnd(gear.model(gear.acting), end)
     found, first = np.zeros((gear.plain.dof, own.stop - own.start)), 0
     for effect in parameters.effects:
         last = first + len(effect.parameters)
         if type(effect).gear is not Effect.gear:
-            found[:, first:last] += _by_effect(gear, effect, end)
+            found[:, first:last] += _by_effect(gear, effect, still)
         first = last
     return found
+
+
+@dataclass(frozen=True)
+class _GearAtEnd:
+    """Gear with the effects that act, and the end of its step."""
+
+    model: GearModel
+    end: StepEnd
+
+    @cached_property
+    def inertia(self) -> FloatArray:
+        """Mass as data on the pattern, of all gears that are heavy alike."""
+        return mass(self.model, self.end.predicted, self.end.tow)
 
 
 def _by_coefficients(model: GearModel, end: StepEnd) -> FloatArray:
@@ -161,18 +176,19 @@ def _by_net(model: GearModel, net: NetLoads, end: StepEnd) -> FloatArray:
     return found
 
 
-def _by_effect(gear: GearAtPoint, effect: Effect, end: StepEnd) -> FloatArray:
+def _by_effect(gear: GearAtPoint, effect: Effect, still: _GearAtEnd) -> FloatArray:
     """Derivatives (dof, k) by the values of an effect of what it does to the gear."""
-    still = gear.model(gear.acting)
+    end = still.end
 
     def push(acting: EffectSet) -> FloatArray:
         model = gear.model(acting)
-        if _differ_in_added_mass(model, still):
+        if _differ_in_added_mass(model, still.model):
             load = np.zeros(model.dof)
             turned = end.predicted.board_rotations
             load[-12:] = -board_inertia(model, turned, end.acceleration).ravel()
             return load
-        inertia = mass(model, end.predicted, end.tow)
+        alike = same_mass(model, still.model)
+        inertia = still.inertia if alike else mass(model, end.predicted, end.tow)
         pull = forces(model, end.state, end.tow)
         left: FloatArray = pull - model.pattern.times(inertia, end.acceleration)
         return left
