@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from trawl_ros.diagnosis import several
 from trawl_ros.diagnosis.evidence import Evidence
-from trawl_ros.diagnosis.several import likeliest_sets
+from trawl_ros.diagnosis.several import SetsTried, likeliest_sets
 from trawl_ros.effects.registry import catalogue
 
 TRUE = ('heave', 'counter_scale', 'net_drag')
@@ -44,3 +45,21 @@ def test_every_set_is_there_once_and_has_an_effect_once():
     sets = names_of(likeliest_sets(score_test_of((10.0, 3.0, 1.0)), 3))
     assert all(len(own) == 3 for own in sets)
     assert len({frozenset(own) for own in sets}) == len(sets) == 4
+
+
+def test_a_set_with_a_part_of_a_swap_is_none_and_a_swap_alone_stays(monkeypatch):
+    def refitted(predictor, base, test, wanted):
+        names = tuple(candidate.name for candidate in wanted)
+        return SimpleNamespace(names=names, in_part=lambda: 'swapped_cells' in names)
+
+    monkeypatch.setattr(several, 'refitted', refitted)
+    tried = SetsTried(None, None, None, [], on_progress=lambda _: None)
+    cells, doors, log = (
+        SimpleNamespace(name=name, effect=catalogue()[name])
+        for name in ('swapped_cells', 'swapped_doors', 'speed_log')
+    )
+    for wanted in ((cells,), (cells, doors), (cells, log), (doors, log)):
+        tried.add(wanted)
+    assert [own.names for own in tried.refits] == [
+        ('swapped_cells',), ('swapped_doors', 'speed_log'),
+    ]  # fmt: skip

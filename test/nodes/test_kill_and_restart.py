@@ -42,8 +42,8 @@ FEW = ('sim_node', 'winch_node', 'vessel_node', 'bag_recorder')
 """A graph as small as may be: two sources, of which one is killed, and a listener beside them."""
 
 QUICK = ('winch_node',)
-"""A source that listens too; all others come back in the same way. More kills would find more often
-that Fast DDS leaves the memory of one that is killed as it takes a message, `docs/diagnostics.md`.
+"""A source that listens too; all others come back in the same way. Now and then nobody is heard by
+what is started in the place of one that was killed, `docs/diagnostics.md`, so that kills are few.
 """
 
 
