@@ -17,7 +17,7 @@ from distributed.security import Security
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.network import THIS_MACHINE
-from trawl_ros.core.parallel import run_tasks
+from trawl_ros.core.parallel import QUIET, run_tasks
 
 TASKS = {f'root {number}': float(number) for number in range(6)}
 ROOTS = {name: math.sqrt(number) for name, number in TASKS.items()}
@@ -60,6 +60,12 @@ def test_a_fault_names_its_task(cluster: str) -> None:
 def test_a_worker_that_dies_names_its_task() -> None:
     with pytest.raises(TrawlError, match=r'^trial 7: the process that ran it died$'):
         list(run_tasks(os._exit, {'trial 7': 3}, workers=1))
+
+
+def test_processes_that_do_not_start_in_time_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(QUIET, 'distributed.comm.timeouts.connect', '1ms')
+    with pytest.raises(TrawlError, match=r'1 processes of this machine did not start'):
+        list(run_tasks(abs, {'one': 1}, workers=1))
 
 
 def test_an_address_without_a_scheduler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -126,7 +132,7 @@ def test_one_that_listens_and_says_nothing_is_refused(monkeypatch: pytest.Monkey
 
 SLEEPERS = """
 import time
-from trawl_ros.core.parallel import run_tasks
+from trawl_ros.core.parallel import QUIET, run_tasks
 
 if __name__ == '__main__':
     try:

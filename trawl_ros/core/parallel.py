@@ -28,12 +28,15 @@ ResultT = TypeVar('ResultT')
 PATIENCE_S = 5.0
 """Timeout of a scheduler's answer."""
 
+START_S = 300.0
+"""Timeout of processes of this machine, which may have much else to do while they start."""
+
 TLS_KEYS = "ca-file, client.cert and client.key of Dask's distributed.comm.tls"
 
 QUIET = {
     # A worker that dies takes its task along; the same task would kill the next one too.
     'distributed.scheduler.allowed-failures': 0,
-    'distributed.comm.timeouts.connect': f'{PATIENCE_S:g}s',
+    'distributed.comm.timeouts.connect': f'{START_S:g}s',
     # Tasks compute for minutes without giving the interpreter back; that is no fault.
     'distributed.admin.tick.limit': '1h',
 }
@@ -126,25 +129,40 @@ def _result(name: str, future: Future[ResultT | _Fault]) -> ResultT:
 def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
     with ExitStack() as stack:
         if scheduler is None:
-            with _interrupts_held():
-                # Keys made for this cluster alone: who else works on this machine cannot join.
-                cluster = LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    processes=True,
-                    host=THIS_MACHINE,
-                    security=True,
-                    # No dashboard, but what is left of its server would listen to all.
-                    dashboard_address=f'{THIS_MACHINE}:0',
-                    worker_dashboard_address=None,
-                    scheduler_kwargs={'dashboard': False},
-                    silence_logs=logging.CRITICAL,
-                    memory_limit=0,
-                )
-                stack.enter_context(cluster)
-            yield stack.enter_context(Client(cluster, set_as_default=False))
+            client = _of_this_machine(workers, stack)
         else:
-            yield stack.enter_context(_connected(scheduler))
+            client = stack.enter_context(_connected(scheduler))
+        yield client
+
+
+def _of_this_machine(workers: int, stack: ExitStack) -> Client:
+    """Client of as many processes, which the stack ends."""
+    try:
+        with _interrupts_held():
+            # Keys made for this cluster alone: who else works on this machine cannot join.
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                host=THIS_MACHINE,
+                security=True,
+                # No dashboard, but what is left of its server would listen to all.
+                dashboard_address=f'{THIS_MACHINE}:0',
+                worker_dashboard_address=None,
+                scheduler_kwargs={'dashboard': False},
+                silence_logs=logging.CRITICAL,
+                memory_limit=0,
+            )
+            stack.enter_context(cluster)
+        client: Client = stack.enter_context(Client(cluster, set_as_default=False))
+    except (OSError, RuntimeError) as reason:
+        # Dask tells of its own timeouts by either.
+        first_line = str(reason).splitlines()[:1] or [type(reason).__name__]
+        raise TrawlError(
+            f'{workers} processes of this machine did not start ({first_line[0]}); each has '
+            f'{START_S:g} s, so is it busy with other work?'
+        ) from reason
+    return client
 
 
 def _connected(address: str) -> Client:
