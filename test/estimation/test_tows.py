@@ -1,10 +1,13 @@
 """Tows read apart from each other count as if they had been read one after another."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.pipeline import Identification
-from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
+from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered, require_distinct
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import Rejections, SteadyWindow, WindowOptions
 
@@ -41,6 +44,14 @@ def test_windows_states_and_tows_are_numbered_through(sea, trials):
     ] * number
     states = [window.state for window in windows]
     assert sorted(set(states)) == list(range(3 * len({w.state for w in found[0].windows})))
+
+
+def test_a_recording_that_is_given_twice_is_refused(sea, trials):
+    found = [find(sea, samples, name) for samples, name in zip(trials, 'ab', strict=True)]
+    empty = FoundWindows('none', (), {}, {}, Rejections(), 'no windows', ())
+    require_distinct([*found, empty, empty])
+    with pytest.raises(TrawlError, match=r'a and a copy hold the same .* expected each tow once'):
+        require_distinct([*found, replace(found[0], name='a copy')])
 
 
 def test_reading_apart_gives_what_one_stream_gives(sea, model, prior, trials):

@@ -18,7 +18,7 @@ from trawl_ros.diagnosis.repair import source
 from trawl_ros.estimation.bag_windows import read_tows
 from trawl_ros.estimation.from_gear import estimator_options, identification_for
 from trawl_ros.estimation.pipeline import NO_WINDOW
-from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered
+from trawl_ros.estimation.tows import FoundWindows, estimate_tows, numbered, require_distinct
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.topics import NAMESPACE
@@ -95,8 +95,8 @@ def identify(
     Raises
     ------
     TrawlError
-        If no bag has a steady window, or can be learned from in motion, with the reasons, or
-        ``out`` holds files already.
+        If no bag has a steady window, or can be learned from in motion, with the reasons, a tow is
+        given twice, or ``out`` holds files already.
 
     Notes
     -----
@@ -126,6 +126,7 @@ def identify(
     paths = [Path(bag) for bag in bags]
     recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
     _note(recordings, on_note)
+    require_distinct(recordings)
     why_not = why_windows_alone(record, prior=prior)
     if len(reasons := _reasons(recordings)) == len(recordings):
         unsettled = [one for one in recordings if (one.why_not or '').startswith(NO_WINDOW)]
@@ -197,7 +198,7 @@ def diagnose(
     Raises
     ------
     TrawlError
-        If a bag cannot be read, or ``out`` holds files already.
+        If a bag cannot be read, a tow is given twice, or ``out`` holds files already.
 
     Examples
     --------
@@ -213,6 +214,7 @@ def diagnose(
     paths = [Path(bag) for bag in (*baseline, *bags)]
     recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
     _note(recordings, on_note)
+    require_distinct(recordings)
     windows, names = numbered(recordings)
     known, _ = numbered(recordings[: len(baseline)])
     if len(reasons := _reasons(recordings)) == len(recordings):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.records import Rejections, SteadyWindow
@@ -35,6 +36,23 @@ class FoundWindows:
     rejections: Rejections
     why_not: str | None
     problems: tuple[str, ...]
+
+
+def require_distinct(recordings: Sequence[FoundWindows]) -> None:
+    """Refuse a recording that is given twice: its evidence would count twice.
+
+    Raises
+    ------
+    TrawlError
+        If all steady windows of two are the same.
+    """
+    for number, one in enumerate(recordings):
+        for other in recordings[:number]:
+            if one.windows and one.windows == other.windows:
+                raise TrawlError(
+                    f'{other.name} and {one.name} hold the same {len(one.windows)} steady windows; '
+                    'expected each tow once, as a baseline or to be examined'
+                )
 
 
 def numbered(recordings: Sequence[FoundWindows]) -> tuple[list[SteadyWindow], list[str]]:
