@@ -179,23 +179,31 @@ class Estimator:
         coefficients: FloatArray,
         windows: Sequence[SteadyWindow] | None = None,
         net: FloatArray | None = None,
+        inputs: FloatArray | None = None,
     ) -> FloatArray:
-        """Predict the four channels of eq. 35 at each window's inputs, with factors ``net`` (2,) on
-        the net's drag and weight, or those of the fit.
+        """Predict the four channels of eq. 35 at each window's inputs as measured, or ``inputs``
+        (n, 3), with factors ``net`` (2,) on the net's drag and weight, or those of the fit.
 
         Returns
         -------
         (n, 4) array in the order of `PAPER_CHANNELS`, NaN where there is no steady state.
         """
         rows = []
-        for window in self.windows if windows is None else windows:
+        for number, window in enumerate(self.windows if windows is None else windows):
+            measured = measured_inputs(window)
+            there = measured if inputs is None else inputs[number]
             try:
-                linear = self._linearise(window, coefficients, net=net)
+                linear = self._linearise(window, coefficients, there, net=net)
             except NoSteadyState:
                 rows.append(np.full(len(PAPER_CHANNELS), np.nan))
             else:
-                rows.append(paper_values(dict(zip(linear.channels, linear.solved, strict=True))))
+                values = linear.solved + linear.by_inputs @ (there - measured)
+                rows.append(paper_values(dict(zip(linear.channels, values, strict=True))))
         return stack(rows)
+
+    def inputs_of(self, windows: Sequence[SteadyWindow]) -> FloatArray:
+        """Warp lengths and speed (n, 3) of windows, corrected for errors as they are estimated."""
+        return np.array([self._inputs_of(window) for window in windows])
 
     def _inputs_of(self, window: SteadyWindow) -> FloatArray:
         """Warp lengths and speed of a window, corrected for their estimated errors.

@@ -7,22 +7,24 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.fit.linearised import measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup
+from trawl_ros.estimation.motion.inputs import corrected
 from trawl_ros.estimation.motion.processes import GroupRows
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.steps import step
+from trawl_ros.estimation.motion.steps import Place, step
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 FOLDS = 5
 """Parts into which the states of a single tow are dealt, as by the hold-out of the windows."""
 
-Predict = Callable[[FloatArray, Sequence[SteadyWindow], FloatArray | None], FloatArray]
-"""Channels of eq. 35 (n, 4) in windows, by coefficients (12,) and factors (2,) on drag and weight
-of the net, None where these are held."""
+Predict = Callable[[FloatArray, Sequence[SteadyWindow], FloatArray | None, FloatArray], FloatArray]
+"""Channels of eq. 35 (n, 4) in windows, by coefficients (12,), factors (2,) on drag and weight
+of the net, None where these are held, and warp lengths (m) and speed (m/s) (n, 3)."""
 
 
 def hold_out_states(
@@ -37,7 +39,8 @@ def hold_out_states(
     """Predict each window by a fit without its tow, or its state where there is one tow.
 
     A state is left out with the motion that led to it: from the end of the state before to its own
-    end. The tows are not towed again.
+    end. The tows are not towed again. Counters and log err in it as in the rest of its tow, and not
+    at all where no part of that is left: so do those of the windows (`Estimator.predictions`).
 
     Parameters
     ----------
@@ -79,8 +82,30 @@ def hold_out_states(
         rows = [i for i, window in enumerate(windows) if window.state in fold]
         values = prior.start + prior.std * there[0][:12]
         net = fit.layouts[0].net(there[0]) if fit.net else None
-        predicted[rows] = predict(values, [windows[i] for i in rows], net)
+        left_out = [windows[i] for i in rows]
+        inputs = np.array([_inputs(fit, there, window, tow_of) for window in left_out])
+        predicted[rows] = predict(values, left_out, net, inputs)
     return predicted
+
+
+def _inputs(
+    fit: MotionFit, place: Place, window: SteadyWindow, tow_of: Sequence[tuple[int, ...]]
+) -> FloatArray:
+    """Warp lengths and speed (3,) of a window, corrected for the errors in the part of its tow that
+    is nearest to it.
+    """
+
+    def away(number: int) -> float:
+        tow = fit.linear[number].tow
+        end = (window.end_ns - tow.start_ns) / SECOND
+        return max(-end, end - len(tow) * tow.stretch_s)
+
+    shown = measured_inputs(window)
+    parts = [number for number, numbers in enumerate(tow_of) if window.tow in numbers]
+    if not parts:
+        return shown
+    nearest = min(parts, key=away)
+    return corrected(shown, place[nearest][fit.layouts[nearest].of_errors])
 
 
 def _stretches(

@@ -169,6 +169,15 @@ class CorrectedInputs:
         return additions, paces
 
 
+def corrected(shown: FloatArray, errors: FloatArray) -> FloatArray:
+    """Inputs (3,) as shown, corrected for errors (e,) of `INPUT_ERRORS`, in std."""
+    true = np.array(shown)
+    for size, error in zip(errors, INPUT_ERRORS, strict=True):
+        column = INPUTS.index(error.channel)
+        true[column] -= size * error.std * (shown[column] if error.relative else 1.0)
+    return true
+
+
 def without_errors(inputs: TowInputs, begin: float = 0.0) -> CorrectedInputs:
     """Inputs taken as they are shown."""
     none = np.zeros(inputs.number_of_knots)

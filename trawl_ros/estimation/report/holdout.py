@@ -96,7 +96,9 @@ def hold_out(
         if rest.finish() is None:
             continue
         rows = [i for i, window in enumerate(windows) if window.state in left_out]
-        predicted[rows] = rest.predictions(rest.coefficients, [windows[i] for i in rows])
+        unseen = [windows[i] for i in rows]
+        inputs = rest.inputs_of(unseen)
+        predicted[rows] = rest.predictions(rest.coefficients, unseen, inputs=inputs)
     return HeldOut(by, groups, predicted)
 
 
