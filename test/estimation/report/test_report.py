@@ -63,6 +63,7 @@ def test_the_result_has_what_was_promised(sea, tows):
         'undetermined', 'converged', 'reason', 'active_bounds', 'covariance', 'singular_values',
         'weak_combinations', 'misfit', 'noise_scales', 'net', 'prior_used', 'held_out_by',
         'accepted', 'tows', 'residuals', 'innovations', 'laws', 'rejected_last',
+        'noise_densities',
     } == set(found)  # fmt: skip
     assert set(found['objective']) == {'start', 'end', 'truth'}
     assert found['objective']['end'] < found['objective']['start'] / 3.0
@@ -75,6 +76,7 @@ def test_the_result_has_what_was_promised(sea, tows):
     for row in found['channels'].values():
         assert row['mnae_held_out'] < row['mnae_start']
     assert np.array(found['covariance']).shape == (12, 12)
+    assert set(found['noise_densities']) == set(tows.estimator.windows[0].noise)
     assert found['accepted'] == {
         'windows': 15, 'readings': dict.fromkeys(tows.estimator.windows[0].counts, 15 * 90)
     }  # fmt: skip

@@ -103,6 +103,26 @@ class ErrorSizes:
         pairs = zip(self._all, other._all, strict=True)
         return float(max(abs(np.log(one / two)) for one, two in pairs if one > 0.0 and two > 0.0))
 
+    def no_less_than(self, other: 'ErrorSizes') -> 'ErrorSizes':
+        """Sizes with each that is below another record's replaced by that."""
+
+        def more(values: tuple[float, ...], least: tuple[float, ...]) -> tuple[float, ...]:
+            return tuple(map(max, values, least))
+
+        return ErrorSizes(
+            more(self.noise, other.noise), more(self.drift, other.drift),
+            more(self.model, other.model), more(self.state, other.state),
+            max(self.log, other.log), max(self.swift, other.swift),
+        )  # fmt: skip
+
+    def record(self) -> dict[str, object]:
+        """Record for JSON: the sizes that are estimated, by kind of error and group."""
+        kinds = {
+            'noise': self.noise, 'drift': self.drift, 'model': self.model, 'state': self.state,
+        }  # fmt: skip
+        by_group = {kind: dict(zip(GROUPS, own, strict=True)) for kind, own in kinds.items()}
+        return {**by_group, 'log': self.log}
+
     @property
     def _all(self) -> tuple[float, ...]:
         return (*self.noise, *self.drift, *self.model, *self.state, self.log)

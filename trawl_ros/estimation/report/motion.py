@@ -133,6 +133,7 @@ def motion_result(report: Report) -> dict[str, object]:
         'iterations': fit.iterations,
         'net': net_result(fit.net),
         'misfit': fit.misfit,
+        'sizes': fit.sizes.record(),
         'readings': fit.readings,
         'counted_s': motion.duration_s,
         'tows': list(motion.names),

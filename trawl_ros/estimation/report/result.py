@@ -9,6 +9,7 @@ from trawl_ros.estimation.report.motion import motion_result
 from trawl_ros.estimation.report.net import net_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
+from trawl_ros.estimation.windows.noise_density import noise_densities
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
@@ -58,6 +59,7 @@ def result(report: Report) -> dict[str, object]:
         ],
         'misfit': estimate.birge_ratio,
         'noise_scales': dict(estimate.noise_scales),
+        'noise_densities': dict(noise_densities(report.windows)),
         'net': net_result(report.estimate.net),
         'prior_used': report.prior_weight > 0.0,
         'held_out_by': report.held_out.by,
