@@ -9,9 +9,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from trawl_ros.diagnosis.onset.knowledge import of_identification
 from trawl_ros.estimation import bag_motion
 from trawl_ros.estimation.from_gear import NET_STD
 from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import VelocitySample, WinchSample
@@ -60,6 +62,8 @@ def test_both_estimates_are_shown_beside_one_another(identify, still_bag, tmp_pa
     assert done.exit_code == 0, done.output
     found = result_in(out)['motion']
     assert list(found['coefficients']) == list(COEFFICIENTS)
+    assert found['sizes'] == ErrorSizes().record()
+    assert of_identification(out / 'identification.json').sizes == ErrorSizes()
     for row in found['coefficients'].values():
         assert row['low'] <= row['value'] <= row['high']
         assert 0.0 < row['std'] <= 1.01 * row['prior_std']

@@ -299,7 +299,8 @@ def _onsets(
 
     known = of_gear_file(diagnosis.gear)
     if diagnosis.base is not None:
-        known = by_estimate(diagnosis.base.estimate)
+        windows = (*diagnosis.split.deciding, *diagnosis.split.kept_back)
+        known = by_estimate(diagnosis.base.estimate, windows)
     found = []
     for number, path in enumerate(paths):
         on_progress(WorkProgress('watching for what begins', number, len(paths), 'tows'))

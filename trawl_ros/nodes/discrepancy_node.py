@@ -68,8 +68,8 @@ class DiscrepancyNode(TrawlNode):
         Number('baseline_tows', 0, 'tows', 0, 100, 'So many of the first tows are of a gear in '
                'order.', whole=True),
         Flag('watch', False, 'True if the tow is watched without pause for what begins in it.'),
-        Text('estimate', '', 'An identification.json: the boards as they are known when a tow is '
-             'watched; by the prior of the gear file if empty.'),
+        Text('estimate', '', 'An identification.json: boards and errors as they are known when a '
+             'tow is watched; by the prior of the gear file, and as stated, if empty.'),
         Text('log_book', '', 'File for the log book of findings, which is gone on with; none if '
              'empty.'),
         *WINDOW_SPECS,

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.diagnosis.onset.knowledge import Knowledge
+from trawl_ros.diagnosis.onset.candidates import WATCHED
+from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
 from trawl_ros.diagnosis.onset.monitor import BEFORE, LEARNS, REST, OnsetMonitor
-from trawl_ros.diagnosis.onset.stretches import StretchCutter
+from trawl_ros.diagnosis.onset.stretches import LIVE, StretchCutter
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
@@ -80,8 +81,10 @@ def test_while_boards_are_far_from_what_is_learned_nothing_is_raised_and_that_is
     onset_gear, onset_samples
 ):
     told, judged = [], []
+    known = replace(of_gear_file(onset_gear), densities={'port_roll': 3.0 * LIVE.stretch_s**0.5})
     monitor = OnsetMonitor(
         onset_gear,
+        known,
         effects=FEW,
         on_stretch=lambda one: (told if one.why_not else judged).append(one),
     )
@@ -93,3 +96,7 @@ def test_while_boards_are_far_from_what_is_learned_nothing_is_raised_and_that_is
     assert all(one.evidence == () for one in learning)
     assert monitor.unwatched == len(told)
     assert monitor.watched == len(judged)
+    # What is known of errors is still known where the watch began anew with other boards.
+    compared = [one.white for one in (*told, *judged) if one.white is not None]
+    place = WATCHED.index('port_roll')
+    assert all(np.linalg.norm(one.root[place]) > 3.0 for one in compared)

@@ -1,17 +1,22 @@
-"""What an effect leaves in the innovations is its mark, however large it is."""
+"""What an effect leaves in the innovations is its mark; errors as found make them white."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from trawl_ros.diagnosis.onset.candidates import WATCHED, candidate_table
+from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.ratios import RatioBank
 from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
-from trawl_ros.diagnosis.onset.stretches import CounterLeap, LastStretch
+from trawl_ros.diagnosis.onset.stretches import LIVE, CounterLeap, LastStretch
 from trawl_ros.diagnosis.onset.towing import TowedStretch
 from trawl_ros.diagnosis.onset.whitening import MOST, WhiteningFilter
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.records.channels import CHANNELS, MEASURED
 
 TABLE = candidate_table({'tension_cell': catalogue()['tension_cell']})
@@ -22,13 +27,22 @@ K, P = len(WATCHED), len(TABLE.parameters)
 STEADY = CounterLeap(0.0, 0.1)
 
 
+KNOWN = Knowledge(np.zeros(12), np.eye(12))
+
+
+def responses(by_log=0.0):
+    """Responses of a gear that follows at once, to 1 m/s by ``by_log`` in all channels."""
+    log = np.zeros((LOG_TAPS, K))
+    log[0] = by_log
+    return OnsetResponses(
+        np.zeros((1, K, P)), np.zeros((1, K, P)), log, np.ones((1, P)), np.zeros((LEAP_TAPS, K, 2))
+    )
+
+
 def watched(size, stretches=12):
     """Innovations, marks and evidence of a tension cell that reads too much from the start."""
-    nothing = OnsetResponses(
-        np.zeros((1, K, P)), np.zeros((1, K, P)), np.zeros((LOG_TAPS, K)), np.ones((1, P)),
-        np.zeros((LEAP_TAPS, K, 2)),
-    )  # fmt: skip
-    filtered = WhiteningFilter(np.zeros(12), np.eye(12), nothing, 1.0)
+    nothing = responses()
+    filtered = WhiteningFilter(KNOWN, nothing, 1.0)
     bank = RatioBank(TABLE, stretches + 1, filtered.size)
     by_values = np.zeros((K, P))
     by_values[TENSIONS, 0] = 1.0
@@ -57,3 +71,61 @@ def test_innovations_are_the_marks_of_what_made_them_and_never_beyond_the_edge(s
         assert np.abs(innovations).max() <= MOST + 1e-9
     told = evidence['tension_cell']
     assert told.ratio == max(one.ratio for one in evidence.values())
+
+
+def innovations(known, by_log=0.0, noise=1.0, log=0.0, stretches=200):
+    """Innovations (n, k) where means scatter by so many of their `NOISE`, and the log by ``log``
+    (m/s) more than its readings show.
+    """
+    chance = np.random.default_rng(7)
+    filtered = WhiteningFilter(known, responses(by_log), 1.0)
+    towed = TowedStretch(
+        VALUES, np.zeros((K, 12)), np.zeros((K, len(INPUT_ERRORS))), np.zeros((K, P)),
+        Situation((400.0, 400.0, 2.2)),
+    )  # fmt: skip
+    found = []
+    for number in range(stretches):
+        last = LastStretch(number, number, number + 1, log_std=0.005, leaps=(STEADY, STEADY))
+        means = VALUES + noise * NOISE * chance.standard_normal(K) + log * by_log * chance.normal()
+        white = filtered.step(means, NOISE, towed, np.zeros(12), last, np.zeros((K, 6)))
+        found.append(white.whitened(white.residual))
+    return np.array(found[10:])
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+THRICE = ErrorSizes(noise=(3.0,) * len(GROUPS))
+DENSITIES = {name: 3.0 * CHANNELS[name].noise * np.sqrt(LIVE.stretch_s) for name in WATCHED}
+
+
+@pytest.mark.parametrize('told', [{'sizes': THRICE}, {'densities': DENSITIES}])
+def test_means_that_scatter_more_than_their_readings_show_are_white_by_what_was_found(told):
+    assert rms(innovations(KNOWN, noise=3.0)) > 1.9
+    assert rms(innovations(replace(KNOWN, **told), noise=3.0)) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    'told', [{'sizes': ErrorSizes(log=4.0)}, {'densities': {'speed': 0.02 * LIVE.stretch_s**0.5}}]
+)
+def test_a_log_that_is_worse_than_its_readings_show_is_white_by_what_was_found(told):
+    by_log = 400.0 * NOISE
+    assert rms(innovations(KNOWN, by_log, log=0.02)) > 1.25
+    found = innovations(replace(KNOWN, **told), by_log, log=0.02)
+    assert rms(found) == pytest.approx(1.0, abs=0.1)
+
+
+def test_less_than_readings_scatter_changes_nothing():
+    quiet = replace(KNOWN, densities=dict.fromkeys((*WATCHED, 'speed'), 1e-9))
+    np.testing.assert_array_equal(innovations(quiet), innovations(KNOWN))
+
+
+def test_what_changes_with_states_changes_by_as_much_as_was_found():
+    by_state = ErrorSizes(state=(0.9,) * len(GROUPS))
+    leaps = []
+    for known in (KNOWN, replace(KNOWN, sizes=by_state)):
+        filtered = WhiteningFilter(known, responses(), 1.0)
+        filtered.begin_state()
+        leaps.append(np.diag(filtered.variance)[filtered.calibrations] - 1.0)
+    np.testing.assert_allclose(leaps[1], 9.0 * leaps[0])

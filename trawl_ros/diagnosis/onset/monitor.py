@@ -134,7 +134,7 @@ class OnsetMonitor:
     gear
         The gear as it is believed.
     knowledge
-        Of its boards; by default the prior of the gear file.
+        Of its boards and of errors; by default the prior of the gear file, and as stated.
     options
         Of the monitor.
     effects
@@ -262,10 +262,7 @@ class OnsetMonitor:
         oldest = self.options.window
         watch.responses = onset_responses(self._gear, watch.model.coefficients, steady, oldest)
         if watch.filter is None:
-            known = watch.known
-            watch.filter = WhiteningFilter(
-                known.values, known.covariance, watch.responses, self.options.inflation
-            )
+            watch.filter = WhiteningFilter(watch.known, watch.responses, self.options.inflation)
 
     def _has_moved(self, towed: TowedStretch, evidence: Sequence[OnsetEvidence]) -> bool:
         watch = self._watch
@@ -308,7 +305,7 @@ class OnsetMonitor:
         if self._may_begin_anew:
             # Estimates of all else came with derivatives from far off.
             watch.filter.doubt(learned - watch.model.coefficients)
-            watch.known = Knowledge(learned, watch.filter.covariance)
+            watch.known = replace(watch.known, values=learned, covariance=watch.filter.covariance)
             watch.filter = watch.responses = None
             watch.bank.forget()
             watch.model.begin_anew(learned)

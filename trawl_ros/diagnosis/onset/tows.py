@@ -1,6 +1,6 @@
 """Onsets in tows that are over: the monitor fed from recordings, as the node is from topics."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,8 @@ from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.windows.noise_density import noise_densities
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import Sample
@@ -65,10 +67,11 @@ class OnsetsInTow:
         return (found.onset_ns - self.start_ns) / 60e9
 
 
-def by_estimate(estimate: Estimate) -> Knowledge:
-    """Knowledge of the boards by an estimate from the same tows."""
+def by_estimate(estimate: Estimate, windows: Sequence[SteadyWindow]) -> Knowledge:
+    """Knowledge by an estimate from steady windows of the same tows."""
     own = slice(0, len(COEFFICIENTS))
-    return Knowledge(estimate.values[own], LESS_KNOWN**2 * np.array(estimate.covariance)[own, own])
+    covariance = LESS_KNOWN**2 * np.array(estimate.covariance)[own, own]
+    return Knowledge(estimate.values[own], covariance, noise_densities(windows))
 
 
 def onsets_in(

@@ -5,6 +5,7 @@ known, errors of counters and log, calibration, and the processes of `estimation
 effect changes passes through the same filter, and comes out as its mark on the innovations.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,6 +14,7 @@ from scipy.linalg import solve_triangular
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.diagnosis.onset.candidates import WATCHED
+from trawl_ros.diagnosis.onset.knowledge import STATED, Knowledge
 from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
 from trawl_ros.diagnosis.onset.stretches import (
     LIVE,
@@ -23,7 +25,7 @@ from trawl_ros.diagnosis.onset.stretches import (
 from trawl_ros.diagnosis.onset.towing import TowedStretch
 from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
-from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorSizes, ErrorTimes
+from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorTimes
 from trawl_ros.records.channels import CHANNELS, INPUTS
 
 MOST_ABSORBED = 6
@@ -88,19 +90,22 @@ class WhiteningFilter:
 
     Parameters
     ----------
-    start, covariance
-        Coefficients (12,) as they are known, and their covariance (12, 12).
+    known
+        The boards, and how large errors are, as they are known.
     responses
         Of the gear, to errors of the log and to counters that leap.
     inflation
         Factor on the std of all errors that are stated.
     """
 
-    def __init__(
-        self, start: FloatArray, covariance: FloatArray, responses: OnsetResponses,
-        inflation: float,
-    ) -> None:  # fmt: skip
-        self._start, self._responses, self._inflation = start, responses, inflation
+    def __init__(self, known: Knowledge, responses: OnsetResponses, inflation: float) -> None:
+        self._start, self._responses, self._inflation = known.values, responses, inflation
+        self._sizes = known.sizes
+        # Averaging wears errors that neighbouring readings share down as slowly as in windows.
+        self._least = {
+            name: density / np.sqrt(LIVE.stretch_s) for name, density in known.densities.items()
+        }
+        covariance = known.covariance
         self._known = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
         self.mean = np.zeros(self.size)
         self.variance = np.eye(self.size)
@@ -165,8 +170,9 @@ class WhiteningFilter:
         The dock where they were measured says so of the spread; leaps of counters are seen.
         """
         diagonal = np.einsum('ii->i', self.variance)
-        leaps = [LEAPS.get(name, STATE_LEAP) for name in WATCHED]
-        diagonal[self.calibrations] += np.square(leaps)
+        leaps = np.array([LEAPS.get(name, STATE_LEAP) for name in WATCHED])
+        more = _by_channel(self._sizes.state) / _by_channel(STATED.state)
+        diagonal[self.calibrations] += np.square(leaps * more)
 
     def absorb(self, number: int, scale: float) -> None:
         """Take a value along that has been found, of a size up to ``scale``."""
@@ -214,7 +220,10 @@ class WhiteningFilter:
         shift = towed.by_coefficients @ (self._start - linearised_at)
         residual = (means - towed.values - shift)[rows] - model @ self.mean
         own = np.array([CHANNELS[name].noise for name in WATCHED])
-        white = (noise**2 + (ErrorSizes().drift[0] * own) ** 2)[rows] * self._inflation**2
+        least = [self._least.get(name, 0.0) for name in WATCHED]
+        scatter = np.maximum(_by_channel(self._sizes.noise) * noise, least)
+        drift = _by_channel(self._sizes.drift) * own
+        white = (scatter**2 + drift**2)[rows] * self._inflation**2
         root = np.linalg.cholesky(model @ self.variance @ model.T + np.diag(white))
         # A reading far off is one at the edge of errors that large: in the filter and in all that
         # a signature leaves in it, or what explains such readings would not be what made them.
@@ -254,6 +263,7 @@ class WhiteningFilter:
         for number in (2, 5, 6):
             part = self._part(number)
             diagonal[part] += 1.0 - self._decay[part] ** 2
+        log_std = max(self._sizes.log * log_std, self._least.get('speed', 0.0))
         diagonal[self._part(3).start] = (log_std * self._inflation) ** 2
 
     def _leap(self, number: int, leap: CounterLeap) -> None:
@@ -278,15 +288,16 @@ class WhiteningFilter:
         offsets = [errors.index(f'{name} offset') for name in INPUTS]
         per_unit = towed.by_inputs[:, offsets] / [INPUT_ERRORS[place].std for place in offsets]
         log = CHANNELS['speed'].bias_std(towed.situation.speed)
-        sizes = np.array([COUNTER_STD_M, COUNTER_STD_M, STATE_SHARE * log])
+        sizes = np.array([COUNTER_STD_M, COUNTER_STD_M, self._sizes.log * STATE_SHARE * log])
         groups, apart = np.zeros((2, k, len(GROUPS)))
         worse = 1.0 + (RUNNING - 1.0) * self._unrest
+        errors_of_model = worse * _by_channel(self._sizes.model) * towed.model_error
         for row, name in enumerate(WATCHED):
             group = group_of(name)
-            groups[row, GROUPS.index(group)] = worse * towed.model_error[row]
+            groups[row, GROUPS.index(group)] = errors_of_model[row]
             if name != group:
                 way = 1.0 if name.startswith('port') else -1.0
-                apart[row, GROUPS.index(group)] = way * APART * worse * towed.model_error[row]
+                apart[row, GROUPS.index(group)] = way * APART * errors_of_model[row]
         stated = self._inflation
         return np.hstack(
             (
@@ -295,7 +306,7 @@ class WhiteningFilter:
                 per_unit * sizes * stated,
                 self._responses.log.T,
                 np.diag(bias) * stated,
-                np.diag(bias) * STATE_SHARE * stated,
+                np.diag(bias * _by_channel(self._sizes.state)) * stated,
                 np.hstack((groups, apart)) * stated,
                 absorbed,
                 -self._still_missing(per_unit[:, :2]) * COUNTER_STD_M * stated,
@@ -307,6 +318,11 @@ class WhiteningFilter:
         to_come = 1.0 - counter_leap_shares(LEAP_TAPS)
         missing = self._responses.counters + to_come[:, None, None] * lasting
         return np.hstack((missing[..., 0].T, missing[..., 1].T))
+
+
+def _by_channel(sizes: Sequence[float]) -> FloatArray:
+    """Sizes (k,) of the watched channels, of those of `GROUPS`."""
+    return np.array([sizes[GROUPS.index(group_of(name))] for name in WATCHED])
 
 
 def states_for(coefficients: int) -> int:
