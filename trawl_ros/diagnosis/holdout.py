@@ -1,6 +1,7 @@
 """Hold-out comparison: kept-back windows predicted without the effect, with it, with a placebo."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.report.residuals import residuals
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.model.observables import lies_over
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
@@ -177,6 +179,12 @@ def predicted(predictor: Predictor, refit: Refit, window: SteadyWindow) -> Linea
     away = np.abs(places / measured_inputs(window) - 1.0).sum(axis=1)
     near = refit.fit.windows[int(np.argmin(away))].state
     found = linearise(free, OBSERVABLES, window, refit.estimate.values, (near, None))
+    if lies_over(predictor.model, found.state.state):
+        # The way from a state nearby may lead past the upright one, which a cold start finds.
+        with suppress(NoSteadyState):
+            again = linearise(free, OBSERVABLES, window, refit.estimate.values)
+            if not lies_over(predictor.model, again.state.state):
+                found = again
     refit.predicted[window.index] = found
     return found
 
