@@ -243,4 +243,4 @@ def _placebo(predictor: Predictor, base: Refit, test: ScoreTest, named: Named) -
     if not rest or named.verdict == 'UNKNOWN':
         return None
     options = replace(REFITTING, iterations_final=PLACEBO_STEPS)
-    return refitted(predictor, base, test, (max(rest, key=test.penalised),), options)
+    return refitted(predictor, base, test, (max(rest, key=test.penalised),), options, rounds=1)

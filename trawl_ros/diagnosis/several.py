@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from trawl_ros.core.progress import OnProgress
 from trawl_ros.diagnosis.candidates import Candidate
-from trawl_ros.diagnosis.refit import Refit, refitted, told
+from trawl_ros.diagnosis.refit import Refit, refitted, refitted_without, told
 from trawl_ros.diagnosis.rules import LEAST_BIC, NEARLY_ALIKE, RIVAL, SCREEN
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import (
@@ -127,6 +127,23 @@ class SetsTried:
         if fitted is not None and not (len(wanted) > 1 and fitted.in_part()):
             self.refits.append(fitted)
 
+    def add_without(self, larger: Refit) -> None:
+        """Refit each set that lacks one effect of a larger one, from where that rests.
+
+        What was refitted already is kept where it is the likelier.
+        """
+        for left_out in larger.wanted:
+            rest = tuple(own for own in larger.wanted if own is not left_out)
+            names = {candidate.name for candidate in rest}
+            self.on_progress(told(*(candidate.name for candidate in rest)))
+            again = refitted_without(self.predictor, self.base, larger, left_out)
+            self._known.add(frozenset(names))
+            if again is None or (len(rest) > 1 and again.in_part()):
+                continue
+            same = [again, *(own for own in self.refits if set(own.names) == names)]
+            self.refits = [own for own in self.refits if set(own.names) != names]
+            self.refits.append(min(same, key=lambda own: own.fit.negative_log_likelihood))
+
     def add_class_of(self, best: Weighed) -> None:
         """Refit each effect that to first order is not told from the best."""
         alike = twins(self.test, best.refit)
@@ -161,22 +178,42 @@ def several_at_once(
         tried.add((second,))
         tried.add((first, second))
     _try_larger(tried, weighed[0], left)
-    alone, pair = (_of_number(tried.weighed(), number) for number in (1, PAIR))
-    if not pair or pair[0].delta_bic <= alone[0].delta_bic + _more(tried.test, alone[0], pair[0]):
+    if not _explains_more(tried, PAIR):
+        alone = _of_number(tried.weighed(), 1)
         return alone, tried.left_by(alone[0])
-    left = tried.left_by(pair[0])
-    _try_larger(tried, pair[0], left)
+    pair = _of_number(tried.weighed(), PAIR)
+    _try_larger(tried, pair[0], tried.left_by(pair[0]))
     for number in (PAIR, THREE):
         _try_exchanged(tried, number)
+    of_three = _explains_more(tried, THREE)
+    of_two = _explains_more(tried, PAIR)
     alone, pair, three = (_of_number(tried.weighed(), number) for number in (1, PAIR, THREE))
-    left = tried.left_by(pair[0])
-    if three and three[0].delta_bic > pair[0].delta_bic + _more(tried.test, pair[0], three[0]):
+    if of_three:
         with_three = tried.left_by(three[0])
         if not with_three.too_much:
             return (*_near_best(three), *alone), with_three
-    if not left.too_much:
+    left = tried.left_by(pair[0])
+    if of_two and not left.too_much:
         return (*_near_best(pair), *alone), left
     return alone, tried.left_by(alone[0])
+
+
+def _explains_more(tried: SetsTried, number: int) -> bool:
+    """True if the best set of a number explains enough more than the best of one effect less, also
+    where those of its own are refitted from where it rests.
+    """
+
+    def more() -> Weighed | None:
+        smaller, larger = (_of_number(tried.weighed(), own)[:1] for own in (number - 1, number))
+        if not (smaller and larger):
+            return None
+        least = smaller[0].delta_bic + _more(tried.test, smaller[0], larger[0])
+        return larger[0] if larger[0].delta_bic > least else None
+
+    if (larger := more()) is None:
+        return False
+    tried.add_without(larger.refit)
+    return more() is not None
 
 
 def _try_larger(tried: SetsTried, best: Weighed, left: LeftOver) -> None:
