@@ -80,8 +80,9 @@ def mimics_of(
     """Changes of gear file or instruments that explain as much as an effect, the likeliest first.
 
     Changes that are the same thing as the effect, or as one that is not excluded beside it, are
-    none, unless `better` ones are looked for. Uncommon sizes count against either, as the squares
-    of their standard deviations.
+    none, unless `better` ones are looked for; but what is the same as one of several may do alone
+    what all of them do. Uncommon sizes count against either, as the squares of their standard
+    deviations.
 
     Parameters
     ----------
@@ -100,10 +101,11 @@ def mimics_of(
     on_progress
         Called before each refit.
     """
+    alone = best.refit.names if len(best.refit.wanted) == 1 else ()
     changes: list[Change] = [
         change
         for change in (*changes_of(predictor.model.gear), *drifts())
-        if better or not {*best.refit.names, *others} & set(change.same_as)
+        if better or not {*alone, *others} & set(change.same_as)
     ]
     predictor = _ready_for(predictor, changes)
     terms = _screened(predictor, base, test, changes)
@@ -211,6 +213,9 @@ def _likeliest(
     first = sparing(test, best.refit, test.evidence.chi2(block_of(test, best.refit)))
     near = first if better else min(first - SCREEN, MIMIC_SCREEN_SHARE * first)
     far = first if better else SCREEN_SHARE * first
+    # By what first order missed of the effect it may miss of a change of the gear too.
+    missed = abs(sparing(test, best.refit, best.delta_chi2) - first)
+    near_of_gear = near if better else max(far, min(near, first - missed))
     chosen = []
     for candidate in terms.wanted:
         sizes = candidate.scale * terms.evidence.values(terms.block(candidate))
@@ -222,11 +227,15 @@ def _likeliest(
             chosen.append((terms.penalised(candidate), candidate))
     ranked = sorted(chosen, key=lambda own: own[0], reverse=True)
     # A slack rope is far from first order, an instrument is not.
-    tried = [own for _, own in ranked if isinstance(own.effect, GearFileChange)][:MIMICS_TRIED]
+    of_gear = [own for _, own in ranked if isinstance(own.effect, GearFileChange)]
+
+    def least(candidate: Candidate) -> float:
+        if candidate in of_gear[:MIMICS_TRIED]:
+            return far
+        return near_of_gear if candidate in of_gear else near
+
     return tuple(
-        candidate
-        for likely, candidate in ranked[:MIMICS_SOLVED]
-        if likely > (far if candidate in tried else near)
+        candidate for likely, candidate in ranked[:MIMICS_SOLVED] if likely > least(candidate)
     )
 
 
