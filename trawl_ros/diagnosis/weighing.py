@@ -20,6 +20,7 @@ from trawl_ros.diagnosis.rules import (
     LEFT_SHARE,
     OTHER_SHARE,
     RIVAL,
+    SCREEN_SHARE,
     leaves_too_much,
 )
 from trawl_ros.diagnosis.score_test import ScoreTest, blocks_of
@@ -96,6 +97,11 @@ def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
     deltas = [2.0 * (before - refit.cost(scales)) for refit in refits]
     criteria = [delta - refit.number * penalty for delta, refit in zip(deltas, refits, strict=True)]
     gains, bests = _resampled(test, refits, criteria)
+    if len(test.fit.errors) >= FEWEST_UNITS:
+        gains = [
+            gain if _promised(test, refit, criterion) else _gains_of(base, refit, scales)
+            for gain, refit, criterion in zip(gains, refits, criteria, strict=True)
+        ]
     behind = _far_behind(test, refits, criteria)
     classes = [
         {*refit.names, *twins(test, refit), *others}
@@ -121,6 +127,22 @@ def weigh(base: Refit, test: ScoreTest, refits: Sequence[Refit]) -> tuple[Weighe
         )
     ]
     return tuple(sorted(entries, key=lambda entry: entry.delta_bic, reverse=True))
+
+
+def _promised(test: ScoreTest, refit: Refit, criterion: float) -> bool:
+    """True if first order promises a refit half of what it comes to; sensors on each other's doors
+    may look like nothing where boards that are fitted to them have become unequal.
+    """
+    return penalised_together(test, refit.wanted) >= SCREEN_SHARE * criterion
+
+
+def _gains_of(base: Refit, refit: Refit, scales: tuple[float, ...]) -> FloatArray:
+    """Gain of each tow by a refit, as it is solved."""
+    before, after = (
+        [tow.cost for tow in replace(own.fit, scales=scales).elimination.tows]
+        for own in (base, refit)
+    )
+    return 2.0 * (np.array(before) - np.array(after))
 
 
 def _far_behind(
@@ -177,6 +199,9 @@ def _resampled(
     ]
     # First order counts the same noise as smaller, and the more so the more there is to explain.
     first = int(np.argmax(criteria))
+    if not _promised(test, refits[first], criteria[first]):
+        # By how much is told by one that first order knows.
+        first = int(np.argmax([penalised_together(test, refit.wanted) for refit in refits]))
     scale = max(criteria[first], 0.0) / max(penalised_together(test, refits[first].wanted), 1.0)
     corrections = {
         refit.names[0]: criterion - scale * penalised_together(test, refit.wanted)
