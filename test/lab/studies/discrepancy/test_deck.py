@@ -2,13 +2,20 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
 from trawl_ros.lab.studies.discrepancy.scoring.deck import cause_rows, deck_rows
 from trawl_ros.lab.studies.discrepancy.scoring.figure import verdicts_figure
 from trawl_ros.lab.studies.discrepancy.trials.plan import DECK_STRENGTHS, BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
 
 DECK = BlindStudyPlan(clean=0, inside=0, outside=0, pairs=0, poor=0, dynamic=0, triples=0)
 
@@ -72,3 +79,15 @@ def test_the_picture_of_causes_on_deck_has_them_and_its_caption_says_so():
     assert [tick.get_text() for tick in below.get_yticklabels()] == ['kite gone', 'rigging epsilon']
     assert 'cause on deck' in drawing.caption
     assert 'catalogue' not in drawing.caption
+
+
+def test_a_board_that_drags_something_along_pulls_the_more_on_its_warp():
+    gear = load_gear('kaifuha')
+    few = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
+    model = build_model(few).with_coefficients(board_prior(few).start)
+    hidden = CAUSES['starboard_board_drag'](np.random.default_rng(0))
+    point = OperatingPoint(500.0, 500.0, 2.2)
+    fouled = hidden.gear(0.4, model, Situation((500.0, 500.0, 2.2)))
+    clean, seen = (find_equilibrium(own, point).observables for own in (model, fouled))
+    assert seen.starboard_tension > 1.01 * clean.starboard_tension
+    assert seen.starboard_tension > 1.01 * seen.port_tension

@@ -12,8 +12,9 @@ from trawl_ros.effects.base.effect import Situation
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Readings, ahead
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import CABLES, Draw
-from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import AHEAD, LIFT, MoreLoad
+from trawl_ros.lab.studies.discrepancy.hidden_effects.outside import MoreLoad
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.hooks import DRAG, LIFT
 
 BUILT = 64
 """So many gears are kept, as trials tow the same one in all states."""
@@ -181,7 +182,7 @@ def starboard_board_drag(chance: np.random.Generator) -> Hidden:
     """A starboard board that drags something along."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=MoreLoad(-size, AHEAD, 0.0, side=1))
+        return model.with_board(bend=MoreLoad(size, DRAG, 0.0, side=1))
 
     return Hidden('starboard_board_drag', '', 0.1, (0.0, 1.0), gear=gear)
 

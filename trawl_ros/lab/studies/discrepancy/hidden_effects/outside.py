@@ -11,7 +11,6 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden, Read
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import CABLES, USUAL_LENGTH, Draw
 from trawl_ros.model.gear_model import GearModel
 
-AHEAD, LIFT, UP = 0, 1, 2
 USUAL_ATTACK = 0.3
 
 
