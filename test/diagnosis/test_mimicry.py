@@ -3,16 +3,19 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import procedure
+from trawl_ros.diagnosis import mimicry, procedure
+from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.mimicry import Mimic, in_another_form, mimics_of
-from trawl_ros.diagnosis.mimics.gear_file_change import changed
+from trawl_ros.diagnosis.mimics.gear_file_change import changed, changes_of
 from trawl_ros.diagnosis.mimics.table import mimic_table
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
+from trawl_ros.diagnosis.weighing import weigh
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
@@ -96,6 +99,44 @@ def test_a_change_that_is_the_same_as_a_rival_is_told_by_the_rival_alone(
     given = predictor, exchanged.base, exchanged.score_test, exchanged.best
     assert len(mimics_of(*given)) == 1
     assert mimics_of(*given, others=('kite',)) == ()
+
+
+def test_what_is_the_same_as_one_of_several_may_do_alone_what_all_of_them_do(exchanged):
+    best = exchanged.best
+    two = SimpleNamespace(refit=SimpleNamespace(names=('net_drag', 'board_rigging')))
+    assert mimicry._in_other_words(best, ('kite',)) == (*best.refit.names, 'kite')
+    assert mimicry._in_other_words(two, ('kite',)) == ('kite',)
+
+
+@pytest.mark.parametrize(('explained', 'solved'), [(303.0, 2), (843.0, 4)])
+def test_more_changes_are_solved_where_first_order_misses_what_the_effect_explains(
+    coarse, explained, solved, monkeypatch
+):
+    first = 302.0
+    changes = changes_of(coarse)[:5]
+    wanted = [Candidate(change, np.array(change.neutral)) for change in changes]
+    names = [change.name for change in changes]
+    explains = dict(zip(names, (300.0, 280.0, 234.0, 165.0, 140.0), strict=True))
+    terms = SimpleNamespace(
+        wanted=wanted,
+        penalised=lambda candidate: explains[candidate.name],
+        block=lambda candidate: [0],
+        evidence=SimpleNamespace(values=lambda block: np.zeros(1)),
+    )
+    monkeypatch.setattr(mimicry, 'sparing', lambda test, refit, explained: explained)
+    monkeypatch.setattr(mimicry, 'block_of', lambda test, refit: [0])
+    test = SimpleNamespace(evidence=SimpleNamespace(chi2=lambda block: first))
+    best = SimpleNamespace(refit=None, delta_chi2=explained)
+    found = mimicry._likeliest(test, terms, best, better=False)
+    assert list(found) == wanted[:solved]
+
+
+def test_tows_gain_by_the_refit_where_first_order_knows_nothing_of_the_effect(exchanged):
+    test, best = exchanged.score_test, exchanged.best
+    blind = replace(test, evidence=replace(test.evidence, score=0.0 * test.evidence.score))
+    (entry,) = weigh(exchanged.base, blind, [best.refit])
+    assert entry.gain[1] > 0.0
+    assert np.sum(entry.gains) == pytest.approx(best.delta_chi2, rel=0.3)
 
 
 def mimic(over, keys=('netting.body[].twine_diameter_m',), same_as=('net_drag',)):

@@ -6,7 +6,8 @@ import numpy as np
 
 from trawl_ros.diagnosis import several
 from trawl_ros.diagnosis.evidence import Evidence
-from trawl_ros.diagnosis.several import SetsTried, likeliest_sets
+from trawl_ros.diagnosis.rules import LEAST_BIC
+from trawl_ros.diagnosis.several import PAIR, SetsTried, likeliest_sets
 from trawl_ros.effects.registry import catalogue
 
 TRUE = ('heave', 'counter_scale', 'net_drag')
@@ -63,3 +64,60 @@ def test_a_set_with_a_part_of_a_swap_is_none_and_a_swap_alone_stays(monkeypatch)
     assert [own.names for own in tried.refits] == [
         ('swapped_cells',), ('swapped_doors', 'speed_log'),
     ]  # fmt: skip
+
+
+class Tried(SetsTried):
+    """Sets with the criterion that each refit comes to."""
+
+    def weighed(self):
+        entries = [SimpleNamespace(refit=own, delta_bic=own.criterion) for own in self.refits]
+        return tuple(sorted(entries, key=lambda own: -own.delta_bic))
+
+
+def refit_of(criterion, *wanted):
+    return SimpleNamespace(
+        names=tuple(candidate.name for candidate in wanted),
+        wanted=wanted,
+        criterion=criterion,
+        fit=SimpleNamespace(negative_log_likelihood=-criterion),
+        in_part=lambda: False,
+    )
+
+
+def tried_with(monkeypatch, from_the_pair, doors_by_themselves=None):
+    """A pair beside an askew sensor, or swapped doors too, and what each comes to from its rest."""
+    doors, mount = (
+        SimpleNamespace(name=name, effect=catalogue()[name])
+        for name in ('swapped_doors', 'attitude_mount')
+    )
+
+    def refitted_without(predictor, base, larger, left_out):
+        (rest,) = (own for own in larger.wanted if own is not left_out)
+        return refit_of(from_the_pair[rest.name], rest)
+
+    monkeypatch.setattr(several, 'refitted_without', refitted_without)
+    monkeypatch.setattr(several, '_more', lambda test, smaller, larger: LEAST_BIC)
+    refits = [refit_of(1665.0, mount), refit_of(2065.0, doors, mount)]
+    if doors_by_themselves is not None:
+        refits.append(refit_of(doors_by_themselves, doors))
+    return Tried(None, None, None, refits, on_progress=lambda _: None)
+
+
+def test_a_pair_is_none_where_one_of_it_alone_that_was_not_tried_explains_as_much(monkeypatch):
+    tried = tried_with(monkeypatch, {'swapped_doors': 2085.0, 'attitude_mount': 1500.0})
+    assert not several._explains_more(tried, PAIR)
+    assert tried.weighed()[0].refit.names == ('swapped_doors',)
+
+
+def test_a_pair_is_none_where_one_of_it_alone_had_come_to_rest_in_another_valley(monkeypatch):
+    found = {'swapped_doors': 2085.0, 'attitude_mount': 1500.0}
+    tried = tried_with(monkeypatch, found, doors_by_themselves=212.0)
+    assert not several._explains_more(tried, PAIR)
+    assert [own.delta_bic for own in tried.weighed()] == [2085.0, 2065.0, 1665.0]
+
+
+def test_a_pair_stays_where_neither_of_it_explains_as_much(monkeypatch):
+    tried = tried_with(monkeypatch, {'swapped_doors': 1900.0, 'attitude_mount': 1500.0})
+    assert several._explains_more(tried, PAIR)
+    # Of two refits of the same effect the likelier is kept.
+    assert [own.delta_bic for own in tried.weighed()] == [2065.0, 1900.0, 1665.0]

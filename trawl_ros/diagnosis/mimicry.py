@@ -101,11 +101,11 @@ def mimics_of(
     on_progress
         Called before each refit.
     """
-    alone = best.refit.names if len(best.refit.wanted) == 1 else ()
+    known = () if better else _in_other_words(best, others)
     changes: list[Change] = [
         change
         for change in (*changes_of(predictor.model.gear), *drifts())
-        if better or not {*alone, *others} & set(change.same_as)
+        if not set(known) & set(change.same_as)
     ]
     predictor = _ready_for(predictor, changes)
     terms = _screened(predictor, base, test, changes)
@@ -134,6 +134,13 @@ def mimics_of(
         if len(found) == MIMICS_NAMED:
             break
     return _by_kind(sorted(found, key=lambda mimic: -mimic.delta_bic))
+
+
+def _in_other_words(best: Weighed, others: Sequence[str]) -> tuple[str, ...]:
+    """Effects of which a change that is the same thing makes no name doubtful: the best one where
+    it is alone, and those that are not excluded beside it.
+    """
+    return (*(best.refit.names if len(best.refit.names) == 1 else ()), *others)
 
 
 def _by_kind(found: Sequence[Mimic]) -> tuple[Mimic, ...]:

@@ -288,16 +288,22 @@ def refitted_in_part(
             and best.fit.negative_log_likelihood < base.fit.negative_log_likelihood
         ):
             break
-    promised = test.evidence.chi2(rows) - SCREEN
+    return None if best is None else _gone_on(base, best, test.evidence.chi2(rows), rounds)
+
+
+def _gone_on(base: Refit, fitted: Refit, promised: float, rounds: int) -> Refit:
+    """Refit that has gone on for so many rounds in all, while it is not at rest and explains less,
+    by `SCREEN`, than the χ² that first order promised.
+    """
     for _ in range(rounds - 1):
-        if best is None or lost_by(base, best) or best.estimate.converged:
+        scales = fitted.fit.scales
+        explained = 2.0 * (base.cost(scales) - fitted.cost(scales))
+        if fitted.estimate.converged or lost_by(base, fitted) or explained > promised - SCREEN:
             break
-        scales = best.fit.scales
-        if 2.0 * (base.cost(scales) - best.cost(scales)) > promised:
+        if (further := fitted.estimator.finish()) is None:
             break
-        further = best.estimator.finish()
-        best = None if further is None else replace(best, estimate=further)
-    return best
+        fitted = replace(fitted, estimate=further)
+    return fitted
 
 
 def told(*names: str) -> WorkProgress:

@@ -199,16 +199,17 @@ def several_at_once(
 
 
 def _explains_more(tried: SetsTried, number: int) -> bool:
-    """True if the best set of a number explains enough more than the best of one effect less, also
-    where those of its own are refitted from where it rests.
+    """True if the best set of a number explains enough more than the best of fewer effects, also
+    once those that lack one of its own are refitted from where it rests.
     """
 
     def more() -> Weighed | None:
-        smaller, larger = (_of_number(tried.weighed(), own)[:1] for own in (number - 1, number))
-        if not (smaller and larger):
-            return None
-        least = smaller[0].delta_bic + _more(tried.test, smaller[0], larger[0])
-        return larger[0] if larger[0].delta_bic > least else None
+        weighed = tried.weighed()
+        smaller = next(own for own in weighed if len(own.refit.wanted) < number)
+        for larger in _of_number(weighed, number)[:1]:
+            if larger.delta_bic > smaller.delta_bic + _more(tried.test, smaller, larger):
+                return larger
+        return None
 
     if (larger := more()) is None:
         return False
