@@ -48,9 +48,7 @@ class Walking:
         (2000.0, 9, 718.0),
     ],
 )
-def test_a_refit_goes_on_while_first_order_promises_more(
-    promised, rounds, comes_to, monkeypatch
-):
+def test_a_refit_goes_on_while_first_order_promises_more(promised, rounds, comes_to, monkeypatch):
     monkeypatch.setattr(refit, 'lost_by', lambda base, fitted: frozenset())
     walking = Walking([571.0, 697.0, 717.0, 718.0], SimpleNamespace(converged=False))
     base = SimpleNamespace(cost=lambda scales: 500.0)

@@ -139,10 +139,11 @@ def _promised(test: ScoreTest, refit: Refit, criterion: float) -> bool:
 def _gains_of(base: Refit, refit: Refit, scales: tuple[float, ...]) -> FloatArray:
     """Gain of each tow by a refit, as it is solved."""
     before, after = (
-        [tow.cost for tow in replace(own.fit, scales=scales).elimination.tows]
+        np.array([tow.cost for tow in replace(own.fit, scales=scales).elimination.tows])
         for own in (base, refit)
     )
-    return 2.0 * (np.array(before) - np.array(after))
+    gains: FloatArray = 2.0 * (before - after)
+    return gains
 
 
 def _far_behind(
