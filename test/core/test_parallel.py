@@ -64,7 +64,7 @@ def test_a_worker_that_dies_names_its_task() -> None:
 
 def test_processes_that_do_not_start_in_time_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(QUIET, 'distributed.comm.timeouts.connect', '1ms')
-    with pytest.raises(TrawlError, match=r'1 processes of this machine did not start'):
+    with pytest.raises(TrawlError, match='the 1 processes for it did not start'):
         list(run_tasks(abs, {'one': 1}, workers=1))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.diagnosis import several
 from trawl_ros.diagnosis.evidence import Evidence
 from trawl_ros.diagnosis.rules import LEAST_BIC
-from trawl_ros.diagnosis.several import PAIR, SetsTried, likeliest_sets
+from trawl_ros.diagnosis.several import PAIR, THREE, SetsTried, likeliest_sets
 from trawl_ros.effects.registry import catalogue
 
 TRUE = ('heave', 'counter_scale', 'net_drag')
@@ -121,3 +121,19 @@ def test_a_pair_stays_where_neither_of_it_explains_as_much(monkeypatch):
     assert several._explains_more(tried, PAIR)
     # Of two refits of the same effect the likelier is kept.
     assert [own.delta_bic for own in tried.weighed()] == [2065.0, 1900.0, 1665.0]
+
+
+def test_three_are_none_where_one_alone_explains_as_much_though_no_pair_does(monkeypatch):
+    log, cell, mount = (
+        SimpleNamespace(name=name, effect=catalogue()[name])
+        for name in ('speed_log', 'tension_cell', 'attitude_mount')
+    )
+    monkeypatch.setattr(several, 'refitted_without', lambda *_: None)
+    monkeypatch.setattr(several, '_more', lambda test, smaller, larger: LEAST_BIC)
+    refits = [
+        refit_of(2100.0, log), refit_of(1800.0, cell, mount), refit_of(2105.0, log, cell, mount),
+    ]  # fmt: skip
+    tried = Tried(None, None, None, refits, on_progress=lambda _: None)
+    assert not several._explains_more(tried, THREE)
+    tried.refits[0] = refit_of(1700.0, log)
+    assert several._explains_more(tried, THREE)

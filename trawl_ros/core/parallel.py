@@ -157,10 +157,9 @@ def _of_this_machine(workers: int, stack: ExitStack) -> Client:
         client: Client = stack.enter_context(Client(cluster, set_as_default=False))
     except (OSError, RuntimeError) as reason:
         # Dask tells of its own timeouts by either.
-        first_line = str(reason).splitlines()[:1] or [type(reason).__name__]
         raise TrawlError(
-            f'{workers} processes of this machine did not start ({first_line[0]}); each has '
-            f'{START_S:g} s, so is it busy with other work?'
+            f'the {workers} processes for it did not start ({_first_line(reason)}); each has '
+            f'{START_S:g} s, so is this machine busy with other work?'
         ) from reason
     return client
 
@@ -176,13 +175,17 @@ def _connected(address: str) -> Client:
         return Client(address, timeout=PATIENCE_S, set_as_default=False)
     except Exception as reason:
         # Errors of Dask here are of many kinds; none of them is this program's fault.
-        first_line = str(reason).splitlines()[:1] or [type(reason).__name__]
         raise TrawlError(
-            f'{address}: no Dask scheduler answers there ({first_line[0]}), expected an address '
-            'such as tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured with'
+            f'{address}: no Dask scheduler answers there ({_first_line(reason)}), expected an '
+            'address such as tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured '
+            'with'
         ) from reason
     finally:
         log.setLevel(before)
+
+
+def _first_line(reason: Exception) -> str:
+    return next(iter(str(reason).splitlines()), type(reason).__name__)
 
 
 def _keys(address: str) -> dict[str, object]:

@@ -40,7 +40,7 @@ def hold_out_states(
 
     A state is left out with the motion that led to it: from the end of the state before to its own
     end. The tows are not towed again. Counters and log err in it as in the rest of its tow, and not
-    at all where no part of that is left: so do those of the windows (`Estimator.predictions`).
+    at all where no part of that is left: so it is for the windows (`Estimator.inputs_of`).
 
     Parameters
     ----------

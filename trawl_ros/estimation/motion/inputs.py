@@ -156,10 +156,8 @@ class CorrectedInputs:
         too large is less in truth.
         """
         additions, paces = np.zeros((2, len(self.names), 3))
-        for row, error in enumerate(INPUT_ERRORS):
-            column = INPUTS.index(error.channel)
-            additions[row, column] = -error.std * (shown[column] if error.relative else 1.0)
-            paces[row, column] = -error.std * (rates[column] if error.relative else 0.0)
+        additions[: len(INPUT_ERRORS)] = _by_errors(shown, 1.0)
+        paces[: len(INPUT_ERRORS)] = _by_errors(rates, 0.0)
         for knots, _, first in self.inputs.knot_places:
             column = INPUTS.index(knots.channel)
             values, slopes = knots.hats(time), knots.hat_rates(time)
@@ -171,11 +169,19 @@ class CorrectedInputs:
 
 def corrected(shown: FloatArray, errors: FloatArray) -> FloatArray:
     """Inputs (3,) as shown, corrected for errors (e,) of `INPUT_ERRORS`, in std."""
-    true = np.array(shown)
-    for size, error in zip(errors, INPUT_ERRORS, strict=True):
-        column = INPUTS.index(error.channel)
-        true[column] -= size * error.std * (shown[column] if error.relative else 1.0)
+    true: FloatArray = shown + errors @ _by_errors(shown, 1.0)
     return true
+
+
+def _by_errors(values: FloatArray, offset: float) -> FloatArray:
+    """Additions (e, 3) to values (3,) by a std of each of `INPUT_ERRORS`, of which those that are
+    no part of a value add to ``offset``; what is shown too large is less in truth.
+    """
+    additions = np.zeros((len(INPUT_ERRORS), 3))
+    for row, error in enumerate(INPUT_ERRORS):
+        column = INPUTS.index(error.channel)
+        additions[row, column] = -error.std * (values[column] if error.relative else offset)
+    return additions
 
 
 def without_errors(inputs: TowInputs, begin: float = 0.0) -> CorrectedInputs:
