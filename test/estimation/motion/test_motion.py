@@ -16,11 +16,13 @@ from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_l
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.towing import (
+    AFTER_LYING,
     TowedGear,
     TowedPoint,
     TowLineariser,
     linearise_tow,
 )
+from trawl_ros.estimation.motion.weights import without_far_off
 from trawl_ros.lab.benchmark.motion import BAND, course_tow, narrowed, run_motion_trial
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial
 from trawl_ros.model.gear_model import build_model
@@ -189,6 +191,39 @@ def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
     needed = np.ones(len(tow), dtype=bool)
     with pytest.raises(NoSteadyState, match='0 s after the beginning'):
         linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
+
+
+TUMBLING = np.array(
+    [2.61, 0.12, 1.52, 0.09, 0.18, -0.04, 0.06, -0.05, -0.19, 0.0, 1.1, 0.34]
+)  # fmt: skip
+"""Boards that stand at rest and lean by 55° and more where the winches start."""
+
+
+def test_what_a_board_lies_over_in_is_left_out_with_the_minutes_behind_and_towed_on(coarse):
+    tow = course_tow(100.0)
+    point = TowedPoint(TUMBLING, 0.15, NO_ERRORS, NO_DRIFTS)
+    there = linearise_tow(TowedGear(coarse), tow, point)
+    np.testing.assert_array_equal(there.towed, [True] + [False] * (len(tow) - 1))
+    assert [part.why for part in there.left_out] == [
+        'a board of the model lies over', *[AFTER_LYING] * (len(tow) - 2)
+    ]  # fmt: skip
+
+
+def test_a_stretch_where_the_model_is_in_another_state_is_left_out_and_told(towed):
+    noise = np.random.default_rng(2).standard_normal(towed.values.shape) * towed.tow.noise
+    measured = replace(towed, tow=replace(towed.tow, means=towed.values + noise))
+    assert without_far_off(measured, ErrorSizes()) is measured
+    away = np.zeros(towed.values.shape)
+    away[3] = 300.0 * towed.tow.noise[3]
+    found = without_far_off(replace(measured, values=towed.values + away), ErrorSizes())
+    np.testing.assert_array_equal(np.flatnonzero(~found.towed), [3])
+    (told,) = found.left_out
+    length = towed.tow.stretch_s
+    assert (told.begin, told.end) == (3 * length, 4 * length)
+    assert 'another state' in told.why
+    # Where a fit begins, all of a tow may be as far off.
+    alike = replace(measured, values=towed.values + 300.0 * towed.tow.noise)
+    assert without_far_off(alike, ErrorSizes()).towed.all()
 
 
 def rows(chance, number=60, noise=0.5, model=1.0):

@@ -30,7 +30,11 @@ SETTLING_S = 300.0
 """Time that a tow which is begun anew is given before its stretches count: by then the slowest
 motion, which is unknown there, has faded."""
 
+LYING_S = 120.0
+"""Time for which a board may lie over before the tow is begun anew."""
+
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
+AFTER_LYING = 'a board of the model lay over some minutes before'
 
 
 @dataclass(frozen=True)
@@ -276,13 +280,16 @@ class TowLineariser:
             return f'the model cannot be towed: {error}'
         motion = self._motion
         instants, self._seen = [self._seen[-1], *taken], taken
-        if motion.fallen and not self._gear.model.paired:
-            self._stop(begin)
-            return 'a board of the model falls over'
+        if motion.lay_last > begin:
+            if motion.time - motion.lies_since > LYING_S:
+                self._stop(begin)
+            return 'a board of the model lies over'
         if motion.surfaced:
             return 'the gear of the model breaks the surface'
         if begin < motion.counts_from:
             return AFTER_A_STOP
+        if begin < motion.lay_last + SETTLING_S:
+            return AFTER_LYING
         return _average(tow, stretch, motion, instants)
 
     def _stop(self, begin: float) -> None:
