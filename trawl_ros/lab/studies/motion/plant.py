@@ -1,6 +1,11 @@
-"""Plants of the trials: random boards towed in time, and read by instruments as they come."""
+"""Plants of the trials: random boards towed in time, and read by instruments as they come.
+
+The default instruments have no calibration errors, which the fit counts with; so those of each
+sensor are drawn for each trial, as the channel table states them.
+"""
 
 from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +18,18 @@ from trawl_ros.estimation.motion.towing import TowedGear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.lab.studies.identification.plant import Look, State, draw_board
+from trawl_ros.lab.studies.identification.readings import AS_STATED, drawn_errors
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.records.samples import Sample
+from trawl_ros.model.water import build_water
+from trawl_ros.records.channels import readings
+from trawl_ros.records.samples import (
+    AttitudeSample,
+    PressureSample,
+    RangeSample,
+    Sample,
+    VelocitySample,
+    WinchSample,
+)
 from trawl_ros.scenario.bridge import Bridge
 from trawl_ros.scenario.scenario import Scenario
 from trawl_ros.scenario.sea import build_sea, build_surroundings
@@ -31,6 +46,10 @@ MOST_DRAWS = 20
 """Boards that can be towed at rest, drawn for one trial at most until one can be towed in time."""
 
 
+STEP_PA = 1000.0
+"""Step of pressure by which a metre of water is weighed."""
+
+
 @dataclass(frozen=True)
 class PlantTow:
     """Tow of a drawn board.
@@ -42,7 +61,7 @@ class PlantTow:
     added_mass
         As a part of the cylinder of water around a board.
     samples
-        Of its instruments.
+        Of its instruments, each calibrated as wrongly as the channel table states.
     held_out
         Observables of the plant in `HELD_OUT`.
     rejected
@@ -59,7 +78,8 @@ class PlantTow:
 def draw_tow(
     record: GearRecord, prior: ParameterVector, course: Scenario, chance: np.random.Generator
 ) -> PlantTow:
-    """Draw boards and their added mass until they can be towed, at rest and in time.
+    """Draw boards and their added mass until they can be towed, at rest and in time, and the
+    calibration of the sensors that read them.
 
     Parameters
     ----------
@@ -89,8 +109,60 @@ def draw_tow(
         except (NoSteadyState, StepFailed):
             rejected['in time'] += 1
             continue
-        return PlantTow(board.coefficients, added_mass, samples, board.tows[1], rejected)
+        depth, errors = build_water(record).depth, drawn_errors(AS_STATED, chance)
+        read = tuple(miscalibrated(sample, depth, *errors) for sample in samples)
+        return PlantTow(board.coefficients, added_mass, read, board.tows[1], rejected)
     raise TrawlError(f'none of {MOST_DRAWS} boards that can be towed at rest tows the course')
+
+
+def miscalibrated(
+    sample: Sample,
+    depth: Callable[[float], float],
+    offsets: Mapping[str, float],
+    scales: Mapping[str, float],
+) -> Sample:
+    """Sample as sensors show it whose calibration is wrong.
+
+    Parameters
+    ----------
+    sample
+        Of any instrument.
+    depth
+        Depth (m) under the surface for an absolute pressure (Pa).
+    offsets, scales
+        Offset (SI) and error of scale of each channel.
+    """
+    shown = {
+        reading.channel: reading.value * (1.0 + scales[reading.channel]) + offsets[reading.channel]
+        for reading in readings(sample, depth)
+        if reading.channel in offsets
+    }
+    if not shown:
+        return sample
+    match sample:
+        case WinchSample():
+            lengths = shown['port_length'], shown['starboard_length']
+            return replace(
+                sample, lengths=lengths,
+                tensions=(shown['port_tension'], shown['starboard_tension']),
+            )  # fmt: skip
+        case PressureSample():
+            (value,) = shown.values()
+            # Water's weight changes little within what a sensor is wrong by.
+            metre = STEP_PA / (depth(sample.pressure + STEP_PA) - depth(sample.pressure))
+            away = value - depth(sample.pressure)
+            return replace(sample, pressure=sample.pressure + metre * away)
+        case AttitudeSample(side=side):
+            return replace(sample, pitch=shown[f'{side}_pitch'], roll=shown[f'{side}_roll'])
+        case RangeSample():
+            (value,) = shown.values()
+            return replace(sample, distance=value)
+        case VelocitySample():
+            ahead = np.array(sample.velocity)
+            ahead[0] = shown['speed']
+            return replace(sample, velocity=ahead)
+        case _:
+            return sample
 
 
 def towed_samples(

@@ -76,7 +76,7 @@ class MotionStudyPlan:
         gear = load_gear(self.gear).model_dump(mode='json')
         return {
             'seed': self.seed, 'around': self.around, 'stretches': asdict(STRETCHES),
-            'widened': WIDENED, 'gear': gear,
+            'widened': WIDENED, 'gear': gear, 'calibration': 'as stated',
         }  # fmt: skip
 
     def cut(self, series: str) -> Cut:
@@ -172,7 +172,8 @@ def _method(plan: MotionStudyPlan) -> str:
         'of the boards, until the plant can be towed with them: in all its steady states as in '
         'the study of identification, and in time. It is towed along the commands of the scenario '
         'demo, five states in 52 minutes, in steps of 1 s, and read by the default instruments, '
-        'whose counters and spread sensor are wrong by another amount after each command. Its '
+        'whose counters and spread sensor are wrong by another amount after each command; offset '
+        'and scale of each sensor are drawn for each trial, as the channel table states them. Its '
         'steady windows are fitted as ever; then all of the tow is, from there on, as `trawl '
         'identify` does. Under autotrawl the ship heaves by 2.5 m in 10 s, equal tension is held, '
         'and steps are half as long. '
