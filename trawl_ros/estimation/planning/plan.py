@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
@@ -131,15 +132,8 @@ def plan_for(
     predictor = predictor_for(gear)
     explorer = Explorer(predictor, prior.start, limits)
     choice = explore(explorer, on_progress)
-    question = Question(
-        coefficients=np.array(prior.start),
-        prior=prior,
-        angles=_angles(choice.candidates, gear),
-        span=law_spans(prior.start, prior.std),
-        estimator=estimator or EstimatorOptions(),
-        windows=windows or WindowOptions(),
-        ability=ability_of(gear, [candidate.manoeuvre for candidate in choice.candidates]),
-        minutes=60.0 * hours,
+    question = question_for(
+        gear, choice, prior.start, hours=hours, windows=windows, estimator=estimator
     )
     filed = Explorer(predictor, gear.board.coefficients.array(), limits)
     explored: dict[Manoeuvre, TowableManoeuvre] = {}
@@ -184,6 +178,29 @@ def plan_for(
         limits=limits_of(designer, trial.manoeuvres, trial.known),
         before=question.quantities(np.diag(prior.std**2)),
         sweeps=tuple(trials[1:]),
+    )
+
+
+def question_for(
+    gear: GearRecord,
+    choice: ManoeuvreChoice,
+    coefficients: FloatArray,
+    *,
+    hours: float,
+    windows: WindowOptions | None = None,
+    estimator: EstimatorOptions | None = None,
+) -> Question:
+    """Question of a plan with a board (12,), among the manoeuvres that were explored with it."""
+    prior = board_prior(gear)
+    return Question(
+        coefficients=np.array(coefficients),
+        prior=prior,
+        angles=_angles(choice.candidates, gear),
+        span=law_spans(prior.start, prior.std),
+        estimator=estimator or EstimatorOptions(),
+        windows=windows or WindowOptions(),
+        ability=ability_of(gear, [candidate.manoeuvre for candidate in choice.candidates]),
+        minutes=60.0 * hours,
     )
 
 

@@ -46,15 +46,17 @@ def course(std):
 
 def test_the_report_has_ratios_with_their_interval(tmp_path):
     boards = [
-        SailedBoard(number, [0.0] * 12, course(0.1), course(0.1 * over), course(0.4))
+        SailedBoard(number, [0.0] * 12, course(0.1), course(0.1 * over), course(0.4), course(0.09))
         for number, over in enumerate((1.0, 4.0))
     ]
-    plan, sweep = write_sailing(tmp_path, SailingPlan(boards=2), boards)
+    plan, sweep, known = write_sailing(tmp_path, SailingPlan(boards=2), boards)
     assert plan.value == pytest.approx(0.5)
     assert plan.low < plan.value < plan.high
     assert sweep.value == pytest.approx(0.25)
     assert plan.ok
     assert sweep.ok
+    assert known.value == pytest.approx(0.45)
+    assert known.target is None
     record = json.loads((tmp_path / 'sailing.json').read_text())
     assert record['boards'][0]['planned']['mean_std'] == pytest.approx(0.1)
     assert '| 0 | sailed | 1 | 0 | 6.00 | 0.1000 |' in (tmp_path / REPORT).read_text()

@@ -14,8 +14,10 @@ from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.from_gear import board_prior, predictor_for
 from trawl_ros.estimation.planning.duration import Leg, holding_time
 from trawl_ros.estimation.planning.next_manoeuvre import Adviser
+from trawl_ros.estimation.planning.plan import question_for
 from trawl_ros.estimation.planning.proposals import knowledge_of
-from trawl_ros.estimation.planning.states import Manoeuvre
+from trawl_ros.estimation.planning.search import Designer
+from trawl_ros.estimation.planning.states import Explorer, Manoeuvre, explore
 from trawl_ros.estimation.windows.records import SteadyWindow, WindowOptions
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.identification.plant import Look
@@ -115,6 +117,15 @@ def planned_course(sea: Sea, gear: GearRecord, legs: Sequence[Leg]) -> Course:
         estimator.add(window)
     hours = sum(leg.total_minutes for leg in legs) / 60.0
     return _course(estimator, looks, len(legs) - len(looks), hours)
+
+
+def known_course(sea: Sea, gear: GearRecord, coefficients: FloatArray, hours: float) -> Course:
+    """Tow what would be planned if the board (12,) were known: more than any choice on the way can
+    know.
+    """
+    choice = explore(Explorer(predictor_for(gear), coefficients))
+    question = question_for(gear, choice, coefficients, hours=hours)
+    return planned_course(sea, gear, Designer(question, choice.candidates).best())
 
 
 def sailed_course(

@@ -1,4 +1,4 @@
-"""Study of sailed trials: random boards, each towed on three courses of the same hours."""
+"""Study of sailed trials: random boards, each towed on courses of the same hours."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,13 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.planning.plan import plan_for
 from trawl_ros.lab.studies.identification.plant import TOWS, Cut, draw_board
-from trawl_ros.lab.studies.sailing.courses import Course, Sea, planned_course, sailed_course
+from trawl_ros.lab.studies.sailing.courses import (
+    Course,
+    Sea,
+    known_course,
+    planned_course,
+    sailed_course,
+)
 
 SEED = 2100
 
@@ -26,13 +32,21 @@ class SailingPlan:
 
 @dataclass(frozen=True)
 class SailedBoard:
-    """Board, towed on each course: sailed by itself, as planned beforehand, and in a sweep."""
+    """Board, towed on each course: sailed by itself, as planned beforehand, in a sweep, and as it
+    would be planned if the board were known.
+    """
 
     number: int
     coefficients: list[float]
     sailed: Course
     planned: Course
     sweep: Course
+    known: Course
+
+    @property
+    def known_over_plan(self) -> float:
+        """Mean std as planned with the board known over that as planned."""
+        return self.known.mean_std / self.planned.mean_std
 
     @property
     def over_plan(self) -> float:
@@ -46,7 +60,7 @@ class SailedBoard:
 
 
 def run_sailing(plan: SailingPlan, on_progress: OnProgress = ignore) -> list[SailedBoard]:
-    """Tow each board on the three courses.
+    """Tow each board on its courses.
 
     The plan is made once, with the board as identification starts; readings err alike on all
     courses, and the plant is the model.
@@ -72,6 +86,7 @@ def run_sailing(plan: SailingPlan, on_progress: OnProgress = ignore) -> list[Sai
                 sailed_course(sea(), gear, plan.hours, on_state),
                 planned_course(sea(), gear, trial.trial.legs),
                 planned_course(sea(), gear, trial.sweeps[0].legs),
+                known_course(sea(), gear, drawn.coefficients, plan.hours),
             )
         )
     return boards
