@@ -31,7 +31,7 @@ SETTLING_S = 300.0
 motion, which is unknown there, has faded."""
 
 LYING_S = 120.0
-"""Time for which a board may lie over before the tow is begun anew."""
+"""Time through which a board may lie over, or tumble, before the tow is begun anew."""
 
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
 AFTER_LYING = 'a board of the model lay over some minutes before'
@@ -182,7 +182,7 @@ class TowLineariser:
         self._rows = [OBSERVABLES.index(name) for name in channels]
         self._motion: MotionUnderWay | None = None
         self._seen: list[MotionPrediction] = []
-        self._again = 0.0
+        self._again, self._lying_s = 0.0, 0.0
         self._means: list[_TowedMeans | None] = []
         self._left_out: list[LeftOut] = []
 
@@ -280,8 +280,9 @@ class TowLineariser:
             return f'the model cannot be towed: {error}'
         motion = self._motion
         instants, self._seen = [self._seen[-1], *taken], taken
-        if motion.lay_last > begin:
-            if motion.time - motion.lies_since > LYING_S:
+        self._lying_s = self._lying_s + tow.stretch_s if motion.lay_last > begin else 0.0
+        if self._lying_s:
+            if self._lying_s > LYING_S:
                 self._stop(begin)
             return 'a board of the model lies over'
         if motion.surfaced:
@@ -293,7 +294,7 @@ class TowLineariser:
         return _average(tow, stretch, motion, instants)
 
     def _stop(self, begin: float) -> None:
-        self._motion, self._again = None, begin + AGAIN_S
+        self._motion, self._again, self._lying_s = None, begin + AGAIN_S, 0.0
 
     def _towed_on(
         self, motion: MotionUnderWay, tow: MovingTow, stretch: int

@@ -27,8 +27,8 @@ class InputsUnderWay:
 
 @dataclass
 class MotionUnderWay:
-    """Motion under way: the tow, when its stretches begin to count, when a board lay over last, and
-    since when one does (s of the tow).
+    """Motion under way: the tow, when its stretches begin to count, and when a board lay over last
+    (s of the tow).
 
     While warps run boards lean further than in any steady state, and come back.
     """
@@ -37,7 +37,6 @@ class MotionUnderWay:
     course: InputsUnderWay
     counts_from: float
     lay_last: float = -np.inf
-    lies_since: float = np.inf
     _newest: dict[str, int] = field(default_factory=dict)
     _newest_from: dict[str, float] = field(default_factory=dict)
 
@@ -71,9 +70,6 @@ class MotionUnderWay:
         self.towed.advance(h)
         if lies_over(self.towed.model, self.towed.motion.state):
             self.lay_last = self.time
-            self.lies_since = min(self.lies_since, self.time)
-        else:
-            self.lies_since = np.inf
 
     def begun_since(self, begin: float) -> list[int]:
         """Columns of the knots that have begun to act since a time (s)."""
