@@ -16,14 +16,11 @@ from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_l
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.towing import (
-    AFTER_A_STOP,
-    AFTER_LYING,
     TowedGear,
     TowedPoint,
     TowLineariser,
     linearise_tow,
 )
-from trawl_ros.estimation.motion.weights import without_far_off
 from trawl_ros.lab.benchmark.motion import BAND, course_tow, narrowed, run_motion_trial
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial
 from trawl_ros.model.gear_model import build_model
@@ -192,55 +189,6 @@ def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
     needed = np.ones(len(tow), dtype=bool)
     with pytest.raises(NoSteadyState, match='0 s after the beginning'):
         linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
-
-
-TUMBLING = np.array(
-    [2.61, 0.12, 1.52, 0.09, 0.18, -0.04, 0.06, -0.05, -0.19, 0.0, 1.1, 0.34]
-)  # fmt: skip
-"""Boards that stand at rest and lean by 55° and more where the winches start."""
-
-
-ON_EDGE = np.array([1.63, 0.12, 2.76, 0.36, -0.07, 0.01, -0.1, -0.14, 0.02, -0.05, 0.37, -0.07])
-"""Boards that lean by 40° at rest, and tumble with one warp 2 m longer."""
-
-
-def test_what_a_board_lies_over_in_is_left_out_with_the_minutes_behind_and_towed_on(coarse):
-    tow = course_tow(100.0)
-    point = TowedPoint(TUMBLING, 0.15, NO_ERRORS, NO_DRIFTS)
-    there = linearise_tow(TowedGear(coarse), tow, point)
-    np.testing.assert_array_equal(there.towed, [True] + [False] * (len(tow) - 1))
-    assert [part.why for part in there.left_out] == [
-        'a board of the model lies over', *[AFTER_LYING] * (len(tow) - 2)
-    ]  # fmt: skip
-
-
-def test_a_tow_whose_board_tumbles_for_two_minutes_is_begun_anew(coarse):
-    tow = course_tow(280.0)
-    values = np.tile(tow.inputs.values[0], (len(tow.inputs.values), 1))
-    values[:, 1] -= 2.0 * np.clip((np.arange(len(values)) - 20.0) / 60.0, 0.0, 1.0)
-    inputs = replace(tow.inputs, values=values, rates=np.gradient(values, axis=0))
-    askew = replace(tow, inputs=inputs)
-    there = linearise_tow(TowedGear(coarse), askew, TowedPoint(ON_EDGE, 0.0, NO_ERRORS, NO_DRIFTS))
-    why = [part.why for part in there.left_out if 60.0 <= part.begin < 200.0]
-    assert why == ['a board of the model lies over'] * 7
-    assert AFTER_A_STOP in [part.why for part in there.left_out if part.begin >= 200.0]
-
-
-def test_a_stretch_where_the_model_is_in_another_state_is_left_out_and_told(towed):
-    noise = np.random.default_rng(2).standard_normal(towed.values.shape) * towed.tow.noise
-    measured = replace(towed, tow=replace(towed.tow, means=towed.values + noise))
-    assert without_far_off(measured, ErrorSizes()) is measured
-    away = np.zeros(towed.values.shape)
-    away[3] = 300.0 * towed.tow.noise[3]
-    found = without_far_off(replace(measured, values=towed.values + away), ErrorSizes())
-    np.testing.assert_array_equal(np.flatnonzero(~found.towed), [3])
-    (told,) = found.left_out
-    length = towed.tow.stretch_s
-    assert (told.begin, told.end) == (3 * length, 4 * length)
-    assert 'another state' in told.why
-    # Where a fit begins, all of a tow may be as far off.
-    alike = replace(measured, values=towed.values + 300.0 * towed.tow.noise)
-    assert without_far_off(alike, ErrorSizes()).towed.all()
 
 
 def rows(chance, number=60, noise=0.5, model=1.0):

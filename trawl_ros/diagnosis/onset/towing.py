@@ -18,7 +18,7 @@ from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.towing import AGAIN_S, SETTLING_S
 from trawl_ros.estimation.motion.under_way import HIGHEST_M
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import lies_over
+from trawl_ros.model.observables import fallen_boards
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import shown_values
@@ -233,8 +233,8 @@ class ModelTow:
 
     def _require_upright(self) -> None:
         assert self._motion is not None
-        if lies_over(self._motion.model, self._motion.motion.state):
-            raise _NotPredicted('a board of the model lies over', ends=True)
+        if any(fallen_boards(self._motion.motion.state)) and not self._gear.model.paired:
+            raise _NotPredicted('a board of the model falls over', ends=True)
 
     def _towed(self, tow: MovingTow, place: int) -> TowedStretch:
         motion, following = self._motion, self._following

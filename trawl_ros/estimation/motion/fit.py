@@ -23,7 +23,7 @@ from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, shared_std, step
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, linearise_tow
-from trawl_ros.estimation.motion.weights import robust_factors, without_far_off
+from trawl_ros.estimation.motion.weights import robust_factors
 from trawl_ros.solver.motion.parameters import NET
 
 NEAR = 0.3
@@ -75,8 +75,7 @@ class MotionSearch:
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
             then = partial(self.on_stretch, iteration, number)
-            towed = linearise_tow(self.gear, tow, point, on_stretch=then)
-            found.append(without_far_off(towed, self.options.sizes))
+            found.append(linearise_tow(self.gear, tow, point, on_stretch=then))
         return tuple(found)
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:

@@ -9,10 +9,8 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.nuisances import TowLayout, point_of
-from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, TowLineariser
-from trawl_ros.estimation.motion.weights import without_far_off
 
 
 @dataclass(frozen=True)
@@ -101,13 +99,9 @@ class GrowingLinearisation:
     def _of(self, tow: MovingTow) -> InputsPlace:
         return self._inputs.get(tow.start_ns, NO_ERRORS)
 
-    def linearised(self, tows: Sequence[MovingTow], sizes: ErrorSizes) -> tuple[LinearisedTow, ...]:
-        """Tows as they are linearised, nothing of which is left to tow along, without stretches
-        that are far off by errors as stated.
-        """
-        return tuple(
-            without_far_off(self._towed[tow.start_ns].linearised(tow), sizes) for tow in tows
-        )
+    def linearised(self, tows: Sequence[MovingTow]) -> tuple[LinearisedTow, ...]:
+        """Tows as they are linearised, nothing of which is left to tow along."""
+        return tuple(self._towed[tow.start_ns].linearised(tow) for tow in tows)
 
     def place(self, tows: Sequence[MovingTow], layouts: Sequence[TowLayout]) -> list[FloatArray]:
         """Parameters (p,) of each tow, in prior std, at which it is linearised."""

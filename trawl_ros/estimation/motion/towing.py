@@ -30,11 +30,7 @@ SETTLING_S = 300.0
 """Time that a tow which is begun anew is given before its stretches count: by then the slowest
 motion, which is unknown there, has faded."""
 
-LYING_S = 120.0
-"""Time through which a board may lie over, or tumble, before the tow is begun anew."""
-
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
-AFTER_LYING = 'a board of the model lay over some minutes before'
 
 
 @dataclass(frozen=True)
@@ -182,7 +178,7 @@ class TowLineariser:
         self._rows = [OBSERVABLES.index(name) for name in channels]
         self._motion: MotionUnderWay | None = None
         self._seen: list[MotionPrediction] = []
-        self._again, self._lying_s = 0.0, 0.0
+        self._again = 0.0
         self._means: list[_TowedMeans | None] = []
         self._left_out: list[LeftOut] = []
 
@@ -280,21 +276,17 @@ class TowLineariser:
             return f'the model cannot be towed: {error}'
         motion = self._motion
         instants, self._seen = [self._seen[-1], *taken], taken
-        self._lying_s = self._lying_s + tow.stretch_s if motion.lay_last > begin else 0.0
-        if self._lying_s:
-            if self._lying_s > LYING_S:
-                self._stop(begin)
-            return 'a board of the model lies over'
+        if motion.fallen and not self._gear.model.paired:
+            self._stop(begin)
+            return 'a board of the model falls over'
         if motion.surfaced:
             return 'the gear of the model breaks the surface'
         if begin < motion.counts_from:
             return AFTER_A_STOP
-        if begin < motion.lay_last + SETTLING_S:
-            return AFTER_LYING
         return _average(tow, stretch, motion, instants)
 
     def _stop(self, begin: float) -> None:
-        self._motion, self._again, self._lying_s = None, begin + AGAIN_S, 0.0
+        self._motion, self._again = None, begin + AGAIN_S
 
     def _towed_on(
         self, motion: MotionUnderWay, tow: MovingTow, stretch: int

@@ -137,7 +137,7 @@ class MotionTracker:
 
     @staticmethod
     def _take(search: MotionSearch, linearisation: GrowingLinearisation) -> None:
-        search.linear = linearisation.linearised(search.tows, search.options.sizes)
+        search.linear = linearisation.linearised(search.tows)
         search.here = linearisation.place(search.tows, search.layouts)
 
     def _weighted(self, tow: MovingTow) -> FloatArray:
@@ -220,8 +220,7 @@ class MotionTracker:
         """Take a linearisation for that in use if its cost is lower."""
         self._towings += 1
         sizes = self._sizes.tempered(self._temper)
-        linear = tried.linearised(search.tows, self._options.sizes)
-        there = tried.place(search.tows, search.layouts)
+        linear, there = tried.linearised(search.tows), tried.place(search.tows, search.layouts)
         if self._here is not None and not self._lower(search, linear, there, sizes):
             self._refused += 1
             self._damping = max(DAMPING, STIFFER * self._damping)

@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.motion.inputs import CorrectedInputs, TowInputs
-from trawl_ros.model.observables import lies_over
+from trawl_ros.model.observables import fallen_boards
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
@@ -27,16 +27,11 @@ class InputsUnderWay:
 
 @dataclass
 class MotionUnderWay:
-    """Motion under way: the tow, when its stretches begin to count, and when a board lay over last
-    (s of the tow).
-
-    While warps run boards lean further than in any steady state, and come back.
-    """
+    """Motion under way: the tow, when (s) it began, and when its stretches begin to count."""
 
     towed: DifferentiatedTow
     course: InputsUnderWay
     counts_from: float
-    lay_last: float = -np.inf
     _newest: dict[str, int] = field(default_factory=dict)
     _newest_from: dict[str, float] = field(default_factory=dict)
 
@@ -68,8 +63,6 @@ class MotionUnderWay:
                 column = self._of_inputs + first + newest % knots.columns
                 self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
-        if lies_over(self.towed.model, self.towed.motion.state):
-            self.lay_last = self.time
 
     def begun_since(self, begin: float) -> list[int]:
         """Columns of the knots that have begun to act since a time (s)."""
@@ -82,6 +75,11 @@ class MotionUnderWay:
     @property
     def _of_inputs(self) -> int:
         return self.towed.parameters.of_inputs.start
+
+    @property
+    def fallen(self) -> bool:
+        """True where a board lies on its face or back."""
+        return any(fallen_boards(self.towed.motion.state))
 
     @property
     def surfaced(self) -> bool:
