@@ -120,8 +120,10 @@ def planned_course(sea: Sea, gear: GearRecord, legs: Sequence[Leg]) -> Course:
 
 
 def known_course(sea: Sea, gear: GearRecord, coefficients: FloatArray, hours: float) -> Course:
-    """Tow what would be planned if the board (12,) were known: more than any choice on the way can
-    know.
+    """Tow what would be planned if the board (12,) were known beforehand.
+
+    A choice on the way knows less. It is no bound on its std all the same: the search for a plan
+    weighs how well each law is known.
     """
     choice = explore(Explorer(predictor_for(gear), coefficients))
     question = question_for(gear, choice, coefficients, hours=hours)
