@@ -88,6 +88,7 @@ def test_states_between_are_usable_when_found_from_nothing(trimmed: RangeTrim) -
     assert np.degrees(seen.port_attack) == pytest.approx(16.0, abs=4.0)
 
 
+@pytest.mark.slow
 def test_each_point_of_a_range_is_usable_and_the_attitude_changes_little(model: GearModel) -> None:
     found = trim_over_range(
         model,

@@ -85,6 +85,7 @@ def test_a_plant_is_stable_in_all_its_states():
         assert stability(drawn.model, clean.state.state, clean.state.tow).stable
 
 
+@pytest.mark.slow
 def test_what_tips_the_gear_over_is_neither_towed_nor_detectable(plant):
     heavy = INSIDE['cross_current'](np.random.default_rng(0))
     with pytest.raises(NoSteadyState):

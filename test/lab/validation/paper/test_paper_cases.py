@@ -17,7 +17,7 @@ FIGURES = {
 }
 
 
-LONG = ('degrees_of_freedom', 'moment_signs')
+LONG = ('degrees_of_freedom', 'identified', 'moment_signs')
 """Cases that take more than ten seconds even in small."""
 
 
