@@ -4,6 +4,9 @@ import subprocess
 import sys
 
 import pytest
+from dask import config
+
+from trawl_ros.core.memory import OF_DASK
 
 LOOP = """
 import resource
@@ -36,3 +39,12 @@ def test_arrays_one_after_another_take_the_same_pages() -> None:
 def test_settings_of_the_user_stand() -> None:
     told = _run(f'{KEEP}; print(kept)', MALLOC_TRIM_THRESHOLD_='131072').splitlines()
     assert told[0] == 'False'
+
+
+@pytest.mark.skipif(not sys.platform.startswith('linux'), reason='glibc has the options')
+def test_what_dask_sets_for_its_workers_is_no_setting_of_the_user() -> None:
+    import distributed  # noqa: F401  its configuration
+
+    own = config.get('distributed.nanny.pre-spawn-environ')
+    assert {name: str(own[name]) for name in OF_DASK} == OF_DASK
+    assert int(_run(KEEP, **OF_DASK)) < 100

@@ -41,14 +41,6 @@ def test_processes_and_a_cluster_give_the_same(cluster: str) -> None:
     assert dict(run_tasks(math.sqrt, TASKS, scheduler=cluster)) == ROOTS
 
 
-def test_processes_hand_memory_back_only_as_the_user_says(monkeypatch: pytest.MonkeyPatch) -> None:
-    setting = 'MALLOC_TRIM_THRESHOLD_'
-    monkeypatch.delenv(setting, raising=False)
-    assert dict(run_tasks(os.getenv, {'a': setting})) == {'a': None}
-    monkeypatch.setenv(setting, '131072')
-    assert dict(run_tasks(os.getenv, {'a': setting})) == {'a': '131072'}
-
-
 def test_equal_tasks_are_each_run(cluster: str) -> None:
     assert dict(run_tasks(abs, {'first': -1, 'second': -1}, scheduler=cluster)) == {
         'first': 1,

@@ -39,8 +39,6 @@ QUIET = {
     'distributed.comm.timeouts.connect': f'{START_S:g}s',
     # Tasks compute for minutes without giving the interpreter back; that is no fault.
     'distributed.admin.tick.limit': '1h',
-    # Freed memory would be handed back at once (`memory`), and asked for anew with each matrix.
-    'distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_': None,
 }
 
 
