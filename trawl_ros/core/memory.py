@@ -12,7 +12,7 @@ SETTINGS = 'MALLOC_MMAP_THRESHOLD_', 'MALLOC_TRIM_THRESHOLD_', 'GLIBC_TUNABLES'
 """Variables by which a user sets them."""
 
 OF_DASK = {'MALLOC_TRIM_THRESHOLD_': '65536'}
-"""What Dask sets for each of its workers: there a fifth of a study's time went into new pages."""
+"""Variable that Dask sets for each of its workers: a fifth of a study went into new pages."""
 
 LARGE = 32 * 2**20
 """Size (bytes) up to which an array's memory is kept; of twice that, all that is free is handed
