@@ -27,6 +27,7 @@ class EstimateMonitor(Monitor):
         super().__init__(environment)
         self._heard_at: dict[int, int] = {}
         self._motion_heard_at: dict[float, int] = {}
+        self._windows = 0
 
     @property
     def playing(self) -> bool:
@@ -35,8 +36,8 @@ class EstimateMonitor(Monitor):
 
     @property
     def windows(self) -> int:
-        """Number of windows that have led to an estimate."""
-        return len(self._heard_at)
+        """Number of windows that the newest estimate has used."""
+        return self._windows
 
     def delays_s(self) -> list[float]:
         """Time (s) on the graph's clock from each window's end to the estimate with it."""
@@ -58,7 +59,8 @@ class EstimateMonitor(Monitor):
             for values in others:
                 if 'stamp' in values:
                     self._motion_heard_at.setdefault(float(values['stamp']), node.now())
-            if coefficients['windows'] != '0':
+            self._windows = int(coefficients['windows'])
+            if self._windows:
                 # A refused window brings a status too, with the stamp of the estimate there is.
                 self._heard_at.setdefault(stamp_of(message), node.now())
 
