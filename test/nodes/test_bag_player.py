@@ -21,6 +21,7 @@ from trawl_ros.messages.stamps import from_time, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer, main  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
+from trawl_ros.nodes.runtime.credit import ConsumerProgress  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.records.samples import HeadingSample, PressureSample  # noqa: E402
@@ -87,6 +88,40 @@ def test_it_plays_at_its_rate_with_a_clock_and_ends(graph, bag):
     assert times(listener.headings) == pytest.approx([n / HZ for n in range(COUNT)])
     assert len(listener.pressures) == COUNT
     assert [from_time(c.clock) for c in listener.clocks] == list(map(stamp_of, listener.headings))
+
+
+class Busy(TrawlNode):
+    """Consumer that takes long to deal with a heading in the middle of the bag."""
+
+    LONG_S = 4.0
+
+    def __init__(self, **kwargs):
+        super().__init__('busy', **kwargs)
+        self.heard, self.until, self.ahead = [], 0.0, None
+        self.progress = ConsumerProgress(self, busy=lambda: self.until > 0 and self.ahead is None)
+        self.listen('vessel/heading', self._take, CONSUMER)
+        self.every(0.1, self._look)
+
+    def _take(self, message):
+        self.heard.append(stamp_of(message))
+        if len(self.heard) == COUNT // 2:
+            self.until = time.monotonic() + self.LONG_S
+        elif not self.until:
+            self.progress.done(self.heard[-1])
+
+    def _look(self):
+        if self.until and time.monotonic() > self.until:
+            self.ahead = len(self.heard) if self.ahead is None else self.ahead
+            self.progress.done(self.heard[-1])
+
+
+def test_a_consumer_that_is_busy_for_long_is_waited_for(graph, bag):
+    # It heard the rest of the bag meanwhile once, topic by topic, and had to refuse it.
+    busy = graph.add(Busy)
+    player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['busy'], lead_s=0.5)
+    finish(graph, player)
+    assert busy.ahead <= COUNT // 2 + 0.5 * HZ + 1
+    assert len(busy.heard) == COUNT
 
 
 def test_only_what_is_asked_for_is_played(graph, bag):

@@ -189,9 +189,11 @@ class BagPlayer(TrawlNode):
         return self._pacer.due(stamp / SECOND)
 
     def _stand_still(self, slowest: int | None) -> bool:
-        """True if consumers have stood still for `QUIET_S`: the rest does not concern them."""
+        """True if consumers have stood still for `QUIET_S`, and none is busy: the rest does not
+        concern them.
+        """
         now = monotonic()
-        if self._last_progress[0] != slowest:
+        if self._last_progress[0] != slowest or self._consumers.busy():
             self._last_progress = (slowest, now)
         return now - self._last_progress[1] > QUIET_S
 

@@ -94,7 +94,7 @@ class DiscrepancyNode(TrawlNode):
         self._open_book()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._publish)
-        self._progress = ConsumerProgress(self, idle=self._idle)
+        self._progress = ConsumerProgress(self, idle=self._idle, busy=lambda: not self._idle())
         watched = parameters['watch'] and self._gear.pair is None
         self._monitor = self._new_monitor() if watched else None
         self._onset = (

@@ -102,7 +102,9 @@ class IdentificationNode(TrawlNode):
         self._motion = self._learning(identification)
         for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
             self.advertise(topic)
-        self._progress = ConsumerProgress(self, idle=lambda: self._worker.idle)
+        self._progress = ConsumerProgress(
+            self, idle=lambda: self._worker.idle, busy=lambda: not self._worker.idle
+        )
         self._resets = 0
         self._instruments = OneSourceEach()
         self._rewinding = Rewinding(identification.finder.newest('port_length'))

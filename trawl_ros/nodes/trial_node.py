@@ -25,7 +25,7 @@ from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_a
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.model.water import build_water
-from trawl_ros.nodes.runtime.credit import HEADER, ConsumerProgress
+from trawl_ros.nodes.runtime.credit import HEADER, ConsumerProgress, consumer_of
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names
 from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED, STREAM
@@ -166,8 +166,9 @@ class TrialNode(TrawlNode):
             self._trial.learn(knowledge)
 
     def _hear_beat(self, message: Any) -> None:
-        if message.frame_id in self._beats:
-            self._beats[message.frame_id] = time.monotonic()
+        name, _ = consumer_of(message)
+        if name in self._beats:
+            self._beats[name] = time.monotonic()
 
     def _hear_command(self, topic: str, message: Any) -> None:
         trial = self._trial

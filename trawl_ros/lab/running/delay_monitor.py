@@ -6,7 +6,7 @@ from typing import Any
 from trawl_ros.core.time import SECOND
 from trawl_ros.lab.running.monitor import Monitor
 from trawl_ros.messages.stamps import from_time, stamp_of
-from trawl_ros.nodes.runtime.credit import HEADER
+from trawl_ros.nodes.runtime.credit import HEADER, consumer_of
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.records.topics import SYNC
@@ -51,4 +51,4 @@ class DelayMonitor(Monitor):
         self._truth = stamp_of(message)
 
     def _hear_progress(self, message: Any) -> None:
-        self._done[message.frame_id] = from_time(message.stamp)
+        self._done[consumer_of(message)[0]] = from_time(message.stamp)

@@ -30,6 +30,9 @@ SETTLED_S = 1.0
 IDLE_S = 2 * HEARTBEAT_S
 """Silence after which a consumer has nothing left to deal with."""
 
+BUSY = 'busy'
+"""Word behind the name of a consumer that has not dealt with all that it was given yet."""
+
 NOTHING = 0
 """Stamp that a consumer reports before it has dealt with anything."""
 
@@ -39,6 +42,12 @@ SILENT_S = 10.0
 STALLED_S = 120.0
 """A consumer that does not get on for this long is not waited for; a look at a window takes less.
 """
+
+
+def consumer_of(message: Any) -> tuple[str, bool]:
+    """Name of the consumer that reports its progress, and whether it is busy."""
+    name = message.frame_id.removesuffix(f' {BUSY}')
+    return name, name != message.frame_id
 
 
 class ConsumerProgress:
@@ -55,6 +64,9 @@ class ConsumerProgress:
         silent: whether nothing is left to deal with. Having heard nothing for a while it is then
         as far as the clock. Otherwise the source would wait for it, it for them, and they,
         started anew, for the source.
+    busy
+        True if it has not dealt with all that it was given yet: it is waited for then, and not
+        taken for one that the rest does not concern.
     """
 
     def __init__(
@@ -63,10 +75,12 @@ class ConsumerProgress:
         ready: Callable[[], bool] = lambda: True,
         *,
         idle: Callable[[], bool] = lambda: False,
+        busy: Callable[[], bool] = lambda: False,
     ) -> None:
         self._node = node
         self._ready = ready
         self._idle = idle
+        self._busy = busy
         self._heard_at = time.monotonic()
         self._done = NOTHING
         self._reported = NOTHING
@@ -96,7 +110,8 @@ class ConsumerProgress:
 
     def _report(self) -> None:
         self._reported = self._done
-        message = header(self._done, self._node.get_name())
+        name = self._node.get_name() + f' {BUSY}' * self._busy()
+        message = header(self._done, name)
         self._node.send(SYNC, message)
 
 
@@ -123,6 +138,7 @@ class Consumers:
         self._stamps: dict[str, int] = {}
         self._heard: dict[str, float] = {}
         self._waited_for: dict[str, float] = {}
+        self._busy: set[str] = set()
         self._span = (0, 0)
         self._subscribers: dict[str, tuple[int, int]] = {}
         self._changed = time.monotonic()
@@ -182,16 +198,22 @@ class Consumers:
         )
         return min(counting, default=None)
 
+    def busy(self) -> bool:
+        """True if one that counts has not dealt with all that it was given yet."""
+        return any(name in self._stamps and self._present(name) for name in self._busy)
+
     def _present(self, name: str) -> bool:
         return time.monotonic() - self._heard.get(name, -math.inf) < SILENT_S
 
     def _take(self, message: Any) -> None:
-        name, stamp = message.frame_id, from_time(message.stamp)
+        name, busy = consumer_of(message)
+        stamp = from_time(message.stamp)
         if name == self._node.get_name():
             return
         if name not in self._heard and len(self._heard) >= CONSUMERS.value:
             raise MessageError(f'{SYNC}: one consumer more; expected at most {CONSUMERS}')
         self._heard[name] = time.monotonic()
+        (self._busy.add if busy else self._busy.discard)(name)
         first, latest = self._span
         # Progress outside of what was published since the beginning is from before it, and what
         # was dealt with once stays so.
