@@ -67,7 +67,7 @@ def catch_in_steps(model: GearModel, hours: float) -> GearModel:
     """Fish that comes into the codend in two schools, and a little all the time."""
     area = model.lump_drag_area.copy()
     codend = [points[-1] for name, points, _ in model.layout.lines if name == 'codend'][-1]
-    area[codend] += 1.0 * (hours > 0.4) + 1.0 * (hours > 1.4) + 1.0 * hours
+    area[codend] += 1.5 * (hours > 0.4) + 1.5 * (hours > 1.4) + 1.5 * hours
     return replace(model, lump_drag_area=area)
 
 

@@ -52,8 +52,8 @@ def test_a_catch_that_comes_in_steps_is_named(caught):
     assert caught.verdict == 'NAMED', caught.reason
     assert caught.best.refit.names == ('catch_build_up',)
     value, low, high, unit = values_of(caught.best.refit)['catch_build_up']['drag_area']
-    # Four square metres in two hours.
-    assert low < 2.0 < high
+    # Six square metres in two hours.
+    assert low < 3.0 < high
     assert low < value < high
     assert unit == 'm² per h'
     assert {where.variable for where in caught.where} & {'time in tow', 'warp length'}

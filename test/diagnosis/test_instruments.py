@@ -87,7 +87,7 @@ def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):
     ]
     (found,) = frozen(stuck, ['first', 'second'])
     assert found.sentence.startswith(
-        'second: net depth (sonar/pressure) stays at 120 m from 302 to 803'
+        'second: net depth (sonar/pressure) stays at 120 m from 300 to 803'
     )
     left = without(stuck, [found])
     assert [window.tow for window in left if 'net_depth' in window.means] == [0] * 5

@@ -17,7 +17,7 @@ from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 
-TURN = 2.5
+TURN = 3.5
 """Degrees that boards are turned by a shackle in a wrong hole."""
 
 RIVALS = ('board_rigging', 'net_drag', 'spread_sensor')

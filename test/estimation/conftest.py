@@ -192,7 +192,8 @@ def trial_windows(
                     channel = CHANNELS[name]
                     sizes = np.array([channel.bias, channel.bias_fraction * value])
                     calibration = shares.tow_share * float(sizes @ drawn[name])
-                    own = shares.state_share * channel.bias_std(value) * float(rng.normal())
+                    state_std = channel.state_std(channel.bias_std(value), shares.state_share)
+                    own = state_std * float(rng.normal())
                     means[name] = value + noise_of(name) * own + bool(noise) * calibration
                 index = len(found)
                 found.append(

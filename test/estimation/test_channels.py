@@ -94,10 +94,13 @@ def test_a_bias_has_an_absolute_and_a_relative_part():
     assert depth.bias_std(1e5) == pytest.approx(1e5 * depth.bias_fraction, rel=1e-4)
 
 
-def test_the_table_allows_for_the_biases_of_the_default_instruments():
+def test_the_table_has_what_default_instruments_are_wrong_by_in_each_state():
     ship = load_instruments()
-    for name, errors, usual in (
-        ('port_length', ship.winch.length, 200.0),
-        ('door_spread', ship.door.spread, 80.0),
-    ):
-        assert 0.0 < errors.model().bias_std <= CHANNELS[name].bias_std(usual)
+    for name, errors in (('port_length', ship.winch.length), ('door_spread', ship.door.spread)):
+        channel = CHANNELS[name]
+        assert errors.model().bias_std == channel.per_state == channel.state_std(0.5, share=0.3)
+
+
+def test_where_no_error_of_a_state_was_measured_it_is_a_share_of_the_bias():
+    assert CHANNELS['net_depth'].state_std(0.5, share=0.3) == pytest.approx(0.15)
+    assert CHANNELS['door_spread'].state_std(0.5, share=0.0) == 0.0

@@ -144,7 +144,9 @@ class Screening:
         inputs = np.array([CHANNELS[name].bias_std(means[name]) for name in INPUTS])
         known = jacobian * np.concatenate((self._prior.std, inputs))
         own = [
-            window.own_noise(name) ** 2 + CHANNELS[name].bias_std(means[name]) ** 2
+            window.own_noise(name) ** 2
+            + CHANNELS[name].bias_std(means[name]) ** 2
+            + CHANNELS[name].per_state ** 2
             for name in names
         ]
         model = [

@@ -28,7 +28,7 @@ class Channel:
     topic
         Source of the readings, for sentences to the user.
     unit
-        SI unit of values, ``low``, ``high``, ``noise`` and ``bias``.
+        SI unit of values, ``low``, ``high``, ``noise``, ``bias`` and ``per_state``.
     low, high
         Plausible range; a value outside never enters a mean.
     noise
@@ -49,6 +49,9 @@ class Channel:
         A sensor whose readings always scatter, so identical ones mean that it is frozen.
     settles
         A slow response of the gear: a trend in it means that the state is not steady yet.
+    per_state
+        Standard deviation of what is wrong by another amount in each steady state, where it was
+        measured (`config/instruments/default.yaml`); else 0, and a share of the bias is taken.
     leap
         Distance that the quantity cannot move by in a window. A reading of an acoustic range
         that is further from the median is that of a false echo, which says nothing of the
@@ -69,6 +72,7 @@ class Channel:
     required: bool
     lively: bool = False
     settles: bool = False
+    per_state: float = 0.0
     leap: float = math.inf
 
     @property
@@ -79,6 +83,14 @@ class Channel:
     def bias_std(self, mean: float) -> float:
         """Standard deviation of the bias of one steady state at this mean."""
         return math.hypot(self.bias, self.bias_fraction * mean)
+
+    def state_std(self, bias: float, share: float) -> float:
+        """Standard deviation of what changes from one steady state to the next.
+
+        It is ``share`` of the bias where none was measured. A share of 0 is a tow in which nothing
+        changes with the state.
+        """
+        return (self.per_state or share * bias) if share else 0.0
 
 
 def _pair(both: Channel) -> list[Channel]:
@@ -98,7 +110,7 @@ _TABLE = (
     *_pair(
         Channel(
             'length', 'winch/joint_states', 'm', 1.0, 6000.0, 0.1, 0.5, 0.002, 1.0, 4.0,
-            required=True,
+            required=True, per_state=0.6,
         )
     ),
     Channel(
@@ -119,7 +131,8 @@ _TABLE = (
     ),
     Channel(
         'door_spread', 'door/spread', 'm', 1.0, 1000.0, 1.0, 0.5, 0.005, 0.2, 10.0,
-        required=True, lively=True, settles=True, leap=20.0,
+        required=True, lively=True, settles=True, per_state=0.6,
+        leap=20.0,
     ),
     Channel(
         'net_depth', 'sonar/pressure', 'm', -5.0, 3000.0, 0.3, 0.5, 0.005, 0.5, 6.0,

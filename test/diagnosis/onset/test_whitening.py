@@ -122,7 +122,7 @@ def test_less_than_readings_scatter_changes_nothing():
 
 
 def test_what_changes_with_states_changes_by_as_much_as_was_found():
-    by_state = ErrorSizes(state=(0.9,) * len(GROUPS))
+    by_state = ErrorSizes(state=(3.0,) * len(GROUPS))
     leaps = []
     for known in (KNOWN, replace(KNOWN, sizes=by_state)):
         filtered = WhiteningFilter(known, responses(), 1.0)

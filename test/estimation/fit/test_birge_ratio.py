@@ -117,7 +117,7 @@ def test_intervals_are_widened_by_what_no_error_explains(sea, model, prior, exac
     estimator = Estimator(model, prior, sea.OBSERVABLES, options)
     for window in exact:
         # The log reads too low and too high by turns.
-        wrong = 1.0 + 0.02 * (-1) ** window.index
+        wrong = 1.0 + 0.03 * (-1) ** window.index
         estimator.add(
             replace(window, means={**window.means, 'speed': window.means['speed'] * wrong})
         )

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import GearError, NoSteadyState, TrawlError
+from trawl_ros.estimation.fit.error_terms import Scheme
 from trawl_ros.estimation.fit.estimate import posterior_of, undetermined
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import linearise
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 
@@ -111,14 +113,15 @@ def test_an_innovation_is_told_before_the_window_is_used(sea, model, prior):
         window.means['door_spread'] - expected.values[row]
     )
     known = np.sum((expected.jacobian[row, :12] * prior.std) ** 2)
-    inputs = np.sum(
-        (
-            expected.jacobian[row, 12:]
-            * [window.std(n) for n in ('port_length', 'starboard_length', 'speed')]
-        )
-        ** 2
-    )
-    variance = known + inputs + window.std('door_spread') ** 2
+    scheme = Scheme()
+
+    def std(name):
+        bias = window.bias[name]
+        changing = CHANNELS[name].state_std(bias, scheme.state_share)
+        return math.hypot(scheme.tow_share * bias, changing)
+
+    inputs = np.sum((expected.jacobian[row, 12:] * [std(name) for name in INPUTS]) ** 2)
+    variance = known + inputs + std('door_spread') ** 2
     assert innovation.stds[at] == pytest.approx(math.sqrt(variance))
     assert innovation.test_ratios[at] == pytest.approx(
         innovation.values[at] ** 2 / (9.0 * variance)

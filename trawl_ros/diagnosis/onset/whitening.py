@@ -306,7 +306,8 @@ class WhiteningFilter:
                 per_unit * sizes * stated,
                 self._responses.log.T,
                 np.diag(bias) * stated,
-                np.diag(bias * _by_channel(self._sizes.state)) * stated,
+                # Leaps between states, as measured, are put in where a state begins (`LEAPS`).
+                np.diag(STATE_SHARE * bias * _by_channel(self._sizes.state)) * stated,
                 np.hstack((groups, apart)) * stated,
                 absorbed,
                 -self._still_missing(per_unit[:, :2]) * COUNTER_STD_M * stated,

@@ -49,8 +49,9 @@ class Scheme:
     Attributes
     ----------
     state_share
-        Part of a channel's bias, in std, that changes from one steady state to the next; the
-        rest stays through the tow.
+        Part of a channel's bias, in std, that changes from one steady state to the next, where
+        the channel table has nothing measured (`Channel.state_std`); the rest stays through the
+        tow. At 0 nothing changes with the state.
     model_error
         Factor on the model's own errors; 0 is a model taken to be exact.
     model_trend
@@ -268,7 +269,8 @@ def _own_std(
     if name not in window.means or (name in MEASURED and name not in linear.channels):
         return 1.0
     # All windows of a state share what changes with it, so their number must not wear it down.
-    changing = in_state[window.state] * (scheme.state_share * window.bias[name]) ** 2
+    state_std = CHANNELS[name].state_std(window.bias[name], scheme.state_share)
+    changing = in_state[window.state] * state_std**2
     # Some thirty readings tell their own noise badly: one that seems small is small by chance.
     noise = window.own_noise(name, usual[group_of(name)])
     return float(np.sqrt(noise**2 + changing))

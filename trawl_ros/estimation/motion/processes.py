@@ -22,9 +22,8 @@ from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.records.channels import CHANNELS
 
 STATE_SHARE = Scheme.state_share
-"""Part of a channel's bias that changes from one state of a tow to the next, before the data speak;
-as for steady windows."""
-
+"""Part of a channel's bias that changes from one state of a tow to the next where the channel table
+has nothing measured; as for steady windows."""
 
 SWIFT = 0.05
 """Part of its change from one stretch to the next that a mean is predicted wrong by: inputs are
@@ -57,7 +56,7 @@ class ErrorSizes:
     model
         On `MODEL_FRACTION` of the value, or `MODEL_ANGLE`: std of the model's process.
     state
-        On the bias in the channel table: std of the process that changes with states.
+        On `Channel.state_std`, as for steady windows: std of the process that changes with states.
     log
         On the errors of the speed log at its knots.
     swift
@@ -67,7 +66,7 @@ class ErrorSizes:
     noise: tuple[float, ...] = (1.0,) * len(GROUPS)
     drift: tuple[float, ...] = (0.1,) * len(GROUPS)
     model: tuple[float, ...] = (1.0,) * len(GROUPS)
-    state: tuple[float, ...] = (STATE_SHARE,) * len(GROUPS)
+    state: tuple[float, ...] = (1.0,) * len(GROUPS)
     log: float = 1.0
     swift: float = SWIFT
 
@@ -203,6 +202,7 @@ def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list
         own = np.array([name == group for name in groups], dtype=bool)
         stretches, channels = np.nonzero(there & own)
         values = np.abs(predicted[stretches, channels])
+        rows = [CHANNELS[tow.channels[c]] for c in channels]
         angle = any(CHANNELS[tow.channels[c]].unit == 'rad' for c in np.flatnonzero(own))
         found.append(
             GroupRows(
@@ -210,12 +210,12 @@ def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list
                 channels,
                 tow.middles[stretches],
                 noise[stretches, channels],
-                np.array([CHANNELS[tow.channels[c]].noise for c in channels]),
+                np.array([row.noise for row in rows]),
                 np.full(len(values), MODEL_ANGLE) if angle else MODEL_FRACTION * values,
                 np.array(
                     [
-                        CHANNELS[tow.channels[c]].bias_std(value)
-                        for c, value in zip(channels, values, strict=True)
+                        channel.state_std(channel.bias_std(value), STATE_SHARE)
+                        for channel, value in zip(rows, values, strict=True)
                     ]
                 ),
                 change[stretches, channels],

@@ -163,10 +163,11 @@ def _inputs(read: TowReadings, duration_s: float, options: StretchOptions) -> To
         headings, yaw_rates = on_grid(compass.times, np.unwrap(compass.values), grid, REACH_S)
     end, memory = float(grid[-1]), options.memory_s
     std, time = options.counter_std_m, options.counter_time_s
+    bias = CHANNELS['speed'].bias_std(float(np.median(log.values)))
     knots = (
         knots_of_log(
             log.times, log.noise, end, options.knot_s, memory,
-            slow_std=STATE_SHARE * CHANNELS['speed'].bias_std(float(np.median(log.values))),
+            slow_std=CHANNELS['speed'].state_std(bias, STATE_SHARE),
             slow_time_s=ErrorTimes().state,
         ),
         *(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, fields
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.effects.base.effect import sense
 from trawl_ros.estimation.windows.over_ground import GroundTrack
+from trawl_ros.records.channels import CHANNELS
 
 REASONS = {
     'not finite': 'readings that are NaN or infinite',
@@ -123,13 +124,13 @@ class SteadyWindow:
 
     ``index`` counts windows, ``state`` the steady states they belong to; ``start_ns`` and
     ``end_ns`` are header stamps. Per channel (SI): ``means``, ``noise`` the standard error of
-    the mean from scatter and autocorrelation, ``bias`` the standard deviation of what stays
-    wrong through the state, ``counts`` of readings in the mean. ``tow`` counts tows, through
-    each of which the errors of calibration stay the same. ``track`` compares log and GPS, None
-    where one of them or the compass is silent. ``to_come`` is how far channels that still drift may
-    be from where they will rest. ``hours`` is the time from the beginning of the tow to the middle
-    of the window. ``seabed`` is the depth (m) of the water under the ship, None where no
-    echo sounder tells it.
+    the mean from scatter and autocorrelation, ``bias`` the standard deviation of its calibration
+    (`Channel.bias_std`), ``counts`` of readings in the mean. ``tow`` counts tows, through each of
+    which the errors of calibration stay the same. ``track`` compares log and GPS, None where one
+    of them or the compass is silent. ``to_come`` is how far channels that still drift may be from
+    where they will rest. ``hours`` is the time from the beginning of the tow to the middle of the
+    window. ``seabed`` is the depth (m) of the water under the ship, None where no echo sounder
+    tells it.
     """
 
     index: int
@@ -154,10 +155,11 @@ class SteadyWindow:
     def std(self, channel: str, windows_in_state: int = 1) -> float:
         """Standard deviation of a channel's mean as one of several windows of a state.
 
-        The bias is common to all windows of a state, so their number must not wear it down.
+        The bias, and what changes with the state, is common to all windows of a state, so their
+        number must not wear it down.
         """
-        shared = windows_in_state * self.bias[channel] ** 2
-        return math.sqrt(self.own_noise(channel) ** 2 + shared)
+        shared = self.bias[channel] ** 2 + CHANNELS[channel].per_state ** 2
+        return math.sqrt(self.own_noise(channel) ** 2 + windows_in_state * shared)
 
     def own_noise(self, channel: str, least: float = 0.0) -> float:
         """Standard deviation of a channel's error that no other window shares, its noise being

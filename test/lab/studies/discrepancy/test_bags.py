@@ -72,7 +72,7 @@ def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
         found.add((window.tow, look.state))
         for name in MEASURED:
             error = window.means[name] - look[name]
-            assert abs(error) < 6.0 * np.hypot(window.bias[name], window.noise[name]), name
+            assert abs(error) < 6.0 * window.std(name), name
         assert window.sense == (1.0 if FULL.tows[window.tow].eastward else -1.0)
     assert len(found) >= 7
 

@@ -17,8 +17,9 @@ ROWS = [OBSERVABLES.index(name) for name in MEASURED]
 def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> FloatArray:
     """Fisher information (12, 12) of the coefficients in the windows of some tows.
 
-    The covariance is the true one: noise of the windows' means, offsets and errors of scale that
-    go through a tow, and all of these of the warp lengths and speed, through the sensitivities.
+    The covariance is the true one: noise of the windows' means, what changes with the state,
+    offsets and errors of scale that go through a tow, and all of these of the warp lengths and
+    speed, through the sensitivities.
 
     Parameters
     ----------
@@ -37,10 +38,17 @@ def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> FloatArray:
 
 def _covariance(looks: Sequence[Look], sensors: Sensors) -> FloatArray:
     """Covariance of measured less predicted at the measured inputs, over all windows of a tow."""
-    own = np.diag([sensors.mean_std(name) ** 2 for name in MEASURED])
-    inputs = np.diag([sensors.mean_std(name) ** 2 for name in INPUTS])
     blocks = []
     for look in looks:
+        own, inputs = (
+            np.diag(
+                [
+                    sensors.mean_std(name) ** 2 + sensors.state_std(name, _size(look, name)) ** 2
+                    for name in names
+                ]
+            )
+            for names in (MEASURED, INPUTS)
+        )
         sensitivity = look.by_inputs[ROWS]
         blocks.append(own + sensitivity @ inputs @ sensitivity.T)
     columns = []

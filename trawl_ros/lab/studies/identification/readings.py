@@ -1,7 +1,7 @@
 """Windows of a plant from instruments: correlated noise, and calibration errors of a tow."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 
 import numpy as np
@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
-from trawl_ros.estimation.fit.error_terms import group_of
+from trawl_ros.estimation.fit.error_terms import Scheme, group_of
 from trawl_ros.estimation.windows.records import SteadyWindow, WindowOptions
 from trawl_ros.estimation.windows.statistics import error_of_mean
 from trawl_ros.lab.studies.identification.plant import Look
@@ -81,9 +81,12 @@ NAMES = (*MEASURED, *INPUTS)
 
 @dataclass(frozen=True)
 class Sensors:
-    """Sensors: factors of the true noise and biases of each quantity over the stated ones."""
+    """Sensors: factors of the true noise and biases of each quantity over the stated ones, and the
+    part of a bias that changes with the state as `Scheme` has it.
+    """
 
     factors: Mapping[str, float]
+    state_share: float = Scheme.state_share
 
     def factor(self, name: str) -> float:
         """Factor of a channel or input."""
@@ -93,8 +96,15 @@ class Sensors:
         """Standard deviation of the mean of one window's noise, in the channel's unit."""
         return self.factor(name) * KINDS[group_of(name)].mean_std
 
+    def state_std(self, name: str, value: float) -> float:
+        """Standard deviation of what changes from one state to the next, in the channel's unit."""
+        channel = CHANNELS[name]
+        return self.factor(name) * channel.state_std(channel.bias_std(value), self.state_share)
+
 
 AS_STATED = Sensors(dict.fromkeys(KINDS, 1.0))
+SAME_IN_ALL_STATES = replace(AS_STATED, state_share=0.0)
+"""As stated, but for what changes with the state."""
 
 
 def wrong_by(part: float, chance: np.random.Generator) -> Sensors:
@@ -125,8 +135,9 @@ def steady_windows(
     """One window of each steady state, as the finder would find it.
 
     Readings are the plant's observables and inputs with an offset and an error of scale, both
-    drawn anew for each tow, and noise, a part of which is autoregressive of first order. Mean and
-    its stated error are worked out of the readings as the finder does.
+    drawn anew for each tow, an offset drawn anew for each state, and noise, a part of which is
+    autoregressive of first order. Mean and its stated error are worked out of the readings as the
+    finder does.
 
     Parameters
     ----------
@@ -147,7 +158,9 @@ def steady_windows(
         for look in looks:
             means, noise, counts = {}, {}, {}
             for name in NAMES:
-                centre = (1.0 + scale[name]) * _truth(look, name) + offset[name]
+                truth = _truth(look, name)
+                own = sensors.state_std(name, truth) * chance.standard_normal()
+                centre = (1.0 + scale[name]) * truth + offset[name] + own
                 kind = KINDS[group_of(name)]
                 readings = centre + sensors.factor(name) * kind.noise(chance)
                 means[name] = float(readings.mean())

@@ -15,7 +15,11 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.lab.studies.identification.bound import information
 from trawl_ros.lab.studies.identification.kept import TrialTask
 from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, TowedBoard, draw_board
-from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows, wrong_by
+from trawl_ros.lab.studies.identification.readings import (
+    SAME_IN_ALL_STATES,
+    steady_windows,
+    wrong_by,
+)
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import INPUTS
 from trawl_ros.records.observables import OBSERVABLES
@@ -99,7 +103,7 @@ def run_trial(task: Task) -> EstimationTrial:
     prior = board_prior(gear)
     board = draw_board(task.cut.plant(task.gear), prior, (*TOWS[: task.tows], HELD_OUT), chance)
     tows, held_out = board.tows[:-1], board.tows[-1]
-    sensors = AS_STATED if task.stated else wrong_by(WRONG_BY, chance)
+    sensors = SAME_IN_ALL_STATES if task.stated else wrong_by(WRONG_BY, chance)
     exact = EstimatorOptions(model_error=0.0, state_share=0.0, unsettled=0.0)
     options = exact if task.stated else None
     estimator = Estimator(Predictor(build_model(gear)), prior, OBSERVABLES, options)

@@ -9,7 +9,7 @@ from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.error_terms import group_of
-from trawl_ros.lab.studies.discrepancy.trials.course import Course
+from trawl_ros.lab.studies.discrepancy.trials.course import HOLD_S, Course
 from trawl_ros.lab.studies.identification.readings import KINDS, NAMES, Sensors, drawn_errors
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
@@ -85,6 +85,8 @@ def _readings(
     course: Course, sensors: Sensors, dropouts: float, chance: np.random.Generator
 ) -> dict[str, Readings]:
     offset, scale = drawn_errors(sensors, chance)
+    # When one state is left for the next.
+    left = np.add(course.moments, HOLD_S)[:-1]
     found = {}
     for name in NAMES:
         kind = KINDS[group_of(name)]
@@ -95,6 +97,11 @@ def _readings(
         else:
             truth = values[:, OBSERVABLES.index(name)]
         noise = sensors.factor(name) * kind.noise(chance, len(times))
+        of_state = chance.standard_normal(len(course.moments))
+        of_state *= [
+            sensors.state_std(name, value) for value in np.interp(course.moments, times, truth)
+        ]
+        noise += of_state[np.searchsorted(left, times)]
         readings = (1.0 + scale[name]) * truth + offset[name] + noise
         heard = np.ones(len(times), dtype=bool)
         for moment in course.moments:
