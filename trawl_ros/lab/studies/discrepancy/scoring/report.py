@@ -84,8 +84,9 @@ def _method(plan: BlindStudyPlan, trials: Sequence[Scored], classes: Classes) ->
         f'{plan.cut}, netting and its ropes with {NORMAL_DRAG:g} times the drag across and '
         f'{FRICTION:g} times that along the twine; {PLANTS} plants have boards drawn from half of '
         "the prior's spread. Windows are worked out from steady states of the plant with noise of "
-        'which a part is autoregressive, offsets and errors of scale by sensor and tow, noise and '
-        f'biases {100.0 * WRONG_BY:g} % larger or smaller than stated, states some metres and '
+        'which a part is autoregressive, offsets and errors of scale by sensor and tow, an offset '
+        f'by state as the error budget has it, all of these {100.0 * WRONG_BY:g} % larger or '
+        'smaller than stated, states some metres and '
         f'hundredths of m/s off the plan, and {100.0 * DROPOUTS:g} % of the means of optional '
         'channels missing. What is hidden is written apart from the catalogue, through the hooks '
         'of the model, with a shape drawn for each trial. Its strength is a multiple of the '
