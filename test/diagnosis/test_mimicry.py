@@ -90,6 +90,19 @@ def test_an_uncommon_size_makes_no_name_doubtful(coarse, exchanged, monkeypatch)
     assert mimics_of(predictor, exchanged.base, exchanged.score_test, exchanged.best) == ()
 
 
+def test_a_change_at_its_bound_makes_a_name_doubtful_and_is_no_better_explanation(
+    coarse, exchanged, monkeypatch
+):
+    predictor = Predictor(build_model(coarse), without=exchanged.baseline)
+    (found,) = (own for own in exchanged.mimics if own.change.name == 'board_area')
+    near = AREA.model_copy(update={'high': 0.97 * found.interval[0]})
+    monkeypatch.setattr(LIBRARY, lambda: (near,))
+    given = predictor, exchanged.base, exchanged.score_test, exchanged.best
+    (beside,) = mimics_of(*given)
+    assert beside.refit.at_bound()
+    assert mimics_of(*given, better=True) == ()
+
+
 def test_a_change_that_is_the_same_as_a_rival_is_told_by_the_rival_alone(
     coarse, exchanged, monkeypatch
 ):

@@ -123,7 +123,8 @@ def mimics_of(
         except GearError:
             # A net that cannot be cut so is not the one that was towed.
             continue
-        if fitted is None or fitted.at_bound():
+        # A change as large as is possible makes a name doubtful, and is no explanation by itself.
+        if fitted is None or (better and fitted.at_bound()):
             continue
         delta = 2.0 * (before - fitted.cost(scales))
         criterion = delta - fitted.number * penalty
