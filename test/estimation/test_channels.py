@@ -104,3 +104,9 @@ def test_the_table_has_what_default_instruments_are_wrong_by_in_each_state():
 def test_where_no_error_of_a_state_was_measured_it_is_a_share_of_the_bias():
     assert CHANNELS['net_depth'].state_std(0.5, share=0.3) == pytest.approx(0.15)
     assert CHANNELS['door_spread'].state_std(0.5, share=0.0) == 0.0
+
+
+def test_what_stays_wrong_through_a_state_is_calibration_and_what_changes_with_it():
+    spread, depth = CHANNELS['door_spread'], CHANNELS['net_depth']
+    assert spread.steady_std(100.0) == pytest.approx(math.hypot(0.5, 0.5, 0.6))
+    assert depth.steady_std(100.0) == depth.bias_std(100.0)

@@ -141,12 +141,10 @@ class Screening:
         names = [name for name in MEASURED if name in means and name in self._observables]
         rows = [self._observables.index(name) for name in names]
         values, jacobian = prediction.values[rows], prediction.jacobian[rows]
-        inputs = np.array([CHANNELS[name].bias_std(means[name]) for name in INPUTS])
+        inputs = np.array([CHANNELS[name].steady_std(means[name]) for name in INPUTS])
         known = jacobian * np.concatenate((self._prior.std, inputs))
         own = [
-            window.own_noise(name) ** 2
-            + CHANNELS[name].bias_std(means[name]) ** 2
-            + CHANNELS[name].per_state ** 2
+            window.own_noise(name) ** 2 + CHANNELS[name].steady_std(means[name]) ** 2
             for name in names
         ]
         model = [

@@ -34,8 +34,8 @@ class Channel:
     noise
         Standard deviation of one reading where the sample states none.
     bias, bias_fraction
-        Standard deviation of what stays wrong for a whole steady state, however long one
-        averages: an absolute part and a part of the mean's size, added in quadrature.
+        Standard deviation of what stays wrong through a tow, however long one averages: an
+        absolute part and a part of the mean's size, added in quadrature.
     min_rate
         Lowest rate (Hz) at which the instrument may report.
     delay
@@ -81,8 +81,12 @@ class Channel:
         return max(10.0, 4.0 / self.min_rate)
 
     def bias_std(self, mean: float) -> float:
-        """Standard deviation of the bias of one steady state at this mean."""
+        """Standard deviation of the calibration at this mean."""
         return math.hypot(self.bias, self.bias_fraction * mean)
+
+    def steady_std(self, mean: float) -> float:
+        """Standard deviation of all that stays wrong through one steady state at this mean."""
+        return math.hypot(self.bias_std(mean), self.per_state)
 
     def state_std(self, bias: float, share: float) -> float:
         """Standard deviation of what changes from one steady state to the next.

@@ -306,7 +306,7 @@ class WhiteningFilter:
                 per_unit * sizes * stated,
                 self._responses.log.T,
                 np.diag(bias) * stated,
-                # Leaps between states, as measured, are put in where a state begins (`LEAPS`).
+                # Leaps between states, as measured, are added where a state begins (`LEAPS`).
                 np.diag(STATE_SHARE * bias * _by_channel(self._sizes.state)) * stated,
                 np.hstack((groups, apart)) * stated,
                 absorbed,
