@@ -120,36 +120,37 @@ class Step:
 
     start: Motion
     h: float
+    scheme: Scheme = SCHEME
 
     @cached_property
     def carried(self) -> FloatArray:
         """Part (dof,) of the new averaged acceleration that is known."""
-        return SCHEME.carried(self.start.acceleration, self.start.averaged)
+        return self.scheme.carried(self.start.acceleration, self.start.averaged)
 
     @cached_property
     def way(self) -> FloatArray:
         """Part (dof,) of the way that is known."""
         given = self.start.state.velocity, self.start.averaged, self.carried
-        return SCHEME.way(*given, self.h)
+        return self.scheme.way(*given, self.h)
 
     @cached_property
     def pace(self) -> FloatArray:
         """Part (dof,) of the new velocity that is known."""
         given = self.start.state.velocity, self.start.averaged, self.carried
-        return SCHEME.pace(*given, self.h)
+        return self.scheme.pace(*given, self.h)
 
     def shift(self, new: FloatArray) -> FloatArray:
         """Way (dof,) of the gear with an acceleration (dof,) at the end."""
-        return self.way + SCHEME.by_position(self.h) * new
+        return self.way + self.scheme.by_position(self.h) * new
 
     def state(self, new: FloatArray) -> State:
         """State at the end with an acceleration (dof,) there."""
-        velocity = self.pace + SCHEME.by_velocity(self.h) * new
+        velocity = self.pace + self.scheme.by_velocity(self.h) * new
         return self.start.state.moved(self.shift(new)).with_velocity(velocity)
 
     def motion(self, new: FloatArray) -> Motion:
         """Motion at the end with an acceleration (dof,) there."""
-        return Motion(self.state(new), new, self.carried + SCHEME.share * new)
+        return Motion(self.state(new), new, self.carried + self.scheme.share * new)
 
 
 @dataclass(frozen=True)
@@ -163,6 +164,8 @@ class SolvedStep:
 
 class Stepper:
     """Time stepper of one gear; holds the factorised iteration matrix between steps."""
+
+    scheme = SCHEME
 
     def __init__(self, model: GearModel) -> None:
         self.model = model
@@ -196,8 +199,8 @@ class Stepper:
         return size < enough
 
     def _solve(self, motion: Motion, tow: Tow, h: float, keep_rate: float) -> SolvedStep:
-        model, step = self.model, Step(motion, h)
-        by_velocity, by_position = SCHEME.by_velocity(h), SCHEME.by_position(h)
+        model, step = self.model, Step(motion, h, self.scheme)
+        by_velocity, by_position = self.scheme.by_velocity(h), self.scheme.by_position(h)
         new = motion.averaged.copy()
         inertia = None
         last, patch, enough = np.inf, NO_PATCH, TOLERANCE * h**3

@@ -8,7 +8,6 @@ import pytest
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.motion import stretches
-from trawl_ros.estimation.motion.inputs import TowInputs
 from trawl_ros.estimation.motion.series import (
     Series,
     payout_by_counter,
@@ -18,7 +17,6 @@ from trawl_ros.estimation.motion.series import (
 from trawl_ros.estimation.motion.stretches import (
     StretchOptions,
     moving_tow,
-    quiet_stretches,
     warp_path,
 )
 from trawl_ros.records.channels import CHANNELS
@@ -143,29 +141,3 @@ def test_tows_of_other_steps_have_the_same_means():
     fine = moving_tow(read, 'bag', replace(AT_REST, step_s=0.5))
     assert fine.steps == 40
     np.testing.assert_array_equal(fine.means, moving_tow(read, 'bag', AT_REST).means)
-
-
-def test_stretches_are_quiet_where_inputs_stand_and_the_gear_has_followed():
-    grid = np.arange(0.0, 1201.0)
-    hauling = ((grid >= 300.0) & (grid < 360.0)).astype(float)
-    speed = 2.2 + 0.2 * np.clip((grid - 800.0) / 10.0, 0.0, 1.0) + 0.01 * np.sin(grid)
-    values = np.column_stack((400.0 - 0.4 * np.cumsum(hauling),) * 2 + (speed,))
-    rates = np.column_stack((-0.4 * hauling, -0.4 * hauling, np.gradient(speed)))
-    still = np.zeros(len(grid))
-    quiet = quiet_stretches(TowInputs(1.0, values, rates, still, still), 40, 30.0)
-    begins = 30.0 * np.arange(40)
-    assert np.all(quiet[(begins < 270.0) | ((begins >= 480.0) & (begins < 720.0))])
-    assert not np.any(quiet[(begins >= 300.0) & (begins < 480.0)])
-    assert not np.any(quiet[(begins >= 810.0) & (begins < 930.0)])
-    assert np.all(quiet[begins >= 990.0])
-
-
-def test_longer_steps_leave_the_mean_of_a_line_where_it_is():
-    tow = tow_of()
-    tow = replace(tow, quiet=np.arange(len(tow)) % 2 == 0)
-    for stretch in (6, 7):
-        instants = np.arange(0, tow.steps + 1, tow.every(stretch)) * tow.step_s
-        weights = tow.weights_of(stretch)[0]
-        assert len(weights) == (6 if tow.quiet[stretch] else 11)
-        course = 9e4 + stretch * tow.stretch_s + instants
-        assert weights @ course == pytest.approx(tow.means[stretch, 0])

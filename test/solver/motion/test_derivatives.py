@@ -139,6 +139,7 @@ def towed_again(run: Differentiated, case: Changed) -> np.ndarray:
     state, _, left = relax(model, start, course.tow, tolerance=1e-6, time_step=1e9)
     assert left < 1e-6
     stepper, motion, time, seen = Stepper(model), at_rest(state), 0.0, []
+    stepper.scheme = differentiated_stepper.DAMPED
     for number, steps in enumerate(run.steps, 1):
         for h in steps:
             time += h

@@ -4,12 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.estimation.motion.inputs import TowInputs
-from trawl_ros.estimation.motion.knots import hats
-
-LONGER = 2
-"""Steps that are taken as one where inputs hardly change."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +42,6 @@ class MovingTow:
         times; they sum to 1.
     inputs
         Warp lengths and speed.
-    quiet : (n,) bool array
-        Stretches in which inputs hardly change, nor did before: they are towed in longer steps.
     left_out
         Stretches without any mean, and why.
     """
@@ -62,7 +56,6 @@ class MovingTow:
     counts: IntArray
     weights: FloatArray
     inputs: TowInputs
-    quiet: BoolArray
     left_out: tuple[LeftOut, ...] = ()
 
     def __len__(self) -> int:
@@ -72,19 +65,6 @@ class MovingTow:
     def steps(self) -> int:
         """Steps in a stretch."""
         return int(self.weights.shape[2]) - 1
-
-    def every(self, stretch: int) -> int:
-        """Number of steps that are taken as one in a stretch."""
-        return LONGER if self.quiet[stretch] and self.steps % LONGER == 0 else 1
-
-    def weights_of(self, stretch: int) -> FloatArray:
-        """Weights (k, m + 1) of the m + 1 instants to which a stretch is towed; in between, the
-        motion is linear.
-        """
-        every = self.every(stretch)
-        instants = np.arange(self.steps + 1) / every
-        found: FloatArray = self.weights[stretch] @ hats(instants, self.steps // every + 1, 1.0)
-        return found
 
     @property
     def middles(self) -> FloatArray:

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
-from scipy.ndimage import uniform_filter1d
 
-from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.motion.inputs import TowInputs, on_grid, stacked
 from trawl_ros.estimation.motion.knots import knots_of_counter, knots_of_log
@@ -124,7 +123,7 @@ def moving_tow(read: TowReadings, name: str, options: StretchOptions) -> MovingT
     return MovingTow(
         name, read.start_ns, options.step_s, options.stretch_s, channels, means, noise,
         counts.astype(np.int64), weights, inputs,
-        quiet_stretches(inputs, number, options.stretch_s), left_out,
+        left_out,
     )  # fmt: skip
 
 
@@ -177,26 +176,6 @@ def _inputs(read: TowReadings, duration_s: float, options: StretchOptions) -> To
     )  # fmt: skip
     values, rates = stacked(paths)
     return TowInputs(GRID_S, values, rates, headings, yaw_rates, knots, read.hours)
-
-
-def quiet_stretches(inputs: TowInputs, number: int, stretch_s: float) -> BoolArray:
-    """Flags (number,) of stretches in which inputs hardly change, nor did so long before that the
-    gear has followed.
-    """
-    wide = round(SLOW_S / inputs.grid_s)
-    mean = uniform_filter1d(inputs.values[:, 2], wide, mode='nearest')
-    faster = np.abs(np.gradient(mean, inputs.grid_s)) * SLOW_S
-    turned = np.abs(uniform_filter1d(inputs.yaw_rates, wide, mode='nearest'))
-    moving = (
-        (np.abs(inputs.rates[:, :2]).max(axis=1) > STANDING_M_S)
-        | (faster > SLOW_SPEED_M_S)
-        | (turned > SLOW_TURN_RAD_S)
-    )
-    times = inputs.grid_s * np.arange(len(moving))
-    begins = stretch_s * np.arange(number)
-    since = np.concatenate(([0], np.cumsum(moving)))
-    first, last = np.searchsorted(times, (begins - FOLLOWED_S, begins + stretch_s))
-    return np.asarray(since[last] == since[first], np.bool_)
 
 
 def warp_path(counter: Series, payout: Series, grid: FloatArray) -> tuple[FloatArray, FloatArray]:

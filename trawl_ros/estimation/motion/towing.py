@@ -270,7 +270,7 @@ class TowLineariser:
             if self._motion is None:
                 self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0)
                 self._seen = [self._observed(self._motion)]
-            taken = list(self._towed_on(self._motion, tow, stretch))
+            taken = list(self._towed_on(self._motion, tow))
         except (NoSteadyState, StepFailed) as error:
             self._stop(begin)
             return f'the model cannot be towed: {error}'
@@ -288,12 +288,9 @@ class TowLineariser:
     def _stop(self, begin: float) -> None:
         self._motion, self._again = None, begin + AGAIN_S
 
-    def _towed_on(
-        self, motion: MotionUnderWay, tow: MovingTow, stretch: int
-    ) -> Iterator[MotionPrediction]:
-        every = tow.every(stretch)
-        for _ in range(0, tow.steps, every):
-            motion.advance(every * tow.step_s)
+    def _towed_on(self, motion: MotionUnderWay, tow: MovingTow) -> Iterator[MotionPrediction]:
+        for _ in range(tow.steps):
+            motion.advance(tow.step_s)
             yield self._observed(motion)
 
     def _observed(self, motion: MotionUnderWay) -> MotionPrediction:
@@ -358,7 +355,7 @@ def _average(
     tow: MovingTow, stretch: int, motion: MotionUnderWay, instants: list[MotionPrediction]
 ) -> _TowedMeans:
     """Means of a stretch from its instants."""
-    weights, parameters = tow.weights_of(stretch), motion.towed.parameters
+    weights, parameters = tow.weights[stretch], motion.towed.parameters
     values = np.array([instant.values for instant in instants])
     slopes = np.array([instant.slopes for instant in instants])
     for column in motion.begun_since(stretch * tow.stretch_s):

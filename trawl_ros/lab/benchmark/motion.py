@@ -111,7 +111,6 @@ def course_tow(duration_s: float = DURATION_S) -> MovingTow:
     return MovingTow(
         'course', 0, STEP_S, STRETCH_S, MEASURED, np.zeros((n, k)), noise,
         np.ones((n, k), dtype=int), weights, TowInputs(1.0, values, rates, still, still),
-        np.zeros(n, dtype=bool),
     )  # fmt: skip
 
 

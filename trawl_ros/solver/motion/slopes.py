@@ -23,7 +23,7 @@ from trawl_ros.model.slopes.along import (
 from trawl_ros.model.state import State, Tow, TowSlopes
 from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.motion.products import BOARDS, carry_on, subtract_history
-from trawl_ros.solver.stepper import SCHEME, SolvedStep
+from trawl_ros.solver.stepper import Scheme, SolvedStep
 
 
 @dataclass(frozen=True)
@@ -114,8 +114,8 @@ def linearise_step(model: GearModel, solved: SolvedStep, tow: Tow) -> Linearised
     RuntimeError
         If the matrix is singular.
     """
-    step, new = solved.step, solved.acceleration
-    by_velocity, by_position = SCHEME.by_velocity(step.h), SCHEME.by_position(step.h)
+    step, new, scheme = solved.step, solved.acceleration, solved.step.scheme
+    by_velocity, by_position = scheme.by_velocity(step.h), scheme.by_position(step.h)
     here = linearised(model, step.state(new), tow)
     stiffness = _by_vectors(model, here.stiffness, step.shift(new))
     data = stiffness + (by_velocity / by_position) * here.damping + solved.inertia / by_position
@@ -162,7 +162,8 @@ def advance_slopes(
         space for the right-hand sides.
     """
     step, new = at.solved.step, at.solved.acceleration
-    h, averaged, weights = step.h, step.start.averaged, _Weights.of(step.h)
+    h, scheme, averaged = step.h, step.scheme, step.start.averaged
+    weights = _Weights.of(scheme, h)
     boards = slice(model.dof - BOARDS, None)
     old, way = before.places[boards], before.weighted(weights.way, boards)
     predicted_way = before.weighted(weights.predicted_way, boards)
@@ -188,8 +189,8 @@ def advance_slopes(
     )
     shift = at.factor.solve(push)
     after = MotionSlopes(*np.empty((4, *shift.shape)))
-    share = np.array([1.0, SCHEME.by_velocity(h), 1.0, SCHEME.share])
-    share[1:] /= SCHEME.by_position(h)
+    share = np.array([1.0, scheme.by_velocity(h), 1.0, scheme.share])
+    share[1:] /= scheme.by_position(h)
     carry_on(weights.way, weights.pace, weights.carried, share, before.arrays, shift, after.arrays)
     after.places[boards] = _turned_on(old, way + shift[boards], step.shift(new))
     return after
@@ -207,10 +208,10 @@ class _Weights:
     pace: FloatArray
 
     @classmethod
-    def of(cls, h: float) -> '_Weights':
+    def of(cls, scheme: Scheme, h: float) -> '_Weights':
         """Weights of a step of ``h`` seconds: all of it is linear, so unit vectors tell them."""
         velocities, accelerations, averaged = np.eye(3)
-        carried = SCHEME.carried(accelerations, averaged)
-        way = SCHEME.way(velocities, averaged, carried, h)
-        pace = SCHEME.pace(velocities, averaged, carried, h)
-        return cls(carried, way, way + SCHEME.by_position(h) * averaged, pace)
+        carried = scheme.carried(accelerations, averaged)
+        way = scheme.way(velocities, averaged, carried, h)
+        pace = scheme.pace(velocities, averaged, carried, h)
+        return cls(carried, way, way + scheme.by_position(h) * averaged, pace)

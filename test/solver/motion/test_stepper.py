@@ -1,0 +1,83 @@
+"""Steps of a fitted tow: their damping, and the roots to which they may not come."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.solver.equilibrium import SteadyState
+from trawl_ros.solver.motion import stepper as module
+from trawl_ros.solver.motion.course import InputPoint
+from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.motion.stepper import DifferentiatedStepper, is_astray
+from trawl_ros.solver.motion.tow import DifferentiatedTow
+from trawl_ros.solver.stepper import SCHEME, Scheme, SolvedStep, Step, at_rest
+
+NONE = MotionParameters(coefficients=False)
+
+
+def hauling(time: float) -> InputPoint:
+    """Winches that haul at 1 m/s from one instant to the next."""
+    length = 500.0 - max(time - 3.0, 0.0)
+    return InputPoint(np.array([length, length, 2.1]), np.array([-1.0, -1.0, 0.0]) * (time > 3.0))
+
+
+@pytest.mark.parametrize('side', [0, 1])
+def test_a_board_is_astray_where_it_is_not_led(steady: SteadyState, side: int) -> None:
+    motion = at_rest(steady.equilibrium.state)
+    step = Step(motion, 6.0, module.DAMPED)
+    none = SolvedStep(step, np.zeros_like(motion.acceleration), np.zeros(0))
+    assert not is_astray(motion, none)
+    boards = len(motion.acceleration) - 12
+    for place, little, much in ((0, 1.8, 2.2), (5, np.radians(13.0), np.radians(17.0))):
+        for way, astray in ((little, False), (much, True), (-much, True)):
+            new = np.zeros_like(motion.acceleration)
+            new[boards + 6 * side + place] = way / step.scheme.by_position(step.h)
+            assert is_astray(motion, replace(none, acceleration=new)) == astray
+
+
+def test_a_tow_is_led_in_shorter_steps_where_a_long_one_goes_astray(
+    model: GearModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, 'ASTRAY_M', 0.1)
+    taken = []
+    solved = DifferentiatedStepper._solved
+
+    def noted(self, motion, tow, h):
+        found = solved(self, motion, tow, h)
+        taken.append(h)
+        return found
+
+    monkeypatch.setattr(DifferentiatedStepper, '_solved', noted)
+    tow = DifferentiatedTow(model, NONE, hauling)
+    for _ in range(3):
+        tow.advance(3.0)
+    assert tow.time == pytest.approx(9.0) == pytest.approx(sum(taken))
+    assert taken[0] == 3.0
+    assert min(taken) < 3.0
+
+
+def test_what_vibrates_faster_than_long_steps_is_damped_more_than_in_a_simulation() -> None:
+    assert left_of_fast(SCHEME) == pytest.approx(0.4, rel=0.01)
+    assert left_of_fast(DifferentiatedStepper.scheme) == pytest.approx(0.2, rel=0.01)
+
+
+def left_of_fast(scheme: Scheme) -> float:
+    """Spectral radius of a step of a mass on a spring of a thousand oscillations in it."""
+    h, stiffness = 1.0, (2000.0 * np.pi) ** 2
+    rows = []
+    for velocity, place, acceleration, averaged in np.eye(4):
+        carried = scheme.carried(acceleration, averaged)
+        way = scheme.way(velocity, averaged, carried, h)
+        pace = scheme.pace(velocity, averaged, carried, h)
+        new = -stiffness * (place + way) / (1.0 + stiffness * scheme.by_position(h))
+        rows.append(
+            (
+                pace + scheme.by_velocity(h) * new,
+                place + way + scheme.by_position(h) * new,
+                new,
+                carried + scheme.share * new,
+            )
+        )
+    return float(np.abs(np.linalg.eigvals(np.array(rows).T)).max())
