@@ -50,7 +50,7 @@ class MotionOptions:
     tolerance: float = 0.1
     iterations: int = 20
     attempts: int = 4
-    towings: int = 14
+    towings: int = 20
     widened: float = 1.0
     huber: float = 2.5
 
