@@ -188,11 +188,15 @@ class Stepper:
         if self._factor_step != h:
             self._factor = None
         try:
-            return self._solve(motion, tow, h, KEEP_RATE)
+            return self._solve(motion, tow, h, self._keep_rate(h))
         except StepFailed:
             # Ropes that go slack or taut within the step: a matrix for every iteration.
             self._factor = None
             return self._solve(motion, tow, h, 0.0)
+
+    def _keep_rate(self, h: float) -> float:
+        """Rate of convergence at which a step keeps its matrix; 0 for a matrix per iteration."""
+        return KEEP_RATE
 
     def _is_done(self, size: float, last: float, enough: float) -> bool:
         """True if a correction of a size, after one of the last size, is small enough."""
