@@ -1,4 +1,4 @@
-"""Steps of a fitted tow: their damping, and the roots to which they may not come."""
+"""Steps of a fitted tow: their damping, and their length."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.motion import stepper as module
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
-from trawl_ros.solver.motion.stepper import DifferentiatedStepper, is_astray
+from trawl_ros.solver.motion.stepper import DifferentiatedStepper, is_too_long
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import SCHEME, Scheme, SolvedStep, Step, at_rest
 
@@ -24,23 +24,22 @@ def hauling(time: float) -> InputPoint:
 
 
 @pytest.mark.parametrize('side', [0, 1])
-def test_a_board_is_astray_where_it_is_not_led(steady: SteadyState, side: int) -> None:
+def test_a_board_is_too_long_where_it_is_not_led(steady: SteadyState, side: int) -> None:
     motion = at_rest(steady.equilibrium.state)
     step = Step(motion, 6.0, module.DAMPED)
     none = SolvedStep(step, np.zeros_like(motion.acceleration), np.zeros(0))
-    assert not is_astray(motion, none)
+    assert not is_too_long(motion, none)
     boards = len(motion.acceleration) - 12
-    for place, little, much in ((0, 1.8, 2.2), (5, np.radians(13.0), np.radians(17.0))):
-        for way, astray in ((little, False), (much, True), (-much, True)):
+    for place, little, much in ((0, 0.09, 0.11), (5, np.radians(0.9), np.radians(1.1))):
+        for way, too_long in ((little, False), (much, True), (-much, True)):
             new = np.zeros_like(motion.acceleration)
             new[boards + 6 * side + place] = way / step.scheme.by_position(step.h)
-            assert is_astray(motion, replace(none, acceleration=new)) == astray
+            assert is_too_long(motion, replace(none, acceleration=new)) == too_long
 
 
-def test_a_tow_is_led_in_shorter_steps_where_a_long_one_goes_astray(
+def test_a_tow_is_led_in_shorter_steps_where_winches_start(
     model: GearModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, 'ASTRAY_M', 0.1)
     taken = []
     solved = DifferentiatedStepper._solved
 
