@@ -10,6 +10,7 @@ from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion import towing
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, on_grid
 from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_log
@@ -189,6 +190,18 @@ def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
     needed = np.ones(len(tow), dtype=bool)
     with pytest.raises(NoSteadyState, match='0 s after the beginning'):
         linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
+
+
+def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, monkeypatch):
+    tow, point = course_tow(100.0), TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
+    usual = linearise_tow(TowedGear(coarse), tow, point)
+    assert usual.towed.all()
+    sharp = np.abs(usual.by_coefficients) / tow.noise[..., None]
+    assert sharp.max() < 0.1 * towing.UNSTABLE
+    monkeypatch.setattr(towing, 'UNSTABLE', 0.5 * sharp[1:].max())
+    there = linearise_tow(TowedGear(coarse), tow, point)
+    assert not there.towed.all()
+    assert 'the motion of the model is unstable' in [part.why for part in there.left_out]
 
 
 def rows(chance, number=60, noise=0.5, model=1.0):

@@ -30,6 +30,10 @@ SETTLING_S = 300.0
 """Time that a tow which is begun anew is given before its stretches count: by then the slowest
 motion, which is unknown there, has faded."""
 
+UNSTABLE = 1e6
+"""Derivative of a mean by a coefficient, in its noise, from which a motion is unstable: behind a
+tumble of boards derivatives may grow until normal equations are no longer definite."""
+
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
 
 
@@ -283,7 +287,12 @@ class TowLineariser:
             return 'the gear of the model breaks the surface'
         if begin < motion.counts_from:
             return AFTER_A_STOP
-        return _average(tow, stretch, motion, instants)
+        means = _average(tow, stretch, motion, instants)
+        sharp = np.abs(means.by_coefficients) / tow.noise[stretch][:, None]
+        if np.any(sharp > UNSTABLE):
+            self._stop(begin)
+            return 'the motion of the model is unstable'
+        return means
 
     def _stop(self, begin: float) -> None:
         self._motion, self._again = None, begin + AGAIN_S
