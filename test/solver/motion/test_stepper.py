@@ -24,7 +24,7 @@ def hauling(time: float) -> InputPoint:
 
 
 @pytest.mark.parametrize('side', [0, 1])
-def test_a_board_is_too_long_where_it_is_not_led(steady: SteadyState, side: int) -> None:
+def test_a_step_that_leads_a_board_away_is_too_long(steady: SteadyState, side: int) -> None:
     motion = at_rest(steady.equilibrium.state)
     step = Step(motion, 6.0, module.DAMPED)
     none = SolvedStep(step, np.zeros_like(motion.acceleration), np.zeros(0))

@@ -24,9 +24,8 @@ That saves a third of the time of the demo's tow in steps of 3 s."""
 DEPARTURE_M, DEPARTURE_RAD = 0.1, np.radians(1.0)
 """Departure of a board from where its averaged acceleration leads it, and of its turn, from which a
 step is too long. Where winches start, means of half a minute were up to 11 of their std off in
-steps of 3 s, by as much as place and place differ in which of them fail; so they are off by one.
-Steps of 6 s may come to another root altogether: one took both doors 8 m down, with 24 MN in the
-warps."""
+steps of 3 s, and are one std off with this. Steps of 6 s may come to another root altogether: one
+took both doors 8 m down, with 24 MN in the warps."""
 
 SHORT_S = 0.5
 """Steps (s) no longer than this are never too long: they are those of a simulation."""
