@@ -29,11 +29,6 @@ from trawl_ros.model.water import build_water
 STRETCHES = StretchOptions(step_s=3.0, stretch_s=30.0, knot_s=30.0, counter_knot_s=90.0)
 """Of a tow of hours; the linearised tow costs some twenty times less time than it took at sea."""
 
-WIDENED = 1.3
-"""Factor on the errors of all stretches, for a plant that is not the model. Of seven tows of finer
-plants (seed 60) that came to rest, the squared normalised errors of twelve have a median of 15.9
-with 1, 13.1 with 1.15 and 11.5 with this, where 11.3 is right (docs/identification/motion.md)."""
-
 STAGE = 'towing all of it'
 
 Refused = Callable[[str], None]
@@ -122,7 +117,7 @@ def fit_tows(
     estimate = None if identification is None else identification.estimate
     prior, options, towed = (
         board_prior(gear),
-        MotionOptions(widened=WIDENED),
+        MotionOptions(),
         towed_gear(gear, net=net),
     )
     layouts = [layout_of(tow, towed, options.model) for tow in tows]

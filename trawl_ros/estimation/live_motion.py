@@ -11,7 +11,6 @@ from trawl_ros.core.progress import OnProgress, ignore
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.bag_motion import (
     STRETCHES,
-    WIDENED,
     fit_tows,
     moving_parts,
     towed_gear,
@@ -89,7 +88,7 @@ class LiveMotion:
         self, gear: GearRecord, options: MotionOptions | None = None, *, net: bool = False
     ) -> None:
         self._gear, self._prior, self._net = gear, board_prior(gear), net
-        self._options = options or MotionOptions(widened=WIDENED)
+        self._options = options or MotionOptions()
         self._towed = towed_gear(gear, net=net)
         self._depth = build_water(gear).depth
         self.reset()

@@ -93,8 +93,7 @@ class MotionSearch:
     ) -> MotionFit:
         """Record of the fit at a place, by the tows as they are linearised."""
         data, prior = self.data(self.linear, self.here), self.prior
-        wide = sizes.tempered(self.options.widened)
-        told = joined(data.information(wide), data.precisions(wide.log), data.shared)
+        told = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
         every = np.linalg.inv(told.matrix + np.eye(data.shared))
         covariance, layout, known = every[:12, :12], self.layouts[0], self.gear.net_std
         std = known * np.sqrt(np.diag(every)[layout.of_net])
@@ -225,8 +224,7 @@ def fit_motion(
         temper = max(1.0, min(COOLER * temper, misfit(data, search.here, sizes)))
         now = sizes.tempered(temper)
         target = step(data, search.here, prior, now, options.largest_step)
-        # Rest is told by the std that will be stated.
-        std = shared_std(data, now.tempered(options.widened))[:12]
+        std = shared_std(data, now)[:12]
         size = float(np.max(np.abs(target[0][:12] - search.here[0][:12]) / std))
         if temper == 1.0 and size < options.tolerance:
             converged = True
@@ -242,9 +240,7 @@ def fit_motion(
             converged = near
             reason = f'no step lowers the cost, {size:.2g} std from rest'
             break
-    place: Place = search.here
-    if converged:
-        place = search.target(sizes.tempered(options.widened))
+    place = search.target(sizes) if converged else search.here
     return search.fit(sizes, place, iteration, converged=converged, reason=reason)
 
 

@@ -34,9 +34,6 @@ class MotionOptions:
     iterations, attempts, towings
         At most; attempts at a step that lowers the cost, each damped more; towings of all tows in
         all, after which no step is begun.
-    widened
-        Factor on the errors of stretches by which the estimate and its covariance are taken at the
-        end, where it has come to rest; 1 for a model known to be the plant.
     huber
         Std beyond which a mean counts less; infinite for normal errors.
     """
@@ -51,7 +48,6 @@ class MotionOptions:
     iterations: int = 20
     attempts: int = 4
     towings: int = 20
-    widened: float = 1.0
     huber: float = 2.5
 
 

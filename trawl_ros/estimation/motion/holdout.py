@@ -76,9 +76,7 @@ def hold_out_states(
             for linear, numbers in zip(fit.linear, tow_of, strict=True)
         ]
         data = restricted(fit.data, keep)
-        # As the estimate itself is stated.
-        sizes = fit.sizes.tempered(options.widened)
-        there = step(data, fit.parameters, prior, sizes, options.largest_step)
+        there = step(data, fit.parameters, prior, fit.sizes, options.largest_step)
         rows = [i for i, window in enumerate(windows) if window.state in fold]
         values = prior.start + prior.std * there[0][:12]
         net = fit.layouts[0].net(there[0]) if fit.net else None

@@ -152,18 +152,17 @@ class MotionTracker:
         """Fit where the tows are linearised, and how far from there it leads."""
         if self._here is None:
             return None
-        sizes, widened = self._sized(search), self._options.widened
-        place = search.target(sizes.tempered(self._temper))
-        sizes = sizes.tempered(self._temper / widened)
+        sizes = self._sized(search).tempered(self._temper)
+        place = search.target(sizes)
         fit = search.fit(sizes, place, self._towings, converged=False, reason='')
         if not fit.readings:
             return None
         away = self._prior.std * np.abs(place[0][:12] - search.here[0][:12])
         moved = float(np.max(away / np.sqrt(np.diag(fit.covariance))))
-        self._held = self._temper == widened and moved < (FAR if self._held else HOLDS)
+        self._held = self._temper == 1.0 and moved < (FAR if self._held else HOLDS)
         reason = f'{moved:.2g} std from where the model was towed'
-        if self._temper > widened:
-            reason += f', all errors taken for {self._temper / widened:.2g} times as large'
+        if self._temper > 1.0:
+            reason += f', all errors taken for {self._temper:.2g} times as large'
         fit = replace(fit, converged=self._held, reason=reason)
         return TrackedFit(fit, moved, self._towings)
 
@@ -171,7 +170,7 @@ class MotionTracker:
         """Sizes of the errors, found anew where the tow has grown."""
         stretches = sum(map(len, search.tows))
         grown = stretches > GROWN * self._found_at and stretches <= MOST_FOUND
-        if self._temper == self._options.widened and grown:
+        if self._temper == 1.0 and grown:
             self._found_at = stretches
             self._sizes = search.find(self._sizes)
             for tow, noise in zip(search.tows, search.noise, strict=True):
@@ -235,11 +234,11 @@ class MotionTracker:
             self._damping = 0.0
         data = search.data(linear, there)
         rest = misfit(data, _eliminated(search, data, there, self._sizes), self._sizes)
-        self._cool(min(COOLER * self._temper, self._options.widened * rest))
+        self._cool(min(COOLER * self._temper, rest))
 
     def _cool(self, temper: float) -> None:
         """Take errors of stretches for so many times as large, and no less than at the end."""
-        self._temper = max(self._options.widened, temper)
+        self._temper = max(1.0, temper)
 
     @staticmethod
     def _lower(

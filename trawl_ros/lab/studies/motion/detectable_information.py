@@ -16,7 +16,6 @@ from trawl_ros.diagnosis.evidence import Evidence
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.towing import WatchedGear
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
-from trawl_ros.estimation.bag_motion import WIDENED
 from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionOptions
@@ -35,7 +34,7 @@ from trawl_ros.estimation.motion.towing import (
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.observables import OBSERVABLES
 
-OPTIONS = MotionOptions(widened=WIDENED)
+OPTIONS = MotionOptions()
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> Moti
     shared = layout.shared + len(GROUPS) + number
     logs = tuple(log for _, log in parts)
     data = LinearData(tuple(groups for groups, _ in parts), logs, shared, OPTIONS.times)
-    sizes = OPTIONS.sizes.tempered(OPTIONS.widened)
+    sizes = OPTIONS.sizes
     matrix = joined(data.information(sizes), data.precisions(sizes.log), shared).matrix
     errors, values = np.split(np.arange(shared), [shared - number])
     mass = np.array([len(gear.prior)])

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from trawl_ros.core.progress import OnProgress, ignore
-from trawl_ros.estimation.bag_motion import STRETCHES, WIDENED
+from trawl_ros.estimation.bag_motion import STRETCHES
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.measured import MeasuredValue
@@ -76,7 +76,7 @@ class MotionStudyPlan:
         gear = load_gear(self.gear).model_dump(mode='json')
         return {
             'seed': self.seed, 'around': self.around, 'stretches': asdict(STRETCHES),
-            'widened': WIDENED, 'gear': gear, 'calibration': 'as stated',
+            'gear': gear, 'calibration': 'as stated',
         }  # fmt: skip
 
     def cut(self, series: str) -> Cut:
@@ -194,7 +194,7 @@ def _of_detectable(plan: MotionStudyPlan) -> str:
         'course, are towed in time and read once. By their windows a size is detectable as '
         '`trawl diagnose` has it in `smallest_detectable`; by all of them likewise, and by the '
         'same limit, from derivatives in time by coefficients, effects and all that errs, '
-        'linearised once, with errors as the fit in motion states them, widened, and trends of '
+        'linearised once, with errors as the fit in motion states them, and trends of '
         "the model's error with length as for windows. No effect is hidden, so that nothing is "
         'said of its name. '
     )
