@@ -11,11 +11,6 @@ from trawl_ros.estimation.report.net import net_lines, net_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-CAUTION = (
-    'Intervals in motion count all errors as 1.3 times as large as found, for a plant that is not '
-    'the model (docs/identification/motion.md).'
-)
-
 MOST_NAMED = 3
 """Stretches that are named in a sentence."""
 
@@ -93,7 +88,7 @@ def motion_lines(report: Report) -> list[str]:
         )
         lines.append(f'Stretches that fit badly: {len(poor)}, the worst {places}.')
     lines += [f'Not used: {sentence}' for sentence in motion.refused]
-    return [*lines, CAUTION]
+    return lines
 
 
 def _held_out(report: Report, motion: MotionOutcome) -> str:
