@@ -214,14 +214,14 @@ def fit_motion(
     reason = f'still moving after {options.iterations} iterations'
     converged, iteration, temper, found = False, 0, np.inf, 0
     for iteration in range(1, options.iterations + 1):
-        # Weights and sizes that are found anew for ever would keep a fit from its rest.
-        finding = temper == 1.0 and found < FINDINGS
-        found += finding
-        if finding:
-            sizes = search.find(sizes)
         data = search.data(search.linear, search.here)
         # Data much sharper than what is known before would lead a full step to where boards fold.
         temper = max(1.0, min(COOLER * temper, misfit(data, search.here, sizes)))
+        # Weights and sizes that are found anew for ever would keep a fit from its rest.
+        if temper == 1.0 and found < FINDINGS:
+            found += 1
+            sizes = search.find(sizes)
+            data = search.data(search.linear, search.here)
         now = sizes.tempered(temper)
         target = step(data, search.here, prior, now, options.largest_step)
         std = shared_std(data, now)[:12]
