@@ -8,8 +8,9 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
-from trawl_ros.diagnosis.onset.monitor import BEFORE, LEARNS, REST, OnsetMonitor
+from trawl_ros.diagnosis.onset.monitor import BEFORE, OnsetMonitor
 from trawl_ros.diagnosis.onset.stretches import LIVE, StretchCutter
+from trawl_ros.diagnosis.onset.watch import LEARNS, REST
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear

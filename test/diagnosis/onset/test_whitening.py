@@ -11,7 +11,7 @@ from trawl_ros.diagnosis.onset.ratios import RatioBank
 from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
 from trawl_ros.diagnosis.onset.stretches import LIVE, CounterLeap, LastStretch
 from trawl_ros.diagnosis.onset.towing import TowedStretch
-from trawl_ros.diagnosis.onset.whitening import MOST, WhiteningFilter
+from trawl_ros.diagnosis.onset.whitening import AWAY, MOST, WhiteningFilter
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
@@ -129,3 +129,24 @@ def test_what_changes_with_states_changes_by_as_much_as_was_found():
         filtered.begin_state()
         leaps.append(np.diag(filtered.variance)[filtered.calibrations] - 1.0)
     np.testing.assert_allclose(leaps[1], 9.0 * leaps[0])
+
+
+def test_a_prediction_is_the_less_exact_the_farther_boards_are_from_those_towed_with():
+    """Derivatives are of those: what coefficients change is wrong by a part of it."""
+    by_coefficients = np.zeros((K, 12))
+    by_coefficients[:, 0] = 100.0 * NOISE
+    towed = TowedStretch(
+        VALUES, by_coefficients, np.zeros((K, len(INPUT_ERRORS))), np.zeros((K, P)),
+        Situation((400.0, 400.0, 2.2)),
+    )  # fmt: skip
+    sharp = replace(KNOWN, covariance=1e-6 * np.eye(12))
+    last = LastStretch(0, 0, 1, log_std=0.01, leaps=(STEADY, STEADY))
+    found = []
+    for far in (0.0, 10.0):
+        at = np.eye(12)[0] * far
+        filtered = WhiteningFilter(sharp, responses(), 1.0)
+        white = filtered.step(VALUES, NOISE, towed, at, last, np.zeros((K, 6)))
+        found.append(np.linalg.norm(white.root, axis=1))
+    # Signs of sides cancel in no channel: what is on both, and on one more than on the other.
+    assert (found[1] >= 0.99 * AWAY * 1000.0 * NOISE).all()
+    assert (found[0] < 0.1 * found[1]).any()

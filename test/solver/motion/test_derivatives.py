@@ -297,26 +297,3 @@ def test_memory_does_not_grow_with_the_tow(model: GearModel) -> None:
     finally:
         tracemalloc.stop()
     assert held[1] < 1.01 * held[0]
-
-
-def test_it_goes_on_by_other_coefficients_as_if_they_had_always_been_there(
-    model: GearModel,
-) -> None:
-    """While winches run; what is left is of second order."""
-    std = 0.02 * np.abs(model.coefficients)
-
-    def away(share: float) -> float:
-        other = model.coefficients + share * std
-        learned = DifferentiatedTow(model, MotionParameters(), hauling)
-        always = DifferentiatedTow(model.with_coefficients(other), MotionParameters(), hauling)
-        for tow in (learned, always):
-            for _ in range(30):
-                tow.advance(1.0)
-        before = learned.observed().values
-        learned.go_on_with(other)
-        changed = always.observed().values - before
-        left = learned.observed().values - always.observed().values
-        assert np.linalg.norm(left / before) < 0.2 * np.linalg.norm(changed / before)
-        return float(np.linalg.norm(left / before))
-
-    assert away(0.5) < 0.35 * away(1.0)

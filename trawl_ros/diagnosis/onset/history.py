@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import WATCHED
-from trawl_ros.diagnosis.onset.monitor import WatchedStretch
+from trawl_ros.diagnosis.onset.watch import WatchedStretch
 
 
 @dataclass(frozen=True)

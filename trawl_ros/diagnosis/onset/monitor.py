@@ -1,51 +1,62 @@
-"""Monitor of a tow that goes on: raises a finding minutes after an effect begins."""
+"""Monitor of a tow that goes on: raises a finding minutes after an effect begins.
+
+The model is towed along each stretch once, as it comes. Where boards are learned to be others than
+those that it is towed with, the last of the tow is watched again with these, some stretches with
+each new one, and that watch takes the place of the first.
+"""
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
-from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.time import SECOND
-from trawl_ros.diagnosis.onset.candidates import WATCHED, CandidateTable, candidate_table
+from trawl_ros.diagnosis.onset.candidates import CandidateTable, candidate_table
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
-from trawl_ros.diagnosis.onset.ratios import OnsetEvidence, RatioBank
-from trawl_ros.diagnosis.onset.responses import OnsetResponses, onset_responses
+from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch, StretchCutter
-from trawl_ros.diagnosis.onset.towing import ModelTow, TowedStretch, WatchedGear, measured
-from trawl_ros.diagnosis.onset.whitening import MOST_ABSORBED, Whitened, WhiteningFilter, states_for
+from trawl_ros.diagnosis.onset.towing import WatchedGear
+from trawl_ros.diagnosis.onset.watch import (
+    CLOSE,
+    REST,
+    Watch,
+    WatchedStretch,
+    WatchSettings,
+    WatchState,
+)
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.stretches import FEWEST
+from trawl_ros.estimation.motion.towing import SETTLING_S
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
-from trawl_ros.solver.stepper import StepFailed
 
-MOVED = 4.0
-"""Change of a channel by what coefficients were learned to be, in the model's own error, beyond
-which the tow is linearised anew: a tenth of it may be wrong, or more."""
-
-CLOSE = 8.0
-"""The same within which boards are found once, through `REST` stretches, before anything is judged:
-derivatives of boards farther off are of another gear. Beyond it an effect may lead later."""
-
-LEARNING, REST, AT_REST = 20, 4, 5.0
-"""Stretches in which the watch begins anew with what is linearised anew, and longer until boards
-are close; stretches between two such changes; rarity beyond which it does not, for something may
-have begun."""
-
-LEARNS = 'boards are learned first, for they are far from those that the model is towed with'
-"""Reason for which nothing is judged."""
+AT_REST = 5.0
+"""Rarity beyond which a tow is not watched again, for something may have begun."""
 
 BEFORE, QUIET = FEWEST - 1, 8
 """Stretches up to the newest, behind the first that a model begun anew with the next is towed
-along; and the last of those before, that first among them, in which nothing may have moved."""
+along; and the last of those before, that first among them, in which nothing may have moved: the
+model would begin in an equilibrium while the gear was on its way to one."""
+
+AGAIN, MOST_KEPT, AHEAD, HURRIED = 60, 120, 4, 8
+"""Stretches that are watched again, at least where the tow is that long; that are kept, at most;
+and that are watched again with each new one, and while boards are learned first."""
+
+SHORTEST, WAITS = 0.2, 20
+"""Part of a change of boards below which it is not tried; stretches until all of it is tried
+again."""
+
+POORLY, LEARNING = 0.5, 20
+"""Std of boards, in that of the gear file's prior (geometric mean), beyond which they are known too
+poorly to tell one state of the gear by another; and stretches through which they are learned then,
+at least."""
 
 WHITE_LIMIT, MARGIN = 6.33, 1.42
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
@@ -76,54 +87,16 @@ class OnsetOptions:
 
 
 @dataclass(frozen=True)
-class WatchedStretch:
-    """Stretch as it was watched: the readings beside the model's, and the evidence after it.
+class _Kept:
+    """Stretch that may be watched again, with the state before it.
 
-    ``marks`` (w, r, p) are what the candidates would leave in the innovations, by age.
-    ``why_not`` is the reason where nothing was judged.
+    ``rests`` is true where the model may begin with it, ``predicted`` where it was towed along it.
     """
 
-    end_ns: int
-    means: FloatArray
-    towed: TowedStretch | None
-    white: Whitened | None
-    marks: FloatArray | None
-    evidence: tuple[OnsetEvidence, ...]
-    why_not: str = ''
-
-    @property
-    def rarity(self) -> float:
-        """The largest rarity of all candidates, 0 where there is none."""
-        return self.evidence[0].rarity if self.evidence else 0.0
-
-
-@dataclass
-class _Absorbed:
-    """Value that has been found before and is taken along: its column, and when it began."""
-
-    column: int
-    onset: int
-    place: int
-
-
-@dataclass
-class _Watch:
-    """State of a tow under watch; ``since`` counts stretches since it was linearised last,
-    ``learned`` those before, and ``close`` those up to now in which boards were close.
-    """
-
-    model: ModelTow
-    bank: RatioBank
-    known: Knowledge
-    filter: WhiteningFilter | None = None
-    responses: OnsetResponses | None = None
-    absorbed: list[_Absorbed] = field(default_factory=list)
-    taken: int = 0
-    since: int = 0
-    learned: int = 0
-    close: int = 0
-    moving: tuple[bool, bool] = (False, False)
-    moved: deque[bool] = field(default_factory=lambda: deque(maxlen=QUIET + BEFORE))
+    last: LastStretch
+    before: WatchState
+    rests: bool
+    predicted: bool
 
 
 class OnsetMonitor:
@@ -167,8 +140,11 @@ class OnsetMonitor:
         self.options = options or OnsetOptions()
         self._known = knowledge or of_gear_file(gear)
         self.table: CandidateTable = candidate_table(effects)
-        self._gear = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
-        self._growing = self.table.growing.astype(float)
+        watched = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
+        own, prior = self.options, board_prior(gear).std
+        known = np.sqrt(np.diag(self._known.covariance)) / prior
+        learning = LEARNING if np.exp(np.mean(np.log(known))) > POORLY else 0
+        self._settings = WatchSettings(watched, self.table, own.window, own.inflation, learning)
         self._depth = build_water(gear).depth
         self._on_stretch = on_stretch
         self.why_not = ''
@@ -181,18 +157,21 @@ class OnsetMonitor:
         if (left := self.open) is not None:
             self._put(replace(left, state='settled'))
         self._cutter = StretchCutter(self._depth)
-        self._watch = self._new_watch()
-        self._last_number = 0
+        self._watch = Watch(self._settings, self._known, self._known.values)
+        self._next: Watch | None = None
+        self._kept: deque[_Kept] = deque(maxlen=MOST_KEPT)
+        self._moved: deque[bool] = deque(maxlen=QUIET + BEFORE)
+        self._rarity, self._part, self._not_before = 0.0, 1.0, 0
+        self._owed = False
         self.watched = self.unwatched = 0
         self.why_not = 'the tow has just begun'
 
-    def _new_watch(self) -> _Watch:
-        model = ModelTow(self._gear, self._known.values)
-        size = states_for(len(self._known.values))
-        return _Watch(model, RatioBank(self.table, self.options.window, size), self._known)
-
     def feed(self, sample: Sample) -> list[Finding]:
         """Take a sample; return findings that are new or have changed."""
+        # Told before the rest of the work is done: whoever asked has it meanwhile.
+        if self._owed:
+            self._owed = False
+            self._catch_up()
         return [found for last in self._cutter.feed(sample) for found in self._take(last)]
 
     def dismiss(self, number: int) -> Finding | None:
@@ -215,117 +194,83 @@ class OnsetMonitor:
         return found
 
     def _take(self, last: LastStretch) -> Iterator[Finding]:
-        watch = self._watch
-        towed = watch.model.advance(last)
-        if isinstance(towed, TowedStretch) and watch.responses is None:
-            try:
-                self._begin_watch(watch)
-            except (NoSteadyState, StepFailed) as reason:
-                towed = f'responses of the gear are not known: {reason}'
-        self.why_not = towed if isinstance(towed, str) else ''
-        means, noise = measured(last)
-        model = towed if isinstance(towed, TowedStretch) else None
-        if watch.filter is None or watch.responses is None:
-            self._tell(last, means, None, None, None, ())
-            return
-        if any(now and not was for now, was in zip(last.moves, watch.moving, strict=True)):
-            watch.filter.begin_state()
-        watch.moving = last.moves
-        watch.moved.append(any(last.moves))
-        lasting = None if model is None else model.by_values
-        white = watch.filter.step(
-            means, noise, model, watch.model.coefficients, last,
-            self._taken_along(lasting, last.number),
-        )  # fmt: skip
-        signatures = None
-        if lasting is not None:
-            ages = np.arange(self.options.window)
-            signatures = watch.responses.since(lasting, ages, self._growing)
-        marks = watch.bank.step(watch.filter, white, signatures)
-        evidence: tuple[OnsetEvidence, ...] = ()
-        if white is not None and self._learns:
-            self.why_not = LEARNS
-        elif white is not None:
-            evidence = tuple(watch.bank.best())
-        self._tell(last, means, model, white, marks, evidence)
-        if evidence:
-            yield from self._judge(last, evidence)
-        watch.since += white is not None
-        if model is not None and white is not None and watch.close < REST:
-            watch.close = watch.close + 1 if self._away(model) < CLOSE else 0
-        if model is not None and self._has_moved(model, evidence):
-            self._linearise(watch)
-
-    def _begin_watch(self, watch: _Watch) -> None:
-        steady = watch.model.steady
-        assert steady is not None
-        oldest = self.options.window
-        watch.responses = onset_responses(self._gear, watch.model.coefficients, steady, oldest)
-        if watch.filter is None:
-            watch.filter = WhiteningFilter(watch.known, watch.responses, self.options.inflation)
-
-    def _has_moved(self, towed: TowedStretch, evidence: Sequence[OnsetEvidence]) -> bool:
-        watch = self._watch
-        rarest = evidence[0].rarity if evidence else 0.0
-        if watch.filter is None or watch.since < REST or self.open is not None:
-            return False
-        anew = self._may_begin_anew
-        if anew and rarest > AT_REST and not self._learns:
-            return False
-        # The model would begin in an equilibrium while the gear was on its way to one.
-        rests = not any(list(watch.moved)[:-BEFORE])
-        return self._far(towed) and (rests or not anew)
-
-    @property
-    def _may_begin_anew(self) -> bool:
-        watch = self._watch
-        early = watch.learned + watch.since <= LEARNING or self._learns
-        return early and not watch.absorbed
-
-    @property
-    def _learns(self) -> bool:
-        """True until boards have been close to those that derivatives are of."""
-        return self._watch.close < REST
-
-    def _far(self, towed: TowedStretch) -> bool:
-        return self._away(towed) > MOVED
-
-    def _away(self, towed: TowedStretch) -> float:
-        """Largest change of a channel by what boards were learned to be, in the model's error."""
-        watch = self._watch
-        if watch.filter is None:
-            return 0.0
-        moved = watch.filter.coefficients - watch.model.coefficients
-        return float(np.max(np.abs(towed.by_coefficients @ moved) / towed.model_error))
-
-    def _linearise(self, watch: _Watch) -> None:
-        """Tow anew with the coefficients as they were learned."""
-        assert watch.filter is not None
-        learned = watch.filter.coefficients
-        if self._may_begin_anew:
-            # Estimates of all else came with derivatives from far off.
-            watch.filter.doubt(learned - watch.model.coefficients)
-            watch.known = replace(watch.known, values=learned, covariance=watch.filter.covariance)
-            watch.filter = watch.responses = None
-            watch.bank.forget()
-            watch.model.begin_anew(learned)
-        else:
-            watch.filter.doubt(learned - watch.model.coefficients)
-            watch.model.go_on_with(learned)
-        watch.learned, watch.since = watch.learned + watch.since, 0
-
-    def _tell(
-        self, last: LastStretch, means: FloatArray, towed: TowedStretch | None,
-        white: Whitened | None, marks: FloatArray | None,
-        evidence: tuple[OnsetEvidence, ...],
-    ) -> None:  # fmt: skip
-        if white is None or self.why_not:
+        before = self._watch.state
+        stretch = self._watch.advance(last)
+        self._keep(last, before, stretch)
+        self.why_not, self._rarity = stretch.why_not, stretch.rarity
+        if stretch.white is None or stretch.why_not:
             self.unwatched += 1
         else:
             self.watched += 1
-        self._on_stretch(
-            WatchedStretch(last.end_ns, means, towed, white, marks, evidence, self.why_not)
-        )
+        self._on_stretch(stretch)
+        if stretch.evidence:
+            yield from self._judge(last, stretch.evidence)
+        self._owed = True
+
+    def _keep(self, last: LastStretch, before: WatchState, stretch: WatchedStretch) -> None:
+        # The model begins some minutes before the first stretch that it is towed along.
+        begins = last.tow is not None and last.place * LIVE.stretch_s >= SETTLING_S - 1e-6
+        self._moved.append(any(last.moves))
+        rests = begins and not any(list(self._moved)[:-BEFORE])
+        self._kept.append(_Kept(last, before, rests, stretch.towed is not None))
+
+    def _catch_up(self) -> None:
+        """Watch a part of what was watched again, with other boards, where there is reason to."""
+        if self.open is not None:
+            # A finding is followed by the watch that made it.
+            self._next = None
+            return
+        if self._next is None:
+            self._next = self._again()
+        if self._next is None:
+            return
+        behind = [kept for kept in self._kept if kept.last.number > self._next.number]
+        pace = HURRIED if self._watch.learns else AHEAD
+        for kept in behind[:pace]:
+            stretch = self._next.advance(kept.last)
+            if kept.predicted and stretch.towed is None:
+                self._refuse()
+                return
+        if len(behind) <= pace:
+            self._compare(self._next)
+
+    def _again(self) -> Watch | None:
+        """Watch with the boards as they were learned; None where there is no reason for one."""
+        watch, learned = self._watch, self._watch.learned
+        begun = self._rarity > AT_REST
+        if learned is None or begun or watch.away < CLOSE or watch.number < self._not_before:
+            return None
+        resting = [place for place, kept in enumerate(self._kept) if kept.rests]
+        enough = [place for place in resting if place <= len(self._kept) - AGAIN]
+        if not resting:
+            return None
+        first = self._kept[enough[-1] if enough else resting[0]]
+        boards = watch.coefficients + self._part * (learned - watch.coefficients)
+        own = self._settings, self._known, boards, first.before
+        return Watch(*own, number=first.last.number - 1)
+
+    def _refuse(self) -> None:
+        """Go on with the watch as it is, and try a smaller change of boards."""
+        self._next = None
+        self._part *= 0.5
+        if self._part < SHORTEST:
+            self._settle(self._watch, WAITS)
+
+    def _compare(self, other: Watch) -> None:
+        """Take another watch where its boards are closer to what is learned with them."""
+        if self._kept[-1].predicted and other.away >= self._watch.away:
+            self._refuse()
+            return
+        hurried = self._watch.learns and not self._settings.learning
+        if self._watch.learns:
+            # That boards are close to what they were learned from proves nothing.
+            other.close = 0
+        self._watch, self._next = other, None
+        self._settle(other, 0 if hurried else REST)
+
+    def _settle(self, watch: Watch, waits: int) -> None:
+        """Stay with a watch for so many stretches, and trust what it says."""
+        self._part, self._not_before = 1.0, watch.number + waits
 
     def _judge(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
         before, limit = self.open, self.options.limit
@@ -357,31 +302,9 @@ class OnsetMonitor:
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found along as known to be there, and watch for what comes beside it."""
-        watch = self._watch
-        assert watch.filter is not None
         (candidate,) = (one for one in self.table.candidates if one.name == found.name)
-        first = round((found.updated_ns - found.onset_ns) / (LIVE.stretch_s * SECOND))
-        number = self._last_number - first + 1
-        for column in candidate.columns:
-            # The oldest makes room.
-            place = watch.taken % MOST_ABSORBED
-            watch.taken += 1
-            watch.absorbed = [one for one in watch.absorbed if one.place != place]
-            watch.filter.absorb(place, float(self.table.scale[column]))
-            watch.absorbed.append(_Absorbed(column, number, place))
-        watch.filter.loosen()
-        watch.bank.forget()
-
-    def _taken_along(self, lasting: FloatArray | None, number: int) -> FloatArray:
-        """Signatures (k, `MOST_ABSORBED`) of what is taken along, in a stretch."""
-        self._last_number = number
-        found = np.zeros((len(WATCHED), MOST_ABSORBED))
-        watch = self._watch
-        if lasting is None or watch.responses is None:
-            return found
-        for one in watch.absorbed:
-            own = [one.column]
-            ages = np.array([max(number - one.onset, 0)])
-            known = watch.responses.only(own).since(lasting[:, own], ages, self._growing[own])
-            found[:, one.place] = known[0, :, 0]
-        return found
+        since = round((found.updated_ns - found.onset_ns) / (LIVE.stretch_s * SECOND))
+        self._watch.take_along(candidate.columns, self._watch.number - since + 1)
+        # A watch that begins before would not know of it.
+        self._kept.clear()
+        self._next = None

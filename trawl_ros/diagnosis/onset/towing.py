@@ -164,22 +164,12 @@ class ModelTow:
         self._following: _Following | None = None
         self._next = -1
         self._again = 0
-        self.coefficients = self._sound = coefficients
+        self._coefficients = coefficients
 
     @property
     def steady(self) -> tuple[float, float, float] | None:
         """Warp lengths (m) and speed (m/s) of the equilibrium that the motion began in."""
         return None if self._motion is None else self._began
-
-    def begin_anew(self, coefficients: FloatArray) -> None:
-        """Begin in an equilibrium with the next stretch, by other coefficients."""
-        self._motion, self.coefficients = None, coefficients
-
-    def go_on_with(self, coefficients: FloatArray) -> None:
-        """Go on by other coefficients without beginning anew: the gear may be on its way."""
-        if self._motion is not None:
-            self._motion.go_on_with(coefficients)
-        self.coefficients = coefficients
 
     def advance(self, last: LastStretch) -> TowedStretch | str:
         """Tow along a stretch.
@@ -214,14 +204,12 @@ class ModelTow:
 
     def _stop(self, last: LastStretch) -> None:
         self._motion = None
-        # It may be boards that were learned with which there is no motion.
-        self.coefficients = self._sound
         self._again = last.number + round(AGAIN_S / LIVE.stretch_s)
 
     def _begin(self, last: LastStretch) -> None:
         assert last.tow is not None
         self._following = _Following(last.tow)
-        model = self._gear.model.with_coefficients(self.coefficients)
+        model = self._gear.model.with_coefficients(self._coefficients)
         self._motion = DifferentiatedTow(
             model, self._parameters, self._following, self._gear.acting
         )
@@ -248,7 +236,6 @@ class ModelTow:
         self._require_upright()
         if np.max(motion.motion.state.nodes[:, 2]) > HIGHEST_M:
             raise _NotPredicted('the gear of the model breaks the surface', ends=False)
-        self._sound = self.coefficients
         # Channels without a reading in this stretch take the plain mean; nothing is compared.
         weights = np.full((len(OBSERVABLES), tow.steps + 1), 1.0 / (tow.steps + 1))
         for name, own in zip(tow.channels, tow.weights[place], strict=True):

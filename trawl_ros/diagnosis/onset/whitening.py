@@ -45,8 +45,9 @@ derivatives are less exact then, and a gear that is not the model differs more."
 APART = 0.5
 """Std of what the model is wrong by on one side more than on both, in what it is on both."""
 
-DOUBT = 0.3
-"""Part of a change of coefficients by which they may be wrong still, for derivatives change too."""
+AWAY = 0.2
+"""Part of what a channel changes by boards as they were learned, and as they may be still, for
+which that is wrong: derivatives are of the boards that the model is towed with."""
 
 MOST_LEAP_M = 3.4
 """Four std of how a counter leaps from one state to the next: measured ones are wrong by 0.6 m in
@@ -85,6 +86,17 @@ class Whitened:
         return np.asarray(white.reshape(innovations.shape), np.float64)
 
 
+@dataclass(frozen=True)
+class FilterState:
+    """State of the filter: estimates (s,), their covariance (s, s), and how far the gear is from
+    its rest.
+    """
+
+    mean: FloatArray
+    variance: FloatArray
+    unrest: float
+
+
 class WhiteningFilter:
     """Whitening filter.
 
@@ -96,9 +108,17 @@ class WhiteningFilter:
         Of the gear, to errors of the log and to counters that leap.
     inflation
         Factor on the std of all errors that are stated.
+    state
+        To begin in; by default nothing is known but ``known``.
     """
 
-    def __init__(self, known: Knowledge, responses: OnsetResponses, inflation: float) -> None:
+    def __init__(
+        self,
+        known: Knowledge,
+        responses: OnsetResponses,
+        inflation: float,
+        state: FilterState | None = None,
+    ) -> None:
         self._start, self._responses, self._inflation = known.values, responses, inflation
         self._sizes = known.sizes
         # Averaging wears errors that neighbouring readings share down as slowly as in windows.
@@ -113,6 +133,14 @@ class WhiteningFilter:
         for part in self._leaps:
             self.variance[part, part] = 0.0
         self._unrest = 0.0
+        if state is not None:
+            self.mean, self.variance = state.mean.copy(), state.variance.copy()
+            self._unrest = state.unrest
+
+    @property
+    def state(self) -> FilterState:
+        """State as it is."""
+        return FilterState(self.mean.copy(), self.variance.copy(), self._unrest)
 
     @cached_property
     def _starts(self) -> tuple[int, ...]:
@@ -157,12 +185,6 @@ class WhiteningFilter:
         """Take calibration for as little known as at the beginning."""
         diagonal = np.einsum('ii->i', self.variance)
         diagonal[self.calibrations] += 1.0
-
-    def doubt(self, moved: FloatArray) -> None:
-        """Take coefficients (12,) for less known along the way by which they were moved."""
-        way = np.linalg.solve(self._known, DOUBT * moved)
-        own = self._part(0)
-        self.variance[own, own] += np.outer(way, way)
 
     def begin_state(self) -> None:
         """Take sensors for wrong by another amount: winches or speed begin to change.
@@ -216,7 +238,7 @@ class WhiteningFilter:
         rows = np.isfinite(means) & np.isfinite(noise)
         if not rows.any():
             return None
-        model = self._model(towed, absorbed)[rows]
+        model = self._model(towed, absorbed, linearised_at)[rows]
         shift = towed.by_coefficients @ (self._start - linearised_at)
         residual = (means - towed.values - shift)[rows] - model @ self.mean
         own = np.array([CHANNELS[name].noise for name in WATCHED])
@@ -275,7 +297,9 @@ class WhiteningFilter:
         self.mean[both] += leap.length / unit if usual else 0.0
         self.variance[np.ix_(both, both)] += (leap.std / unit) ** 2
 
-    def _model(self, towed: TowedStretch, absorbed: FloatArray) -> FloatArray:
+    def _model(
+        self, towed: TowedStretch, absorbed: FloatArray, linearised_at: FloatArray
+    ) -> FloatArray:
         """Change of the watched channels (k, s) by each state of unit size."""
         k = len(WATCHED)
         bias = np.array(
@@ -292,6 +316,11 @@ class WhiteningFilter:
         groups, apart = np.zeros((2, k, len(GROUPS)))
         worse = 1.0 + (RUNNING - 1.0) * self._unrest
         errors_of_model = worse * _by_channel(self._sizes.model) * towed.model_error
+        moved = towed.by_coefficients @ (self.coefficients - linearised_at)
+        still = np.einsum(
+            'ki,ij,kj->k', towed.by_coefficients, self.covariance, towed.by_coefficients
+        )
+        errors_of_model = np.sqrt(errors_of_model**2 + AWAY**2 * (moved**2 + still))
         for row, name in enumerate(WATCHED):
             group = group_of(name)
             groups[row, GROUPS.index(group)] = errors_of_model[row]

@@ -30,7 +30,7 @@ from trawl_ros.solver.motion.slopes import (
 from trawl_ros.solver.motion.start import starting_slopes
 from trawl_ros.solver.motion.stepper import DifferentiatedStepper
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.stepper import Motion, StepFailed, at_rest
+from trawl_ros.solver.stepper import StepFailed, at_rest
 
 HALVINGS = 6
 """Number of halvings of a step that fails. A simulation goes on where more are needed, behind a
@@ -155,20 +155,6 @@ class DifferentiatedTow:
         self._showing = effects_that_show(gear, own, self._showing)
         by_effects = effect_pushes(gear, own, end)
         return pushes(model, own, end, course.slopes, self._net[1], by_effects)
-
-    def go_on_with(self, coefficients: FloatArray) -> None:
-        """Take other coefficients (12,) of the boards, in the motion that these would have led to.
-
-        That is right to first order in what they change; derivatives are those by the old ones
-        and become those by the new ones as the gear forgets.
-        """
-        change = coefficients - self._plain.coefficients
-        own, motion = self.parameters.of_coefficients, self.motion
-        places, *rates = (slopes[:, own] @ change for slopes in self.slopes.arrays)
-        state = motion.state.moved(places).with_velocity(motion.state.velocity + rates[0])
-        self.motion = Motion(state, motion.acceleration + rates[1], motion.averaged + rates[2])
-        self._plain = self._plain.with_coefficients(coefficients)
-        self.model = self._acting.gear(self._plain, self._point.situation)
 
     def forget(self, columns: Slice) -> None:
         """Set derivatives by some parameters to nought, as if these began to act now."""

@@ -16,7 +16,8 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.history import CourseKeeper
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.monitor import OnsetMonitor, WatchedStretch
+from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.diagnosis.onset.watch import WatchedStretch
 from trawl_ros.diagnosis.report.onset_figure import onset_figure
 from trawl_ros.effects.base.effect import Effect, Readings, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet

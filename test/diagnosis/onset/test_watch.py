@@ -1,0 +1,105 @@
+"""A tow is watched again with boards as they were learned, as if it had been from the beginning."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.diagnosis.onset.candidates import candidate_table
+from trawl_ros.diagnosis.onset.knowledge import Knowledge
+from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.diagnosis.onset.stretches import StretchCutter
+from trawl_ros.diagnosis.onset.towing import WatchedGear
+from trawl_ros.diagnosis.onset.watch import CLOSE, REST, Watch, WatchSettings
+from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.load import load_gear
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.water import build_water
+
+FEW = {'tension_cell': catalogue()['tension_cell']}
+
+
+@pytest.fixture(scope='module')
+def onset_gear(coarse_gear):
+    return load_gear(coarse_gear)
+
+
+@pytest.fixture
+def stretches(onset_gear, onset_samples):
+    cutter = StretchCutter(build_water(onset_gear).depth)
+    return [one for sample in onset_samples(9) for one in cutter.feed(sample)]
+
+
+@pytest.fixture
+def far_off(onset_gear):
+    """Boards a std off in all coefficients, as they are known."""
+    std = 0.2 * board_prior(onset_gear).std
+    wrong = onset_gear.board.coefficients.array() + std * np.resize([1.0, -1.0], len(std))
+    return Knowledge(wrong, np.diag(std**2))
+
+
+@pytest.fixture
+def settings(onset_gear):
+    table = candidate_table(FEW)
+    gear = WatchedGear(build_model(onset_gear), effects_of(onset_gear), table.at_one_hour())
+    return WatchSettings(gear, table, 20, 1.2)
+
+
+def test_boards_that_were_learned_are_closer_to_what_is_learned_with_them(
+    settings, far_off, stretches
+):
+    first = Watch(settings, far_off, far_off.values)
+    for last in stretches:
+        first.advance(last)
+    assert first.away > CLOSE
+    assert first.learns
+    again = Watch(settings, far_off, first.learned)
+    for last in stretches:
+        again.advance(last)
+    assert again.away < 0.5 * first.away
+
+
+def test_a_watch_that_begins_in_a_state_goes_on_as_the_one_that_was_in_it(
+    settings, far_off, stretches
+):
+    whole = Watch(settings, far_off, far_off.values)
+    seen = []
+    for last in stretches:
+        state = whole.state
+        seen.append((last, state, whole.advance(last)))
+    compared = [one for one in seen if one[2].white is not None]
+    _, begin, _ = compared[2]
+    part = Watch(settings, far_off, far_off.values, begin)
+    for last, _, by_whole in compared[2:]:
+        by_part = part.advance(last)
+        # The model began at rest with another stretch.
+        np.testing.assert_allclose(
+            by_part.white.whitened(by_part.white.residual),
+            by_whole.white.whitened(by_whole.white.residual),
+            atol=0.3,
+        )  # fmt: skip
+
+
+def test_boards_far_off_are_learned_within_minutes_and_the_tow_is_judged(
+    onset_gear, far_off, onset_samples
+):
+    told = []
+    monitor = OnsetMonitor(onset_gear, far_off, effects=FEW, on_stretch=told.append)
+    assert not [one for sample in onset_samples(11) for one in monitor.feed(sample)]
+    assert monitor.why_not == ''
+    compared = [one for one in told if one.white is not None]
+    learned = [one for one in compared if one.why_not]
+    assert REST <= len(learned) <= 3 * REST
+    assert max(one.rarity for one in compared) < 0.5 * monitor.options.limit
+
+
+def test_boards_known_by_the_gear_file_alone_are_learned_for_longer(
+    onset_gear, far_off, onset_samples
+):
+    poorly = replace(far_off, covariance=far_off.covariance / 0.2**2)
+    monitor = OnsetMonitor(onset_gear, poorly, effects=FEW)
+    assert not [one for sample in onset_samples(9) for one in monitor.feed(sample)]
+    assert monitor.watched == 0
+    assert 'boards are learned first' in monitor.why_not
