@@ -269,7 +269,7 @@ class OnsetMonitor:
         self._settle(other, 0 if hurried else REST)
 
     def _settle(self, watch: Watch, waits: int) -> None:
-        """Stay with a watch for so many stretches, and trust what it says."""
+        """Stay with a watch for so many stretches."""
         self._part, self._not_before = 1.0, watch.number + waits
 
     def _judge(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
