@@ -147,6 +147,5 @@ def test_a_prediction_is_the_less_exact_the_farther_boards_are_from_those_towed_
         filtered = WhiteningFilter(sharp, responses(), 1.0)
         white = filtered.step(VALUES, NOISE, towed, at, last, np.zeros((K, 6)))
         found.append(np.linalg.norm(white.root, axis=1))
-    # Signs of sides cancel in no channel: what is on both, and on one more than on the other.
     assert (found[1] >= 0.99 * AWAY * 1000.0 * NOISE).all()
     assert (found[0] < 0.1 * found[1]).any()

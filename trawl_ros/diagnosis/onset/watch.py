@@ -27,7 +27,7 @@ CLOSE, REST = 8.0, 4
 which boards are found once, through so many stretches, before anything is judged: derivatives of
 boards farther off are of another gear. Beyond it an effect may lead later."""
 
-LEARNS = 'boards are learned first, for they are far from those that the model is towed with'
+LEARNS = 'boards are learned first, for what is known of them is too far off, or too little'
 """Reason for which nothing is judged."""
 
 
@@ -188,10 +188,9 @@ class Watch:
         steady, own = self._model.steady, self.settings
         assert steady is not None
         self._responses = onset_responses(own.gear, self.coefficients, steady, own.window)
-        if self._filter is None:
-            self._filter = WhiteningFilter(
-                self.known, self._responses, own.inflation, self.begin.filter
-            )
+        self._filter = WhiteningFilter(
+            self.known, self._responses, own.inflation, self.begin.filter
+        )
 
     def take_along(self, columns: Sequence[int], onset: int) -> None:
         """Take values along as known to be there since a stretch, and watch for what comes beside
