@@ -58,6 +58,12 @@ class EffectSet:
         return readings
 
     @property
+    def on_inputs(self) -> bool:
+        """True if any effect changes what the gear is towed with."""
+        plain = Effect.apply_to_inputs
+        return any(type(active.effect).apply_to_inputs is not plain for active in self.effects)
+
+    @property
     def on_sensors(self) -> bool:
         """True if any effect changes what sensors show."""
         plain = Effect.apply_to_sensors

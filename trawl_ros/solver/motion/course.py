@@ -132,7 +132,7 @@ def course_point(
 
 def _true(acting: EffectSet, point: InputPoint) -> tuple[FloatArray, FloatArray]:
     """True inputs and their rates, both (3,)."""
-    if not acting:
+    if not acting.on_inputs:
         return point.inputs, point.rates
     inputs = acting.apply_to_inputs(point.inputs, point.situation)
     return inputs, _along(acting, point, point.rates)
@@ -140,8 +140,6 @@ def _true(acting: EffectSet, point: InputPoint) -> tuple[FloatArray, FloatArray]
 
 def _along(acting: EffectSet, point: InputPoint, direction: FloatArray) -> FloatArray:
     """Change (3,) of the true inputs with a change (3,) of the shown ones."""
-    if not acting:
-        return direction
     up, down = _beside(acting, point, direction)
     change: FloatArray = (up - down) / (2.0 * RATE_STEP_S)
     return change
@@ -175,8 +173,11 @@ def _slopes(
             by_inputs[first:last], by_rates[first:last] = np.moveaxis(changed, 0, 1)
         first = last
     own = parameters.of_inputs
-    by_inputs[own] = [_along(acting, point, error) for error in point.errors] or 0.0
-    by_rates[own] = [_along(acting, point, rate) for rate in point.error_rates] or 0.0
+    by_inputs[own], by_rates[own] = point.errors, point.error_rates
+    if acting.on_inputs:
+        for slopes in (by_inputs[own], by_rates[own]):
+            for number, direction in enumerate(slopes):
+                slopes[number] = _along(acting, point, direction)
     return by_inputs, by_rates
 
 

@@ -22,7 +22,7 @@ from trawl_ros.solver.motion.partials import (
     pushes,
 )
 from trawl_ros.solver.motion.readings import MotionPrediction
-from trawl_ros.solver.motion.shown import effects_that_show, shown_by_effects
+from trawl_ros.solver.motion.shown import shown_by_effects
 from trawl_ros.solver.motion.slopes import (
     advance_slopes,
     unmoved,
@@ -152,9 +152,9 @@ class DifferentiatedTow:
         if self._net is None or self._net[0] is not model.bars:
             self._net = model.bars, net_loads(model)
         gear, own = GearAtPoint(self._plain, self._acting, point), self.parameters
-        self._showing = effects_that_show(gear, own, self._showing)
         by_effects = effect_pushes(gear, own, end)
-        return pushes(model, own, end, course.slopes, self._net[1], by_effects)
+        self._showing |= by_effects.showing
+        return pushes(model, own, end, course.slopes, self._net[1], by_effects.push)
 
     def forget(self, columns: Slice) -> None:
         """Set derivatives by some parameters to nought, as if these began to act now."""

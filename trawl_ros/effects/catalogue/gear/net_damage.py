@@ -27,7 +27,8 @@ class NetDamage(Effect):
         # Instruments load the catalogue too, but not the model.
         from trawl_ros.model.gear_model import OUTWARD
 
-        on = _front(model) & (_sideways(model) * OUTWARD[self.side] > 0.0)
+        astern, sideways, _ = _middles(model).T
+        on = _front(model, astern) & (sideways * OUTWARD[self.side] > 0.0)
         factor = np.where(on, 1.0 + values[0], 1.0)
         bars = replace(
             model.bars,
@@ -45,13 +46,8 @@ def _middles(model: 'GearModel') -> FloatArray:
     return middles
 
 
-def _sideways(model: 'GearModel') -> FloatArray:
-    return _middles(model)[:, 1]
-
-
-def _front(model: 'GearModel') -> BoolArray:
-    """Flags (m,) of the bars in the front part of the net."""
-    astern = _middles(model)[:, 0]
+def _front(model: 'GearModel', astern: FloatArray) -> BoolArray:
+    """Flags (m,) of the bars in the front part of the net, by how far astern (m,) they are."""
     inside = astern[model.net_bars]
     front: BoolArray = model.net_bars & (
         astern > inside.max() - FRONT * (inside.max() - inside.min())
