@@ -14,6 +14,7 @@ from trawl_ros.diagnosis.onset.watch import LEARNS, REST
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import WinchSample
 
 BEGIN_S = 540.0
@@ -69,6 +70,21 @@ def test_a_gear_that_the_model_cannot_tow_is_told(monitor, onset_samples):
         assert monitor.feed(replace(sample, lengths=(20.0, 20.0)) if short else sample) == []
     assert monitor.watched == 0
     assert monitor.why_not
+
+
+def test_where_the_model_cannot_be_towed_boards_nearer_to_those_of_the_gear_file_are_tried(
+    onset_gear, onset_samples
+):
+    prior, told = board_prior(onset_gear), []
+    values = prior.start.copy()
+    values[COEFFICIENTS.index('c4')] += 0.9 * prior.std[COEFFICIENTS.index('c4')]
+    known = Knowledge(values, np.diag((0.4 * prior.std) ** 2))
+    monitor = OnsetMonitor(onset_gear, known, effects=FEW, on_stretch=told.append)
+    assert [found for sample in onset_samples(12) for found in monitor.feed(sample)] == []
+    refused = [one for one in told if one.why_not.startswith('the model cannot be towed')]
+    assert len(refused) == 1
+    assert monitor.watched > 3
+    assert monitor.why_not == ''
 
 
 def test_a_model_begun_anew_is_towed_along_what_is_looked_at_before(onset_samples):

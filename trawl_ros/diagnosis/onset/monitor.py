@@ -53,6 +53,12 @@ SHORTEST, WAITS = 0.2, 20
 """Part of a change of boards below which it is not tried; stretches until all of it is tried
 again."""
 
+NEARER = 0.0, 0.1, 0.2, 0.3, 0.4
+"""Parts of the way from boards as they are known to those of the gear file. They are tried in turn
+where the model cannot be towed: of boards drawn from the prior it can with one in four,
+and with those of the gear file. Known to a fifth of the prior's std, boards so far off are still
+such as they may be."""
+
 POORLY, LEARNING = 0.5, 20
 """Std of boards, in that of the gear file's prior (geometric mean), beyond which they are known too
 poorly to tell one state of the gear by another; and stretches through which they are learned then,
@@ -141,8 +147,9 @@ class OnsetMonitor:
         self._known = knowledge or of_gear_file(gear)
         self.table: CandidateTable = candidate_table(effects)
         watched = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
-        own, prior = self.options, board_prior(gear).std
-        known = np.sqrt(np.diag(self._known.covariance)) / prior
+        own, prior = self.options, board_prior(gear)
+        self._usual = prior.start
+        known = np.sqrt(np.diag(self._known.covariance)) / prior.std
         learning = LEARNING if np.exp(np.mean(np.log(known))) > POORLY else 0
         self._settings = WatchSettings(watched, self.table, own.window, own.inflation, learning)
         self._depth = build_water(gear).depth
@@ -158,6 +165,7 @@ class OnsetMonitor:
             self._put(replace(left, state='settled'))
         self._cutter = StretchCutter(self._depth)
         self._watch = Watch(self._settings, self._known, self._known.values)
+        self._tried = 0
         self._next: Watch | None = None
         self._kept: deque[_Kept] = deque(maxlen=MOST_KEPT)
         self._moved: deque[bool] = deque(maxlen=QUIET + BEFORE)
@@ -205,7 +213,19 @@ class OnsetMonitor:
         self._on_stretch(stretch)
         if stretch.evidence:
             yield from self._judge(last, stretch.evidence)
+        if self._watch.refused:
+            self._try_others(last.number)
         self._owed = True
+
+    def _try_others(self, number: int) -> None:
+        """Watch with other boards, from the stretch behind one on; after all of `NEARER` the model
+        waits as it does after any stop.
+        """
+        self._tried = (self._tried + 1) % len(NEARER)
+        way = self._usual - self._known.values
+        if self._tried and np.any(way):
+            boards = self._known.values + NEARER[self._tried] * way
+            self._watch = Watch(self._settings, self._known, boards, number=number)
 
     def _keep(self, last: LastStretch, before: WatchState, stretch: WatchedStretch) -> None:
         # The model begins some minutes before the first stretch that it is towed along.

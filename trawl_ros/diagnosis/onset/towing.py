@@ -155,6 +155,11 @@ class ModelTow:
         Gear that is towed.
     coefficients
         Of its boards (12,).
+
+    Attributes
+    ----------
+    stopped
+        Number of the stretch along which it could not be towed last; -1 before any.
     """
 
     def __init__(self, gear: WatchedGear, coefficients: FloatArray) -> None:
@@ -163,7 +168,7 @@ class ModelTow:
         self._motion: DifferentiatedTow | None = None
         self._following: _Following | None = None
         self._next = -1
-        self._again = 0
+        self.stopped, self._again = -1, 0
         self._coefficients = coefficients
 
     @property
@@ -203,7 +208,7 @@ class ModelTow:
             return str(reason)
 
     def _stop(self, last: LastStretch) -> None:
-        self._motion = None
+        self._motion, self.stopped = None, last.number
         self._again = last.number + round(AGAIN_S / LIVE.stretch_s)
 
     def _begin(self, last: LastStretch) -> None:

@@ -107,6 +107,9 @@ class Watch:
         Of the stretch that was watched last.
     close, compared
         Stretches up to now in which boards were close, up to `REST`; and that were compared.
+    refused
+        True if nothing was ever compared, and the newest stretch cannot be: the model has no such
+        tow with these boards.
     """
 
     settings: WatchSettings
@@ -125,7 +128,7 @@ class Watch:
         self._responses: OnsetResponses | None = None
         self._absorbed, self._taken = self.begin.absorbed, self.begin.taken
         self.close, self.compared = self.begin.close, self.begin.compared
-        self._moving = (False, False)
+        self._moving, self.refused = (False, False), False
 
     @property
     def state(self) -> WatchState:
@@ -147,11 +150,12 @@ class Watch:
         """Watch the next stretch."""
         self.number = last.number
         towed = self._model.advance(last)
+        self.refused = self._filter is None and self._model.stopped == last.number
         if isinstance(towed, TowedStretch) and self._responses is None:
             try:
                 self._begin()
             except (NoSteadyState, StepFailed) as reason:
-                towed = f'responses of the gear are not known: {reason}'
+                towed, self.refused = f'responses of the gear are not known: {reason}', True
         why_not = towed if isinstance(towed, str) else ''
         means, noise = measured(last)
         if self._filter is None or self._responses is None:
