@@ -53,11 +53,10 @@ SHORTEST, WAITS = 0.2, 20
 """Part of a change of boards below which it is not tried; stretches until all of it is tried
 again."""
 
-NEARER = 0.0, 0.1, 0.2, 0.3, 0.4
-"""Parts of the way from boards as they are known to those of the gear file. They are tried in turn
-where the model cannot be towed: of boards drawn from the prior it can with one in four,
-and with those of the gear file. Known to a fifth of the prior's std, boards so far off are still
-such as they may be."""
+NEARER = 0.1, 0.2, 0.3, 0.4
+"""Parts of the way from boards as they are known to those of the gear file, which are tried in turn
+where the model cannot be towed: of boards drawn from the prior it can with one in four, and with
+those of the gear file. They are where the model is linearised first, and what is known stays so."""
 
 POORLY, LEARNING = 0.5, 20
 """Std of boards, in that of the gear file's prior (geometric mean), beyond which they are known too
@@ -218,13 +217,13 @@ class OnsetMonitor:
         self._owed = True
 
     def _try_others(self, number: int) -> None:
-        """Watch with other boards, from the stretch behind one on; after all of `NEARER` the model
-        waits as it does after any stop.
+        """Watch with other boards, from the stretch behind one on; the last of `NEARER` wait as
+        after any stop, before all are tried once more.
         """
-        self._tried = (self._tried + 1) % len(NEARER)
-        way = self._usual - self._known.values
-        if self._tried and np.any(way):
-            boards = self._known.values + NEARER[self._tried] * way
+        way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
+        self._tried += 1
+        if turn < len(NEARER) and np.any(way):
+            boards = self._known.values + NEARER[turn] * way
             self._watch = Watch(self._settings, self._known, boards, number=number)
 
     def _keep(self, last: LastStretch, before: WatchState, stretch: WatchedStretch) -> None:
