@@ -15,11 +15,11 @@ from trawl_ros.estimation.motion.holdout import hold_out_states
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.parts import parts_of
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import TowReadings, tow_readings
 from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.stretches import FEWEST, StretchOptions, moving_tow
-from trawl_ros.estimation.motion.towing import TowedGear
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.tows import FoundWindows
 from trawl_ros.gear.records import GearRecord

@@ -20,9 +20,9 @@ from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.outcome import MotionOutcome
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import TowRecorder
 from trawl_ros.estimation.motion.stretches import LONGEST_S
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.tracking import MotionTracker
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.gear.records import GearRecord

@@ -15,8 +15,8 @@ from trawl_ros.diagnosis.onset.whitening import AWAY, MOST, WhiteningFilter
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.processes import ErrorSizes
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.records.channels import CHANNELS, MEASURED
 
 TABLE = candidate_table({'tension_cell': catalogue()['tension_cell']})

@@ -11,9 +11,9 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.holdout import hold_out_states
 from trawl_ros.estimation.motion.information import LinearGroup
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows
 from trawl_ros.estimation.motion.sizes import LinearData
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.benchmark.motion import course_tow
 from trawl_ros.records.channels import INPUTS

@@ -10,18 +10,14 @@ from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.estimation.motion import towing
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, on_grid
-from trawl_ros.estimation.motion.knots import hats, knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
-from trawl_ros.estimation.motion.towing import (
-    TowedGear,
-    TowedPoint,
-    TowLineariser,
-    linearise_tow,
-)
+from trawl_ros.estimation.motion.towing import lineariser
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, on_grid
+from trawl_ros.estimation.motion.towing.knots import hats, knots_of_counter, knots_of_log
+from trawl_ros.estimation.motion.towing.lineariser import TowLineariser, linearise_tow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 from trawl_ros.lab.benchmark.motion import BAND, course_tow, narrowed, run_motion_trial
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial
 from trawl_ros.model.gear_model import build_model
@@ -197,8 +193,8 @@ def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, mo
     usual = linearise_tow(TowedGear(coarse), tow, point)
     assert usual.towed.all()
     sharp = np.abs(usual.by_coefficients) / tow.noise[..., None]
-    assert sharp.max() < 0.1 * towing.UNSTABLE
-    monkeypatch.setattr(towing, 'UNSTABLE', 0.5 * sharp[1:].max())
+    assert sharp.max() < 0.1 * lineariser.UNSTABLE
+    monkeypatch.setattr(lineariser, 'UNSTABLE', 0.5 * sharp[1:].max())
     there = linearise_tow(TowedGear(coarse), tow, point)
     assert not there.towed.all()
     assert 'the motion of the model is unstable' in [part.why for part in there.left_out]

@@ -16,7 +16,7 @@ from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.stretches import LIVE, counter_leap_shares
 from trawl_ros.diagnosis.onset.towing import ROWS, WatchedGear
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.tow import DifferentiatedTow

@@ -10,7 +10,6 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import Series, TowReadings, tow_readings
 from trawl_ros.estimation.motion.stretches import (
     FEWEST,
@@ -19,6 +18,7 @@ from trawl_ros.estimation.motion.stretches import (
     moving_tow,
     paid_out,
 )
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.samples import Sample, WinchSample
 

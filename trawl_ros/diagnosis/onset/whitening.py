@@ -24,8 +24,8 @@ from trawl_ros.diagnosis.onset.stretches import (
 )
 from trawl_ros.diagnosis.onset.towing import TowedStretch
 from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorTimes
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.records.channels import CHANNELS, INPUTS
 
 MOST_ABSORBED = 6

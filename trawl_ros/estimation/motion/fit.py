@@ -19,10 +19,12 @@ from trawl_ros.estimation.motion.nuisances import (
     point_of,
 )
 from trawl_ros.estimation.motion.processes import ErrorSizes, group_rows
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, shared_std, step
-from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, linearise_tow
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.estimation.motion.weights import robust_factors
 from trawl_ros.solver.motion.parameters import NET
 

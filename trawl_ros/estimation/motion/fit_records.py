@@ -7,7 +7,7 @@ from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.motion.nuisances import TowLayout
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.towing import LinearisedTow
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 
 
 @dataclass(frozen=True)

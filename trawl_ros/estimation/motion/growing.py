@@ -7,10 +7,12 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.nuisances import TowLayout, point_of
-from trawl_ros.estimation.motion.records import MovingTow
-from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, TowLineariser
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.lineariser import TowLineariser
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
 
 @dataclass(frozen=True)

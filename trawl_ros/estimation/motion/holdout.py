@@ -12,11 +12,11 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup
-from trawl_ros.estimation.motion.inputs import corrected
 from trawl_ros.estimation.motion.processes import GroupRows
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.steps import Place, step
+from trawl_ros.estimation.motion.towing.inputs import corrected
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 FOLDS = 5

@@ -12,9 +12,10 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, channel_errors
-from trawl_ros.estimation.motion.records import MovingTow
-from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear, TowedPoint
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, channel_errors
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.motion.parameters import NET

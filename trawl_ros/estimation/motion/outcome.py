@@ -11,7 +11,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit
-from trawl_ros.estimation.motion.records import LeftOut
+from trawl_ros.estimation.motion.towing.records import LeftOut
 
 HALF_95 = float(ndtri(0.975))
 

@@ -18,7 +18,7 @@ from trawl_ros.estimation.fit.error_terms import (
     Scheme,
     group_of,
 )
-from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.records.channels import CHANNELS
 
 STATE_SHARE = Scheme.state_share

@@ -7,9 +7,9 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate, TowBias
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.nuisances import TowLayout
-from trawl_ros.estimation.motion.records import MovingTow
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.records.channels import INPUTS
 
 

@@ -7,11 +7,11 @@ from scipy.integrate import cumulative_trapezoid
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.estimation.motion.inputs import TowInputs, on_grid, stacked
-from trawl_ros.estimation.motion.knots import knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorTimes
-from trawl_ros.estimation.motion.records import LeftOut, MovingTow
 from trawl_ros.estimation.motion.series import Series, TowReadings
+from trawl_ros.estimation.motion.towing.inputs import TowInputs, on_grid, stacked
+from trawl_ros.estimation.motion.towing.knots import knots_of_counter, knots_of_log
+from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 
 GRID_S = 1.0

@@ -30,11 +30,12 @@ from trawl_ros.estimation.motion.growing import GrowingLinearisation
 from trawl_ros.estimation.motion.information import own_values
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.processes import ErrorSizes
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
-from trawl_ros.estimation.motion.towing import LinearisedTow, TowedGear
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
 AHEAD = 16
 """Stretches that are towed along again, at most, with each new one."""

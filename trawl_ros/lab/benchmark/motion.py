@@ -14,12 +14,13 @@ from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit import fit_motion
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
-from trawl_ros.estimation.motion.inputs import TowInputs
-from trawl_ros.estimation.motion.knots import knots_of_log
 from trawl_ros.estimation.motion.nuisances import columns, layout_of, linear_part, point_of
 from trawl_ros.estimation.motion.processes import EXACT_MODEL, group_rows
-from trawl_ros.estimation.motion.records import MovingTow
-from trawl_ros.estimation.motion.towing import TowedGear, linearise_tow
+from trawl_ros.estimation.motion.towing.inputs import TowInputs
+from trawl_ros.estimation.motion.towing.knots import knots_of_log
+from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial, wrong_predictions

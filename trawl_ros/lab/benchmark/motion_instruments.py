@@ -10,15 +10,7 @@ from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit import fit_motion
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
-from trawl_ros.estimation.motion.inputs import (
-    CorrectedInputs,
-    TowInputs,
-    on_grid,
-    stacked,
-    without_errors,
-)
 from trawl_ros.estimation.motion.nuisances import ADDED_MASS_STD
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import TowReadings, tow_readings
 from trawl_ros.estimation.motion.stretches import (
     REACH_S,
@@ -26,7 +18,15 @@ from trawl_ros.estimation.motion.stretches import (
     moving_tow,
     warp_path,
 )
-from trawl_ros.estimation.motion.towing import TowedGear
+from trawl_ros.estimation.motion.towing.inputs import (
+    CorrectedInputs,
+    TowInputs,
+    on_grid,
+    stacked,
+    without_errors,
+)
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import load_instruments

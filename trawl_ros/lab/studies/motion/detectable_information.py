@@ -20,17 +20,14 @@ from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup, joined
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, without_errors
 from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
 from trawl_ros.estimation.motion.processes import group_rows
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.towing import (
-    LinearisedTow,
-    TowedGear,
-    TowedPoint,
-    linearise_tow,
-)
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
+from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.observables import OBSERVABLES
 

@@ -8,9 +8,9 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.bag_motion import STRETCHES
 from trawl_ros.estimation.from_gear import finder_for
-from trawl_ros.estimation.motion.records import MovingTow
 from trawl_ros.estimation.motion.series import tow_readings
 from trawl_ros.estimation.motion.stretches import moving_tow
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.tows import FoundWindows, numbered
 from trawl_ros.estimation.windows.records import Rejections, SteadyWindow
 from trawl_ros.gear.records import GearRecord

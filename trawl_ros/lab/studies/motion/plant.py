@@ -14,7 +14,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.nuisances import ADDED_MASS_STD
-from trawl_ros.estimation.motion.towing import TowedGear
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.lab.studies.identification.plant import Look, State, draw_board

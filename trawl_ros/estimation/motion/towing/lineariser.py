@@ -1,27 +1,23 @@
-"""Linearised tow in motion: means of its stretches, with derivatives by all that is towed."""
+"""Lineariser of tows in motion: means of stretches, with derivatives by all that is towed."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.effects.base.effect import Effect
-from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
-from trawl_ros.effects.registry import catalogue
-from trawl_ros.estimation.motion.inputs import INPUT_ERRORS, CorrectedInputs
-from trawl_ros.estimation.motion.records import LeftOut, MovingTow
-from trawl_ros.estimation.motion.under_way import InputsUnderWay, MotionUnderWay
-from trawl_ros.model.gear_model import GearModel
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import ADDED_MASS, TowedGear, TowedPoint
+from trawl_ros.estimation.motion.towing.under_way import InputsUnderWay, MotionUnderWay
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
 from trawl_ros.solver.motion.parameters import NET, MotionParameters
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
-
-ADDED_MASS = catalogue()['board_added_mass']
 
 AGAIN_S = 120.0
 """Time after which a tow that could not go on is begun anew."""
@@ -35,104 +31,6 @@ UNSTABLE = 1e6
 tumble of boards derivatives may grow until normal equations are no longer definite."""
 
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
-
-
-@dataclass(frozen=True)
-class TowedGear:
-    """Gear that is towed: the model as its file has it, with the effects that are there.
-
-    Attributes
-    ----------
-    model, acting
-        The model without effects, and these.
-    motions
-        Number of slow motions with which a tow may begin.
-    net_std
-        Prior std of the factors on drag and weight in water of the net; 0 where these are held.
-    examined
-        Effects by whose values the tow is differentiated too.
-    """
-
-    model: GearModel
-    acting: EffectSet = NO_EFFECTS
-    motions: int = 0
-    net_std: float = 0.0
-    examined: tuple[Effect, ...] = ()
-
-    def with_added_mass(self, part: float) -> EffectSet:
-        """Effects with an added mass of the boards beside that in the gear file."""
-        known = self.acting.of(ADDED_MASS).values
-        return self.acting.having(ActiveEffect(ADDED_MASS, known + part))
-
-    def model_at(self, point: 'TowedPoint') -> GearModel:
-        """Model without effects, with coefficients and net of a point."""
-        model = self.model.with_coefficients(point.coefficients)
-        return model.with_net(*map(float, point.net)) if self.net_std else model
-
-
-@dataclass(frozen=True)
-class TowedPoint:
-    """Point at which a tow is linearised.
-
-    ``coefficients`` (12,), ``added_mass`` as a part of the cylinder of water around a board,
-    ``errors`` (e,) of the inputs in std, ``drifts`` (knots,) their errors at all knots, SI, and
-    ``net`` (2,), factors on its drag and weight in water.
-    """
-
-    coefficients: FloatArray
-    added_mass: float
-    errors: FloatArray
-    drifts: FloatArray
-    net: FloatArray = field(default_factory=lambda: np.ones(len(NET)))
-
-
-@dataclass(frozen=True)
-class LinearisedTow:
-    """Tow at a point, in n stretches by k channels.
-
-    Attributes
-    ----------
-    tow, point
-        The tow, and where it is linearised.
-    values : (n, k) array
-        Predicted means; NaN in stretches that are left out.
-    by_coefficients : (n, k, 12) array
-    by_added_mass : (n, k, 1) array
-    by_errors : (n, k, e) array
-        By a std of each of `INPUT_ERRORS`.
-    by_knots : (n, k, knots) array
-        By an input's error at each knot, per SI unit.
-    by_motions : (n, k, motions) array
-        By a metre of each slow motion at the beginning.
-    by_net : (n, k, 2 or 0) array
-        By the factors on drag and weight of the net.
-    by_examined : (n, k, values) array
-        By the values of the effects that are examined, of what they do to the gear and its inputs.
-    left_out
-        Stretches that the model cannot tow, and why.
-    """
-
-    tow: MovingTow
-    point: TowedPoint
-    values: FloatArray
-    by_coefficients: FloatArray
-    by_added_mass: FloatArray
-    by_errors: FloatArray
-    by_knots: FloatArray
-    by_motions: FloatArray
-    by_net: FloatArray
-    by_examined: FloatArray
-    left_out: tuple[LeftOut, ...]
-
-    @property
-    def towed(self) -> BoolArray:
-        """Flags (n,) of the stretches that are not left out."""
-        return np.asarray(np.isfinite(self.values).any(axis=1), np.bool_)
-
-    @property
-    def residual(self) -> FloatArray:
-        """Measured minus predicted means (n, k), NaN where either is missing."""
-        return self.tow.means - self.values
 
 
 @dataclass(frozen=True)

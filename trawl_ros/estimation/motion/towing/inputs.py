@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
-from trawl_ros.estimation.motion.knots import Knots
+from trawl_ros.estimation.motion.towing.knots import Knots
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.solver.motion.course import InputPoint
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.motion.inputs import CorrectedInputs, TowInputs
+from trawl_ros.estimation.motion.towing.inputs import CorrectedInputs, TowInputs
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.tow import DifferentiatedTow

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.estimation.motion.inputs import TowInputs
+from trawl_ros.estimation.motion.towing.inputs import TowInputs
 
 
 @dataclass(frozen=True)
