@@ -1,6 +1,6 @@
 """No foreign file shows a traceback, hangs, takes the memory or is changed: seeded inputs.
 
-All that broke a reader before, and of new inputs a quarter; the long tests give them all.
+All that broke a reader before, and of new inputs an eighth; the long tests give them all.
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from hostile.registry import TARGETS
 SEED = 16
 
 
-QUICK = 4
+QUICK = 8
 """One in so many of a target's new inputs is given where time is short."""
 
 
