@@ -12,8 +12,8 @@ PYTHON ?=
 DEMO := out/demo
 SITE := out/site
 MINUTES := 60
-# One more than the cores of a small machine: tests of nodes wait for half of their time.
-WORKERS := 3
+# Two more than the cores of a small machine: tests of nodes wait for half of their time.
+WORKERS := 4
 
 VENV := .venv
 BIN := $(VENV)/bin
