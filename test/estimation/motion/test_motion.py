@@ -27,14 +27,6 @@ NO_ERRORS, NO_DRIFTS = np.zeros(len(INPUT_ERRORS)), np.zeros(0)
 
 
 @pytest.fixture(scope='module')
-def coarse(gear):
-    """The gear with its netting as coarse as it may be."""
-    return build_model(
-        gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
-    )
-
-
-@pytest.fixture(scope='module')
 def short_tow():
     """Two minutes of hauling, whose knots outnumber the columns that they share."""
     tow = course_tow(SHORT_S)

@@ -12,7 +12,7 @@ from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.stepper import DifferentiatedStepper, is_too_long
 from trawl_ros.solver.motion.tow import DifferentiatedTow
-from trawl_ros.solver.stepper import SCHEME, Scheme, SolvedStep, Step, at_rest
+from trawl_ros.solver.stepper import SCHEME, Scheme, SolvedStep, Step, StepFailed, at_rest
 
 NONE = MotionParameters(coefficients=False)
 
@@ -40,21 +40,49 @@ def test_a_step_that_leads_a_board_away_is_too_long(steady: SteadyState, side: i
 def test_a_tow_is_led_in_shorter_steps_where_winches_start(
     model: GearModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    taken = []
+    taken, failed = steps_of(DifferentiatedTow(model, NONE, hauling), monkeypatch)
+    assert sum(taken) == pytest.approx(9.0)
+    assert taken[0] == 3.0
+    assert min(taken) < 3.0
+    assert failed
+
+
+def test_tows_that_share_what_is_halved_take_the_same_steps(
+    model: GearModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    halved: set[tuple[float, float]] = set()
+    taken, failed = steps_of(DifferentiatedTow(model, NONE, hauling, halved=halved), monkeypatch)
+    assert sorted(h for _, h in halved) == sorted(failed)
+    with monkeypatch.context() as patched:
+        # None of them would be too long for a gear that is towed elsewhere.
+        patched.setattr(module, 'is_too_long', lambda motion, solved: False)
+        again, none = steps_of(DifferentiatedTow(model, NONE, hauling, halved=halved), patched)
+    assert again == taken
+    assert not none
+
+
+def steps_of(
+    tow: DifferentiatedTow, monkeypatch: pytest.MonkeyPatch
+) -> tuple[list[float], list[float]]:
+    """Lengths of the steps that a tow of 9 s takes, and of those that fail."""
+    taken, failed = [], []
     solved = DifferentiatedStepper._solved
 
     def noted(self, motion, tow, h):
-        found = solved(self, motion, tow, h)
+        try:
+            found = solved(self, motion, tow, h)
+        except StepFailed:
+            failed.append(h)
+            raise
         taken.append(h)
         return found
 
-    monkeypatch.setattr(DifferentiatedStepper, '_solved', noted)
-    tow = DifferentiatedTow(model, NONE, hauling)
-    for _ in range(3):
-        tow.advance(3.0)
-    assert tow.time == pytest.approx(9.0) == pytest.approx(sum(taken))
-    assert taken[0] == 3.0
-    assert min(taken) < 3.0
+    with monkeypatch.context() as patched:
+        patched.setattr(DifferentiatedStepper, '_solved', noted)
+        for _ in range(3):
+            tow.advance(3.0)
+    assert tow.time == pytest.approx(9.0)
+    return taken, failed
 
 
 def test_what_vibrates_faster_than_long_steps_is_damped_more_than_in_a_simulation() -> None:

@@ -14,25 +14,25 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.fit import (
-    COOLER,
-    DAMPING,
-    LEAST_DAMPING,
-    LOOSER,
-    LOST,
-    NEAR,
-    STIFFER,
-    MotionSearch,
-    only,
-)
+from trawl_ros.estimation.motion.fit import COOLER, NEAR
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.growing import GrowingLinearisation
 from trawl_ros.estimation.motion.information import own_values
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.processes import ErrorSizes
+from trawl_ros.estimation.motion.search import (
+    DAMPING,
+    LEAST_DAMPING,
+    LOOSER,
+    STIFFER,
+    MotionSearch,
+    is_lost,
+    only,
+)
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
+from trawl_ros.estimation.motion.towing.halved import TowHalved, copied
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -203,8 +203,11 @@ class MotionTracker:
         return self._linearisation(search, there)
 
     def _linearisation(self, search: MotionSearch, place: Place) -> GrowingLinearisation:
+        halved: dict[int, TowHalved] = {}
+        if self._here is not None and self._temper == 1.0:
+            halved = {stamp: copied(own) for stamp, own in self._here.halved.items()}
         return GrowingLinearisation(
-            self._towed, self._prior, search.tows, search.layouts, list(place)
+            self._towed, self._prior, search.tows, search.layouts, list(place), halved
         )
 
     def _start(self, search: MotionSearch, windows: Estimate | None) -> Place:
@@ -247,8 +250,7 @@ class MotionTracker:
     ) -> bool:
         """True if the cost is lower there, and hardly a stretch is lost."""
         both = [old.towed & new.towed for old, new in zip(search.linear, tried, strict=True)]
-        before = sum(int(np.sum(old.towed)) for old in search.linear)
-        if before - sum(int(np.sum(flags)) for flags in both) > LOST * before:
+        if is_lost(both, [old.towed for old in search.linear]):
             return False
         costs = []
         for linear, place in ((search.linear, search.here), (tried, there)):

@@ -36,6 +36,9 @@ HALVINGS = 6
 """Number of halvings of a step that fails. A simulation goes on where more are needed, behind a
 fall of milliseconds; derivatives through that are of no use, and who fits leaves it out."""
 
+HalvedSteps = set[tuple[float, float]]
+"""Steps that were halved: when each begins and how long it is, s."""
+
 
 class DifferentiatedTow:
     """Tow along given inputs, with the derivatives of its motion.
@@ -52,11 +55,14 @@ class DifferentiatedTow:
         Effects that are there.
     start
         Equilibrium nearby from which that is sought.
+    halved
+        Steps that are halved at once; those that fail are added. Tows of one gear at several places
+        that share them differ by their places, and not by which of their steps fail.
 
     Attributes
     ----------
-    time
-        Time reached, s.
+    time, steps
+        Time reached, s, and steps that led there.
     model
         The gear there, with its effects.
     motion, slopes
@@ -79,9 +85,12 @@ class DifferentiatedTow:
         inputs: Callable[[float], InputPoint],
         acting: EffectSet = NO_EFFECTS,
         start: Equilibrium | None = None,
+        halved: HalvedSteps | None = None,
     ) -> None:
+        self._halved: HalvedSteps = set() if halved is None else halved
         self._plain, self._acting, self._inputs = model, acting, inputs
-        self.parameters, self.time = parameters, 0.0
+        self.parameters, self.time, self.steps = parameters, 0.0, 0
+        self._halvings = 0
         self._net: tuple[BarProperties, NetLoads] | None = None
         self._showing: frozenset[str] = frozenset()
         point = inputs(0.0)
@@ -111,16 +120,23 @@ class DifferentiatedTow:
         StepFailed
             If not even short steps converge; the tow stays where it had come to.
         """
-        self._advance(h, HALVINGS)
+        # Where steps were halved often, whole ones fail for a while: one halving less is tried.
+        self._advance(h, HALVINGS, self._halvings - 1)
 
-    def _advance(self, h: float, halvings: int) -> None:
-        try:
-            self.step(h)
-        except StepFailed:
-            if halvings == 0:
-                raise
-            self._advance(0.5 * h, halvings - 1)
-            self._advance(0.5 * h, halvings - 1)
+    def _advance(self, h: float, left: int, at_once: int) -> None:
+        own = self.time, h
+        if left == 0 or not (at_once > 0 or own in self._halved):
+            try:
+                self.step(h)
+            except StepFailed:
+                if left == 0:
+                    raise
+                self._halved.add(own)
+            else:
+                self._halvings = HALVINGS - left
+                return
+        self._advance(0.5 * h, left - 1, at_once - 1)
+        self._advance(0.5 * h, left - 1, at_once - 1)
 
     def step(self, h: float) -> None:
         """Advance by one step of ``h`` seconds.
@@ -144,6 +160,7 @@ class DifferentiatedTow:
         else:
             motion = self._stepper.step(self.motion, course.tow, h)
         self.model, self.course, self.motion, self.time = model, course, motion, time
+        self.steps += 1
         self._point = point
 
     def _pushes(

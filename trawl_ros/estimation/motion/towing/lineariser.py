@@ -7,6 +7,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.motion.towing.halved import TowHalved
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
@@ -16,7 +17,7 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
 from trawl_ros.solver.motion.parameters import NET, MotionParameters
 from trawl_ros.solver.motion.readings import MotionPrediction
-from trawl_ros.solver.motion.tow import DifferentiatedTow
+from trawl_ros.solver.motion.tow import DifferentiatedTow, HalvedSteps
 from trawl_ros.solver.stepper import StepFailed
 
 AGAIN_S = 120.0
@@ -29,6 +30,10 @@ motion, which is unknown there, has faded."""
 UNSTABLE = 1e6
 """Derivative of a mean by a coefficient, in its noise, from which a motion is unstable: behind a
 tumble of boards derivatives may grow until normal equations are no longer definite."""
+
+TOSSED = 8
+"""Steps for each step of a tow, throughout a stretch, from which its boards are tossed about: where
+they come to rest behind a jerk of the winches, four were enough."""
 
 AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
 
@@ -66,6 +71,8 @@ class TowLineariser:
         Point of linearisation.
     on_stretch
         Called after each stretch, with its number.
+    halved
+        Steps that were halved at other points and are at this; those that fail are added.
     """
 
     def __init__(
@@ -74,8 +81,10 @@ class TowLineariser:
         channels: tuple[str, ...],
         point: TowedPoint,
         on_stretch: Callable[[int], None] = lambda number: None,
+        halved: TowHalved | None = None,
     ) -> None:
         self._gear, self._point, self._on_stretch = gear, point, on_stretch
+        self._halved: TowHalved = {} if halved is None else halved
         self.channels = channels
         self._rows = [OBSERVABLES.index(name) for name in channels]
         self._motion: MotionUnderWay | None = None
@@ -170,8 +179,10 @@ class TowLineariser:
             return AFTER_A_STOP
         try:
             if self._motion is None:
-                self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0)
+                halved = self._halved.setdefault(begin, set())
+                self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0, halved)
                 self._seen = [self._observed(self._motion)]
+            before = self._motion.towed.steps
             taken = list(self._towed_on(self._motion, tow))
         except (NoSteadyState, StepFailed) as error:
             self._stop(begin)
@@ -181,6 +192,9 @@ class TowLineariser:
         if motion.fallen and not self._gear.model.paired:
             self._stop(begin)
             return 'a board of the model falls over'
+        if motion.towed.steps - before >= TOSSED * tow.steps:
+            self._stop(begin)
+            return 'boards of the model are tossed about'
         if motion.surfaced:
             return 'the gear of the model breaks the surface'
         if begin < motion.counts_from:
@@ -216,6 +230,7 @@ def linearise_tow(
     point: TowedPoint,
     required: BoolArray | None = None,
     on_stretch: Callable[[int], None] = lambda number: None,
+    halved: TowHalved | None = None,
 ) -> LinearisedTow:
     """Tow the gear along a tow's inputs from beginning to end, and linearise.
 
@@ -231,19 +246,26 @@ def linearise_tow(
         Flags (n,) of stretches that may not be left out, none where None.
     on_stretch
         Called after each stretch, with its number.
+    halved
+        Steps that were halved at other points and are at this; those that fail are added.
 
     Raises
     ------
     NoSteadyState
         If a stretch that is required must be left out.
     """
-    lineariser = TowLineariser(gear, tow.channels, point, on_stretch)
+    lineariser = TowLineariser(gear, tow.channels, point, on_stretch, halved)
     lineariser.extend(tow, point.drifts, required=required)
     return lineariser.linearised(tow)
 
 
 def _begin(
-    gear: TowedGear, tow: MovingTow, point: TowedPoint, begin: float, anew: bool
+    gear: TowedGear,
+    tow: MovingTow,
+    point: TowedPoint,
+    begin: float,
+    anew: bool,
+    halved: HalvedSteps,
 ) -> MotionUnderWay:
     course = InputsUnderWay(CorrectedInputs(tow.inputs, point.errors, point.drifts, begin))
     parameters = MotionParameters(
@@ -254,7 +276,7 @@ def _begin(
         motions=0 if anew else gear.motions,
     )
     acting = gear.with_added_mass(point.added_mass)
-    towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting)
+    towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting, halved=halved)
     return MotionUnderWay(towed, course, begin + SETTLING_S if anew else 0.0)
 
 

@@ -1,0 +1,79 @@
+"""Search of a fit in motion: where it begins, and which steps of the tows are halved there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.search import MotionSearch
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
+from trawl_ros.lab.benchmark.motion import course_tow
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.solver.motion import stepper
+
+
+@pytest.mark.parametrize(('coefficient', 'away'), [('a2', -3.0), ('a4', -3.0), ('c6', 3.0)])
+def test_a_fit_begins_nearer_to_what_is_known_where_boards_fall(coarse, gear, coefficient, away):
+    search = search_from(coarse, gear, **{coefficient: away})
+    search.begin()
+    assert search.linear[0].towed.all()
+    nearer = search.here[0] / away
+    assert nearer.max() in {0.5, 0.25, 0.125}
+    assert np.count_nonzero(nearer) == 1
+    assert search.towings == 1 - np.log2(nearer.max())
+
+
+def test_a_fit_begins_nearer_only_as_long_as_that_is_of_use(coarse, gear):
+    far = search_from(coarse, gear, b5=-3.0)
+    far.begin()
+    assert list(far.linear[0].towed) == [True, False, False, False]
+    assert far.here[0].min() == -3.0
+    assert far.towings == 2
+    usual = search_from(coarse, gear, b5=0.1)
+    usual.begin()
+    assert usual.towings == 1
+
+
+def search_from(coarse, gear, **away):
+    """Search on a short tow from coefficients away, in prior std, from those in the gear file."""
+    tow, prior, towed = course_tow(80.0), board_prior(gear), TowedGear(coarse)
+    layout = layout_of(tow, towed, 1.0)
+    place = np.zeros(len(layout))
+    for name, own in away.items():
+        place[COEFFICIENTS.index(name)] = own
+    return MotionSearch(
+        towed, [tow], (layout,), prior, MotionOptions(), lambda *numbers: None, [place]
+    )
+
+
+def test_boards_that_are_tossed_about_are_left_out_and_told(coarse, monkeypatch):
+    tow, errors = course_tow(80.0), np.zeros(len(INPUT_ERRORS))
+    point = TowedPoint(coarse.coefficients, 0.0, errors, np.zeros(0))
+    usual = linearise_tow(TowedGear(coarse), tow, point)
+    assert usual.towed.all()
+    monkeypatch.setattr(stepper, 'DEPARTURE_M', 1e-9)
+    there = linearise_tow(TowedGear(coarse), replace(tow, step_s=2.0 * tow.step_s), point)
+    # Boards that rest, as at the beginning, depart nowhere.
+    assert list(there.towed) == [True, False, False, False]
+    assert 'tossed about' in there.left_out[0].why
+
+
+def test_a_search_halves_the_steps_that_failed_where_it_is(coarse, gear, monkeypatch):
+    monkeypatch.setattr(stepper, 'DEPARTURE_M', 0.002)
+    search = search_from(coarse, gear)
+    search.begin()
+    failed = {begin: set(steps) for begin, steps in search.halved[0].items()}
+    assert failed[0.0]
+    monkeypatch.setattr(stepper, 'DEPARTURE_M', 10.0)
+    near, halved = search.linearise(search.here, 1)
+    assert halved[0] == failed
+    np.testing.assert_allclose(near[0].values, search.linear[0].values, rtol=1e-9)
+    search.halved = ()
+    afresh, none = search.linearise(search.here, 1)
+    assert not none[0][0.0]
+    assert np.abs(afresh[0].values / near[0].values - 1.0).max() > 1e-6
