@@ -39,6 +39,24 @@ def test_a_fit_begins_nearer_only_as_long_as_that_is_of_use(coarse, gear):
     assert usual.towings == 1
 
 
+def test_a_search_is_spent_by_its_towings_or_by_their_steps(coarse, gear, monkeypatch):
+    search = search_from(coarse, gear)
+    search.begin()
+    least = search.tows[0].steps * len(search.tows[0])
+    assert least <= search.tries < 1.5 * least
+    assert not search.is_spent
+    search.towings = search.options.towings
+    assert search.is_spent
+    search.towings = 1
+    search.options = replace(search.options, towings=3)
+    assert not search.is_spent
+    monkeypatch.setattr(stepper, 'DEPARTURE_M', 1e-6)
+    search.halved = ()
+    search.linearise(search.here, 1)
+    assert search.towings == 2
+    assert search.is_spent
+
+
 def search_from(coarse, gear, **away):
     """Search on a short tow from coefficients away, in prior std, from those in the gear file."""
     tow, prior, towed = course_tow(80.0), board_prior(gear), TowedGear(coarse)

@@ -76,8 +76,8 @@ def fit_motion(
                 f'after {iteration} iterations the step is below {options.tolerance:g} of every std'
             )
             break
-        if search.towings >= options.towings:
-            reason = f'still moving after {search.towings} towings'
+        if search.is_spent:
+            reason = f'still moving after {search.towings} towings, {search.tries} steps'
             break
         near = temper == 1.0 and size < NEAR
         if not search.advance(now, iteration, 1 if near else options.attempts) and temper == 1.0:

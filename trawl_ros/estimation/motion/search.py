@@ -67,6 +67,7 @@ class MotionSearch:
     noise: tuple[FloatArray, ...] = ()
     damping: float = 0.0
     towings: int = 0
+    tries: int = 0
     halved: tuple[TowHalved, ...] = ()
 
     def linearise(
@@ -80,7 +81,14 @@ class MotionSearch:
             then = partial(self.on_stretch, iteration, number)
             own = halved[number]
             found.append(linearise_tow(self.gear, tow, point, on_stretch=then, halved=own))
+            self.tries += found[-1].tries
         return tuple(found), tuple(halved)
+
+    @property
+    def is_spent(self) -> bool:
+        """True if no further towing may be begun, by their number or by that of their steps."""
+        steps = sum(len(tow) * tow.steps for tow in self.tows)
+        return max(self.towings, self.tries / steps) >= self.options.towings
 
     def begin(self) -> None:
         """Tow all tows where the search begins, nearer to what is known where boards fall."""
@@ -196,6 +204,8 @@ class MotionSearch:
                         self.damping = 0.0
                     return True
             self.damping = max(DAMPING, STIFFER * self.damping)
+            if self.is_spent:
+                break
         return False
 
 

@@ -61,8 +61,8 @@ class DifferentiatedTow:
 
     Attributes
     ----------
-    time, steps
-        Time reached, s, and steps that led there.
+    time, steps, tries
+        Time reached, s, steps that led there, and those with them that failed.
     model
         The gear there, with its effects.
     motion, slopes
@@ -89,8 +89,8 @@ class DifferentiatedTow:
     ) -> None:
         self._halved: HalvedSteps = set() if halved is None else halved
         self._plain, self._acting, self._inputs = model, acting, inputs
-        self.parameters, self.time, self.steps = parameters, 0.0, 0
-        self._halvings = 0
+        self.parameters, self.time = parameters, 0.0
+        self.steps = self.tries = self._halvings = 0
         self._net: tuple[BarProperties, NetLoads] | None = None
         self._showing: frozenset[str] = frozenset()
         point = inputs(0.0)
@@ -146,6 +146,7 @@ class DifferentiatedTow:
         StepFailed
             If the iteration does not converge; the tow stays where it was.
         """
+        self.tries += 1
         time = self.time + h
         point = self._inputs(time)
         model = self._acting.gear(self._plain, point.situation)
