@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import MotionSearch
+from trawl_ros.estimation.motion.search import USUAL, MotionSearch
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
@@ -39,21 +39,21 @@ def test_a_fit_begins_nearer_only_as_long_as_that_is_of_use(coarse, gear):
     assert usual.towings == 1
 
 
-def test_a_search_is_spent_by_its_towings_or_by_their_steps(coarse, gear, monkeypatch):
+def test_a_search_is_spent_by_its_towings_or_by_what_they_cost(coarse, gear, monkeypatch):
     search = search_from(coarse, gear)
     search.begin()
     least = search.tows[0].steps * len(search.tows[0])
-    assert least <= search.tries < 1.5 * least
+    assert least <= search.factorisations < USUAL * least
     assert not search.is_spent
     search.towings = search.options.towings
     assert search.is_spent
     search.towings = 1
-    search.options = replace(search.options, towings=3)
-    assert not search.is_spent
+    search.options = replace(search.options, towings=4)
     monkeypatch.setattr(stepper, 'DEPARTURE_M', 1e-6)
-    search.halved = ()
     search.linearise(search.here, 1)
-    assert search.towings == 2
+    assert not search.is_spent
+    search.linearise(search.here, 1)
+    assert search.towings == 3
     assert search.is_spent
 
 
@@ -88,10 +88,9 @@ def test_a_search_halves_the_steps_that_failed_where_it_is(coarse, gear, monkeyp
     failed = {begin: set(steps) for begin, steps in search.halved[0].items()}
     assert failed[0.0]
     monkeypatch.setattr(stepper, 'DEPARTURE_M', 10.0)
-    near, halved = search.linearise(search.here, 1)
+    near, halved = search.linearise(search.here, 1, search.halved)
     assert halved[0] == failed
     np.testing.assert_allclose(near[0].values, search.linear[0].values, rtol=1e-9)
-    search.halved = ()
     afresh, none = search.linearise(search.here, 1)
     assert not none[0][0.0]
     assert np.abs(afresh[0].values / near[0].values - 1.0).max() > 1e-6

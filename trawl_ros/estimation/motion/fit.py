@@ -77,7 +77,7 @@ def fit_motion(
             )
             break
         if search.is_spent:
-            reason = f'still moving after {search.towings} towings, {search.tries} steps'
+            reason = f'still moving after {search.towings} towings'
             break
         near = temper == 1.0 and size < NEAR
         if not search.advance(now, iteration, 1 if near else options.attempts) and temper == 1.0:

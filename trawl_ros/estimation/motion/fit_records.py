@@ -33,7 +33,7 @@ class MotionOptions:
         A step below this part of every coefficient's std is the end.
     iterations, attempts, towings
         At most; attempts at a step that lowers the cost, each damped more; towings of all tows in
-        all, or as many steps as they take where none fails, after which none is begun.
+        all, or what they cost where no step fails, after which none is begun.
     huber
         Std beyond which a mean counts less; infinite for normal errors.
     """

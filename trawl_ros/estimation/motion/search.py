@@ -44,6 +44,9 @@ NEARER, STARTS = 0.5, 4
 along, as long as that is of use, and number of beginnings at most. From where boards fall fits take
 minutes to an end without rest."""
 
+USUAL = 3.5
+"""Matrices that are factorised for a step of a tow where none fails, about."""
+
 ROUNDS, STAYS = 4, 0.1
 """Rounds of finding both after a towing; logarithm by which no size changes any more."""
 
@@ -67,28 +70,28 @@ class MotionSearch:
     noise: tuple[FloatArray, ...] = ()
     damping: float = 0.0
     towings: int = 0
-    tries: int = 0
+    factorisations: int = 0
     halved: tuple[TowHalved, ...] = ()
 
     def linearise(
-        self, at: Place, iteration: int
+        self, at: Place, iteration: int, known: Sequence[TowHalved] = ()
     ) -> tuple[tuple[LinearisedTow, ...], tuple[TowHalved, ...]]:
-        """Tow all tows at a place, and linearise; steps that are halved here are halved there."""
-        found, halved = [], [copied(own) for own in self.halved] or [{} for _ in self.tows]
+        """Tow all tows at a place, and linearise; steps are halved there as it is known of them."""
+        found, halved = [], [copied(own) for own in known] or [{} for _ in self.tows]
         self.towings += 1
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
             then = partial(self.on_stretch, iteration, number)
             own = halved[number]
             found.append(linearise_tow(self.gear, tow, point, on_stretch=then, halved=own))
-            self.tries += found[-1].tries
+            self.factorisations += found[-1].factorisations
         return tuple(found), tuple(halved)
 
     @property
     def is_spent(self) -> bool:
-        """True if no further towing may be begun, by their number or by that of their steps."""
-        steps = sum(len(tow) * tow.steps for tow in self.tows)
-        return max(self.towings, self.tries / steps) >= self.options.towings
+        """True if no further towing may be begun, by their number or by what they cost."""
+        usual = USUAL * sum(len(tow) * tow.steps for tow in self.tows)
+        return max(self.towings, self.factorisations / usual) >= self.options.towings
 
     def begin(self) -> None:
         """Tow all tows where the search begins, nearer to what is known where boards fall."""
@@ -97,7 +100,6 @@ class MotionSearch:
         for _ in range(STARTS - 1):
             if not (is_lost(towed_flags(self.linear)) and any(np.any(z[:shared]) for z in place)):
                 break
-            self.halved = ()
             place = [np.concatenate((NEARER * z[:shared], z[shared:])) for z in place]
             tried, halved = self.linearise(place, 0)
             known = count(towed_flags(self.linear))
@@ -185,7 +187,7 @@ class MotionSearch:
             there = step(
                 data, self.here, self.prior, sizes, self.options.largest_step, self.damping
             )
-            tried, halved = self.linearise(there, iteration)
+            tried, halved = self.linearise(there, iteration, self.halved)
             both = [old & new.towed for old, new in zip(towed, tried, strict=True)]
             if not is_lost(both, towed):
                 # Stretches that can be towed at one place alone belong to neither cost.

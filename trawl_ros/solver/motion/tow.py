@@ -61,8 +61,8 @@ class DifferentiatedTow:
 
     Attributes
     ----------
-    time, steps, tries
-        Time reached, s, steps that led there, and those with them that failed.
+    time, steps
+        Time reached, s, and steps that led there.
     model
         The gear there, with its effects.
     motion, slopes
@@ -89,8 +89,7 @@ class DifferentiatedTow:
     ) -> None:
         self._halved: HalvedSteps = set() if halved is None else halved
         self._plain, self._acting, self._inputs = model, acting, inputs
-        self.parameters, self.time = parameters, 0.0
-        self.steps = self.tries = self._halvings = 0
+        self.parameters, self.time, self.steps = parameters, 0.0, 0
         self._net: tuple[BarProperties, NetLoads] | None = None
         self._showing: frozenset[str] = frozenset()
         point = inputs(0.0)
@@ -120,12 +119,16 @@ class DifferentiatedTow:
         StepFailed
             If not even short steps converge; the tow stays where it had come to.
         """
-        # Where steps were halved often, whole ones fail for a while: one halving less is tried.
-        self._advance(h, HALVINGS, self._halvings - 1)
+        self._advance(h, HALVINGS)
 
-    def _advance(self, h: float, left: int, at_once: int) -> None:
+    @property
+    def factorisations(self) -> int:
+        """Matrices that were factorised so far, for steps that failed among them."""
+        return self._stepper.factorisations
+
+    def _advance(self, h: float, left: int) -> None:
         own = self.time, h
-        if left == 0 or not (at_once > 0 or own in self._halved):
+        if left == 0 or own not in self._halved:
             try:
                 self.step(h)
             except StepFailed:
@@ -133,10 +136,9 @@ class DifferentiatedTow:
                     raise
                 self._halved.add(own)
             else:
-                self._halvings = HALVINGS - left
                 return
-        self._advance(0.5 * h, left - 1, at_once - 1)
-        self._advance(0.5 * h, left - 1, at_once - 1)
+        self._advance(0.5 * h, left - 1)
+        self._advance(0.5 * h, left - 1)
 
     def step(self, h: float) -> None:
         """Advance by one step of ``h`` seconds.
@@ -146,7 +148,6 @@ class DifferentiatedTow:
         StepFailed
             If the iteration does not converge; the tow stays where it was.
         """
-        self.tries += 1
         time = self.time + h
         point = self._inputs(time)
         model = self._acting.gear(self._plain, point.situation)

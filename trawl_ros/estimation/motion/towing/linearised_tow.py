@@ -33,8 +33,8 @@ class LinearisedTow:
         By the values of the effects that are examined, of what they do to the gear and its inputs.
     left_out
         Stretches that the model cannot tow, and why.
-    tries
-        Steps that it took, those that failed among them.
+    factorisations
+        Matrices that were factorised for it, a measure of what it cost.
     """
 
     tow: MovingTow
@@ -48,7 +48,7 @@ class LinearisedTow:
     by_net: FloatArray
     by_examined: FloatArray
     left_out: tuple[LeftOut, ...]
-    tries: int
+    factorisations: int
 
     @property
     def towed(self) -> BoolArray:

@@ -78,8 +78,8 @@ class TowLineariser:
     ----------
     channels
         Measured channels.
-    tries
-        Steps so far, those that failed among them.
+    factorisations
+        Matrices that were factorised so far.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class TowLineariser:
     ) -> None:
         self._gear, self._point, self._on_stretch = gear, point, on_stretch
         self._halved: TowHalved = {} if halved is None else halved
-        self.channels, self.tries = channels, 0
+        self.channels, self.factorisations = channels, 0
         self._rows = [OBSERVABLES.index(name) for name in channels]
         self._motion: MotionUnderWay | None = None
         self._seen: list[MotionPrediction] = []
@@ -161,7 +161,7 @@ class TowLineariser:
             np.full((n, k), np.nan), np.zeros((n, k, 12)), np.zeros((n, k, 1)),
             np.zeros((n, k, len(INPUT_ERRORS))), np.zeros((n, k, number)),
             np.zeros((n, k, gear.motions)), np.zeros((n, k, of_net)), np.zeros((n, k, examined)),
-            tuple(self._left_out), self.tries,
+            tuple(self._left_out), self.factorisations,
         )  # fmt: skip
         places = tow.inputs.knot_places
         for stretch, means in enumerate(self._means[:n]):
@@ -218,11 +218,11 @@ class TowLineariser:
 
     def _towed_on(self, motion: MotionUnderWay, tow: MovingTow) -> Iterator[MotionPrediction]:
         for _ in range(tow.steps):
-            before = motion.towed.tries
+            before = motion.towed.factorisations
             try:
                 motion.advance(tow.step_s)
             finally:
-                self.tries += motion.towed.tries - before
+                self.factorisations += motion.towed.factorisations - before
             yield self._observed(motion)
 
     def _observed(self, motion: MotionUnderWay) -> MotionPrediction:
