@@ -8,8 +8,9 @@ import pytest
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.compiled import as_kind
 from trawl_ros.model.numerics import STEP, stepped
-from trawl_ros.model.observables import fill_attitude
+from trawl_ros.model.observables import fallen_boards, fallen_by_attitude, fill_attitude
 from trawl_ros.model.rotations import about_axis, rotation
+from trawl_ros.model.state import State
 
 
 def attitude(turn: FloatArray) -> FloatArray:
@@ -31,3 +32,14 @@ def test_roll_goes_all_round_with_its_derivative(degrees: float) -> None:
     roll = attitude(rotation(stepped(vector, np.array([1.0, 0.0, 0.0]))))[1]
     assert roll.real == pytest.approx(vector[0])
     assert roll.imag / STEP == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize('pitch', [-0.2, 1.2])
+@pytest.mark.parametrize('degrees', [-170.0, -65.0, -30.0, -15.0, 0.0, 15.0, 30.0, 65.0, 170.0])
+def test_a_board_has_fallen_by_its_attitude_where_it_has(degrees: float, pitch: float) -> None:
+    none, roll = np.zeros((2, 3)), np.radians(degrees)
+    turn = about_axis(2, 0.4) @ about_axis(1, pitch) @ about_axis(0, roll)
+    both = fallen_boards(State(none, none, np.stack([turn, turn]), none, none, none))
+    assert both == tuple(fallen_by_attitude(side, pitch, roll) for side in ('port', 'starboard'))
+    assert any(both) == (abs(degrees) > 20.5 or pitch > 1.0)
+    assert not fallen_by_attitude('port', math.nan, roll)

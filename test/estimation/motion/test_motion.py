@@ -13,7 +13,7 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
-from trawl_ros.estimation.motion.towing import lineariser
+from trawl_ros.estimation.motion.towing import lineariser, under_way
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, on_grid
 from trawl_ros.estimation.motion.towing.knots import hats, knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.towing.lineariser import TowLineariser, linearise_tow
@@ -178,6 +178,35 @@ def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
     needed = np.ones(len(tow), dtype=bool)
     with pytest.raises(NoSteadyState, match='0 s after the beginning'):
         linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
+
+
+def test_through_a_fall_the_model_is_towed_with_its_derivatives_held(coarse):
+    tow, point = course_tow(440.0), TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
+    fell = replace(tow, fallen=(2, 3))
+    there = linearise_tow(TowedGear(coarse), fell, point)
+    assert list(np.flatnonzero(~there.towed)) == [*range(2, 19)]
+    assert np.all(fell.standing == there.towed)
+    assert [part.why for part in there.left_out[:2]] == [lineariser.BY_SENSOR] * 2
+    assert {part.why for part in there.left_out[2:]} == {under_way.AFTER_A_FALL}
+    usual = linearise_tow(TowedGear(coarse), tow, point)
+    np.testing.assert_allclose(there.values[19:], usual.values[19:], rtol=1e-4)
+    for kind in ('by_coefficients', 'by_added_mass', 'by_errors'):
+        found, right = getattr(there, kind), getattr(usual, kind)
+        np.testing.assert_array_equal(found[:2], right[:2])
+        away, size = (
+            np.sqrt(np.mean(each[19:] ** 2, axis=(0, 1))) for each in (found - right, right)
+        )
+        assert np.all(away < 0.12 * size)
+
+
+def test_behind_a_fall_that_lasts_the_tow_is_begun_anew(coarse):
+    tow, point = course_tow(640.0), TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
+    fell = replace(tow, fallen=tuple(range(2, 13)))
+    there = linearise_tow(TowedGear(coarse), fell, point)
+    assert list(np.flatnonzero(~there.towed)) == [*range(2, 28)]
+    assert [part.why for part in there.left_out] == (
+        [lineariser.BY_SENSOR] * 11 + [under_way.AFTER_A_STOP] * 15
+    )
 
 
 def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, monkeypatch):

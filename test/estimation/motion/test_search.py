@@ -9,6 +9,7 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.search import USUAL, MotionSearch
+from trawl_ros.estimation.motion.towing import lineariser
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
@@ -37,6 +38,14 @@ def test_a_fit_begins_nearer_only_as_long_as_that_is_of_use(coarse, gear):
     usual = search_from(coarse, gear, b5=0.1)
     usual.begin()
     assert usual.towings == 1
+
+
+def test_what_boards_at_sea_fell_along_makes_no_fit_begin_nearer(coarse, gear):
+    search = search_from(coarse, gear, b5=0.1)
+    search.tows = [replace(search.tows[0], fallen=(1,))]
+    search.begin()
+    assert list(search.linear[0].towed) == [True, False, False, False]
+    assert search.towings == 1
 
 
 def test_a_search_is_spent_by_its_towings_or_by_what_they_cost(coarse, gear, monkeypatch):
@@ -74,8 +83,9 @@ def test_boards_that_are_tossed_about_are_left_out_and_told(coarse, monkeypatch)
     point = TowedPoint(coarse.coefficients, 0.0, errors, np.zeros(0))
     usual = linearise_tow(TowedGear(coarse), tow, point)
     assert usual.towed.all()
-    monkeypatch.setattr(stepper, 'DEPARTURE_M', 1e-9)
-    there = linearise_tow(TowedGear(coarse), replace(tow, step_s=2.0 * tow.step_s), point)
+    monkeypatch.setattr(stepper, 'DEPARTURE_M', 0.002)
+    monkeypatch.setattr(lineariser, 'TOSSED', 2)
+    there = linearise_tow(TowedGear(coarse), tow, point)
     # Boards that rest, as at the beginning, depart nowhere.
     assert list(there.towed) == [True, False, False, False]
     assert 'tossed about' in there.left_out[0].why

@@ -8,6 +8,7 @@ import pytest
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.motion import stretches
+from trawl_ros.estimation.motion.parts import parts_of
 from trawl_ros.estimation.motion.series import (
     Series,
     payout_by_counter,
@@ -20,7 +21,12 @@ from trawl_ros.estimation.motion.stretches import (
     warp_path,
 )
 from trawl_ros.records.channels import CHANNELS
-from trawl_ros.records.samples import PressureSample, VelocitySample, WinchSample
+from trawl_ros.records.samples import (
+    AttitudeSample,
+    PressureSample,
+    VelocitySample,
+    WinchSample,
+)
 
 AT_REST = StretchOptions(settling_s=0.0)
 
@@ -141,3 +147,45 @@ def test_tows_of_other_steps_have_the_same_means():
     fine = moving_tow(read, 'bag', replace(AT_REST, step_s=0.5))
     assert fine.steps == 40
     np.testing.assert_array_equal(fine.means, moving_tow(read, 'bag', AT_REST).means)
+
+
+def falling(roll, begin, end, *, side='port', silent=(0.0, 0.0)):
+    """Samples of ten minutes in which a board rolls so far (rad) between two times, else 0.1."""
+    yield from samples(600.0, silent=silent)
+    for second in np.arange(0.0, 600.0, 2.0):
+        own = roll if begin <= second < end else 0.1
+        yield AttitudeSample(round((50.0 + second) * SECOND), side, 0.0, own, 0.01)
+
+
+def fallen(*args, **kwargs):
+    read = tow_readings(falling(*args, **kwargs), lambda p: 1e-4 * p, 'bag')
+    return moving_tow(read, 'bag', AT_REST)
+
+
+@pytest.mark.parametrize('side', ['port', 'starboard'])
+def test_stretches_in_which_a_board_swings_over_are_told(side):
+    # Outliers among their neighbours, and beyond what the channel may have, as they are.
+    tow = fallen(2.7, 206.0, 216.0, side=side)
+    assert tow.fallen == (10,)
+    assert list(np.flatnonzero(~tow.standing)) == [*range(10, 26)]
+    assert fallen(2.7, 206.0, 228.0, side=side).fallen == (10, 11)
+
+
+@pytest.mark.parametrize(
+    ('roll', 'begin', 'end'),
+    [(0.1, 0.0, 0.0), (2.7, 206.0, 210.0), (0.5, 206.0, 226.0), (-8.0, 206.0, 226.0),
+     (2.7, 0.0, 400.0), (np.nan, 206.0, 226.0)],
+    ids=['stands', 'glitch', 'leans back', 'no angle', 'mounted otherwise', 'no reading'],
+)  # fmt: skip
+def test_what_is_no_fall_is_not_told(roll, begin, end):
+    tow = fallen(roll, begin, end)
+    assert tow.fallen == ()
+    assert tow.standing.all()
+
+
+def test_a_fall_stays_where_it_was_when_a_tow_is_divided():
+    read = tow_readings(
+        falling(2.7, 406.0, 416.0, silent=(100.0, 160.0)), lambda p: 1e-4 * p, 'bag'
+    )
+    parts = parts_of(read, 60.0)
+    assert [moving_tow(part, 'bag', AT_REST).fallen for part in parts[1:]] == [(11,)]

@@ -14,8 +14,8 @@ from trawl_ros.effects.base.effect import Effect, Situation, sense
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.estimation.fit.error_terms import MODEL_ANGLE, MODEL_FRACTION
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs
-from trawl_ros.estimation.motion.towing.lineariser import AGAIN_S, SETTLING_S
-from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.lineariser import AGAIN_S
+from trawl_ros.estimation.motion.towing.records import SETTLING_S, MovingTow
 from trawl_ros.estimation.motion.towing.under_way import HIGHEST_M
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import fallen_boards

@@ -54,7 +54,8 @@ def _part(read: TowReadings, begin: float, end: float, origin: float) -> TowRead
     payout = [_cut(known, begin, end) for known in read.payout]
     start = read.start_ns + round(begin * SECOND)
     kept = {name: known for name, known in series.items() if name in INPUTS or len(known)}
-    return TowReadings(start, kept, (payout[0], payout[1]), (begin - origin) / 3600.0)
+    fallen = tuple(times - begin for times in read.fallen)
+    return TowReadings(start, kept, (payout[0], payout[1]), (begin - origin) / 3600.0, fallen)
 
 
 def _cut(series: Series, begin: float, end: float) -> Series:

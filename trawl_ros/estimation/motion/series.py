@@ -9,13 +9,14 @@ from scipy.ndimage import median_filter
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.motion.fallen import FallRecorder
 from trawl_ros.estimation.windows.buffers import ChannelBuffer
 from trawl_ros.estimation.windows.records import Rejections, WindowOptions
 from trawl_ros.estimation.windows.statistics import MAD_TO_STD
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel, readings
-from trawl_ros.records.samples import Sample, WinchSample
+from trawl_ros.records.samples import AttitudeSample, Sample, WinchSample
 
 WIDE, NARROW = 15, 7
 """Readings about whose median false echoes, and outliers, are sought: the fewer, the less the
@@ -73,12 +74,15 @@ class TowReadings:
         Series of the pay-out speeds (m/s) of both winches, by their counters where no winch tells.
     hours
         Since the tow began, where these are a part of one.
+    fallen
+        Times (s) of the readings of each board, port first, in which it has fallen.
     """
 
     start_ns: int
     series: Mapping[str, Series]
     payout: tuple[Series, Series]
     hours: float = 0.0
+    fallen: tuple[FloatArray, ...] = ()
 
     @property
     def duration_s(self) -> float:
@@ -146,6 +150,7 @@ class TowRecorder:
             for name, channel in CHANNELS.items()
         }
         self._payout: dict[int, tuple[float, float]] = {}
+        self._falls = FallRecorder(MOST_READINGS)
 
     @property
     def start_ns(self) -> int | None:
@@ -164,6 +169,8 @@ class TowRecorder:
             self._buffers[reading.channel].add(reading)
         if isinstance(sample, WinchSample) and np.all(np.isfinite(sample.speeds)):
             self._payout[sample.stamp] = sample.speeds
+        elif isinstance(sample, AttitudeSample):
+            self._falls.feed(sample)
 
     def readings(self, name: str, until_ns: int | None = None) -> TowReadings:
         """Readings so far.
@@ -202,13 +209,15 @@ class TowRecorder:
             for channel, (stamps, values, stds) in known.items()
             if len(stamps) >= WIDE
         }
+        fallen = tuple((stamps - start) / SECOND for stamps in self._falls.stamps(until_ns))
         if len(payout) < WIDE:
             told = payout_by_counter(series[INPUTS[0]]), payout_by_counter(series[INPUTS[1]])
-            return TowReadings(start, series, told)
+            return TowReadings(start, series, told, fallen=fallen)
         told_at = sorted(payout)
         times = (np.array(told_at, dtype=np.int64) - start) / SECOND
         port, starboard = np.array([payout[stamp] for stamp in told_at]).T
-        return TowReadings(start, series, (Series(times, port), Series(times, starboard)))
+        told = Series(times, port), Series(times, starboard)
+        return TowReadings(start, series, told, fallen=fallen)
 
 
 def tow_readings(

@@ -7,6 +7,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.motion.fallen import fallen_stretches
 from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorTimes
 from trawl_ros.estimation.motion.series import Series, TowReadings
 from trawl_ros.estimation.motion.towing.inputs import TowInputs, on_grid, stacked
@@ -123,7 +124,7 @@ def moving_tow(read: TowReadings, name: str, options: StretchOptions) -> MovingT
     return MovingTow(
         name, read.start_ns, options.step_s, options.stretch_s, channels, means, noise,
         counts.astype(np.int64), weights, inputs,
-        left_out,
+        left_out, fallen_stretches(read.fallen, options.stretch_s, number),
     )  # fmt: skip
 
 

@@ -5,6 +5,8 @@ Memory is that of one state and its derivatives, however long the tow.
 
 from collections.abc import Callable
 
+import numpy as np
+
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
@@ -24,6 +26,7 @@ from trawl_ros.solver.motion.partials import (
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.shown import shown_by_effects
 from trawl_ros.solver.motion.slopes import (
+    MotionSlopes,
     advance_slopes,
     unmoved,
 )
@@ -92,6 +95,7 @@ class DifferentiatedTow:
         self.parameters, self.time, self.steps = parameters, 0.0, 0
         self._net: tuple[BarProperties, NetLoads] | None = None
         self._showing: frozenset[str] = frozenset()
+        self._held_at: FloatArray | None = None
         point = inputs(0.0)
         self._point = point
         self.model = acting.gear(model, point.situation)
@@ -122,19 +126,39 @@ class DifferentiatedTow:
         self._advance(h, HALVINGS)
 
     @property
+    def is_held(self) -> bool:
+        """True where the derivatives stay as they are."""
+        return self._held_at is not None
+
+    def hold(self, slopes: MotionSlopes) -> None:
+        """Hold the derivatives as they were before boards fell: none holds through that."""
+        self.slopes = slopes
+        self._held_at = self.course.slopes.blocks.copy()
+
+    def release(self) -> None:
+        """Go on with the derivatives; the gear has gone with its blocks meanwhile."""
+        assert self._held_at is not None
+        along = (self.course.slopes.blocks - self._held_at).mean(axis=1).T
+        places, nodes = self.slopes.places, 3 * self.model.nodes
+        places[:nodes] += np.tile(along, (self.model.nodes, 1))
+        places[nodes:].reshape(2, 6, -1)[:, :3] += along
+        self._held_at = None
+
+    @property
     def factorisations(self) -> int:
         """Matrices that were factorised so far, for steps that failed among them."""
         return self._stepper.factorisations
 
     def _advance(self, h: float, left: int) -> None:
         own = self.time, h
-        if left == 0 or own not in self._halved:
+        if left == 0 or self.is_held or own not in self._halved:
             try:
                 self.step(h)
             except StepFailed:
                 if left == 0:
                     raise
-                self._halved.add(own)
+                if not self.is_held:
+                    self._halved.add(own)
             else:
                 return
         self._advance(0.5 * h, left - 1)
@@ -153,7 +177,7 @@ class DifferentiatedTow:
         model = self._acting.gear(self._plain, point.situation)
         course = course_point(model, self._acting, self.parameters, point, self.course, h)
         self._stepper.model = model
-        if self.parameters:
+        if self.parameters and not self.is_held:
             at = self._stepper.linearised_step(self.motion, course.tow, h)
             motion = at.solved.step.motion(at.solved.acceleration)
             end = StepEnd(motion.state, motion.acceleration, course.tow, at.predicted)

@@ -1,7 +1,8 @@
 """Lineariser of tows in motion: means of stretches, with derivatives by all that is towed."""
 
+from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,9 +11,15 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.motion.towing.halved import TowHalved
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
-from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
+from trawl_ros.estimation.motion.towing.records import SETTLING_S, LeftOut, MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import ADDED_MASS, TowedGear, TowedPoint
-from trawl_ros.estimation.motion.towing.under_way import InputsUnderWay, MotionUnderWay
+from trawl_ros.estimation.motion.towing.towed_means import TowedMeans, average_of
+from trawl_ros.estimation.motion.towing.under_way import (
+    AFTER_A_FALL,
+    AFTER_A_STOP,
+    InputsUnderWay,
+    MotionUnderWay,
+)
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
 from trawl_ros.solver.motion.parameters import NET, MotionParameters
@@ -23,10 +30,6 @@ from trawl_ros.solver.stepper import StepFailed
 AGAIN_S = 120.0
 """Time after which a tow that could not go on is begun anew."""
 
-SETTLING_S = 300.0
-"""Time that a tow which is begun anew is given before its stretches count: by then the slowest
-motion, which is unknown there, has faded."""
-
 UNSTABLE = 1e6
 """Derivative of a mean by a coefficient, in its noise, from which a motion is unstable: behind a
 tumble of boards derivatives may grow until normal equations are no longer definite."""
@@ -35,31 +38,19 @@ TOSSED = 8
 """Steps for each step of a tow, throughout a stretch, from which its boards are tossed about: where
 they come to rest behind a jerk of the winches, four were enough."""
 
-AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
+LONGEST_FALL_S = 60.0
+"""Longest fall that the model is towed through: what its boards meet there no law of theirs has."""
 
-
-@dataclass(frozen=True)
-class _TowedMeans:
-    """Predicted means (k,) of a stretch with their derivatives; those by knots are each input's
-    first knot that acts, and the derivatives (k, c) by it and those behind.
-    """
-
-    values: FloatArray
-    by_coefficients: FloatArray
-    by_added_mass: FloatArray
-    by_errors: FloatArray
-    by_knots: tuple[tuple[int, FloatArray], ...]
-    by_motions: FloatArray
-    by_net: FloatArray
-    by_examined: FloatArray
+BY_SENSOR = 'a board has fallen, by its sensor'
 
 
 class TowLineariser:
     """Tow of the gear along inputs, linearised stretch by stretch; a tow may grow between.
 
-    Where the motion cannot be computed, a board falls over or the gear breaks the surface,
-    stretches are left out. Behind the former two the tow is begun anew, in the equilibrium of the
-    inputs there.
+    Where boards fall, at sea or in the model, derivatives do not hold: they stay as they were
+    before, the model is towed on, and stretches are left out until its derivatives have settled
+    again. Where it lies for long, or no step leads on, the tow is begun anew in the equilibrium of
+    the inputs there. Stretches in which the gear breaks the surface are left out too.
 
     Parameters
     ----------
@@ -95,9 +86,9 @@ class TowLineariser:
         self.channels, self.factorisations = channels, 0
         self._rows = [OBSERVABLES.index(name) for name in channels]
         self._motion: MotionUnderWay | None = None
-        self._seen: list[MotionPrediction] = []
+        self._seen: MotionPrediction
         self._again = 0.0
-        self._means: list[_TowedMeans | None] = []
+        self._means: list[TowedMeans | None] = []
         self._left_out: list[LeftOut] = []
 
     def __len__(self) -> int:
@@ -179,51 +170,83 @@ class TowLineariser:
             result.by_examined[stretch] = means.by_examined
         return result
 
-    def _towed(self, tow: MovingTow, stretch: int) -> _TowedMeans | str:
+    def _towed(self, tow: MovingTow, stretch: int) -> TowedMeans | str:
         """Tow along a stretch; the means, or the reason for which it is left out."""
-        begin = stretch * tow.stretch_s
-        if self._motion is None and begin < self._again:
-            return AFTER_A_STOP
+        begin, fell = stretch * tow.stretch_s, stretch in tow.fallen
+        if self._motion is None and (fell or begin < self._again):
+            return BY_SENSOR if fell else AFTER_A_STOP
         try:
-            if self._motion is None:
-                halved = self._halved.setdefault(begin, set())
-                self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0, halved)
-                self._seen = [self._observed(self._motion)]
-            before = self._motion.towed.steps
-            taken = list(self._towed_on(self._motion, tow))
+            motion = self._motion or self._begun(tow, stretch)
+            if fell:
+                motion.hold(motion.towed.slopes, begin)
+            elif motion.held_since is not None and not self._lies(motion):
+                motion.release()
+            found = self._along(motion, tow, stretch)
         except (NoSteadyState, StepFailed) as error:
             self._stop(begin)
             return f'the model cannot be towed: {error}'
-        motion = self._motion
-        instants, self._seen = [self._seen[-1], *taken], taken
-        if motion.fallen and not self._gear.model.paired:
+        if motion.held_since is not None and motion.time - motion.held_since > LONGEST_FALL_S:
             self._stop(begin)
-            return 'a board of the model falls over'
-        if motion.towed.steps - before >= TOSSED * tow.steps:
+        return BY_SENSOR if fell else found
+
+    def _begun(self, tow: MovingTow, stretch: int) -> MotionUnderWay:
+        begin = stretch * tow.stretch_s
+        halved = self._halved.setdefault(begin, set())
+        self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0, halved)
+        self._seen = self._observed(self._motion)
+        return self._motion
+
+    def _along(self, motion: MotionUnderWay, tow: MovingTow, stretch: int) -> TowedMeans | str:
+        """Tow along a stretch to its end, behind a step that fails with the derivatives held."""
+        begin, held = stretch * tow.stretch_s, motion.held_since is not None
+        slopes, steps = motion.towed.slopes, motion.towed.steps
+        instants, why = [self._seen], AFTER_A_FALL if held else ''
+        try:
+            instants += self._towed_on(motion, tow, begin + tow.stretch_s)
+        except StepFailed as error:
+            if held:
+                raise
+            why = f'the model cannot be towed: {error}'
+        tossed = motion.towed.steps - steps >= TOSSED * tow.steps
+        if self._lies(motion):
+            why = 'a board of the model falls over'
+        elif tossed:
+            why = 'boards of the model are tossed about'
+        if not why:
+            if motion.surfaced:
+                return 'the gear of the model breaks the surface'
+            if begin < motion.counts_from:
+                return motion.settles
+            means = average_of(tow, stretch, motion, instants)
+            if np.all(np.abs(means.by_coefficients) < UNSTABLE * tow.noise[stretch][:, None]):
+                return means
+            why = 'the motion of the model is unstable'
+        if not held and (tossed or begin < motion.counts_from):
+            # Boards that fall again before all has settled go on falling.
             self._stop(begin)
-            return 'boards of the model are tossed about'
-        if motion.surfaced:
-            return 'the gear of the model breaks the surface'
-        if begin < motion.counts_from:
-            return AFTER_A_STOP
-        means = _average(tow, stretch, motion, instants)
-        sharp = np.abs(means.by_coefficients) / tow.noise[stretch][:, None]
-        if np.any(sharp > UNSTABLE):
-            self._stop(begin)
-            return 'the motion of the model is unstable'
-        return means
+        elif not held:
+            motion.hold(slopes, begin)
+            deque(self._towed_on(motion, tow, begin + tow.stretch_s), maxlen=0)
+        return why
+
+    def _lies(self, motion: MotionUnderWay) -> bool:
+        return motion.fallen and not self._gear.model.paired
 
     def _stop(self, begin: float) -> None:
         self._motion, self._again = None, begin + AGAIN_S
 
-    def _towed_on(self, motion: MotionUnderWay, tow: MovingTow) -> Iterator[MotionPrediction]:
-        for _ in range(tow.steps):
+    def _towed_on(
+        self, motion: MotionUnderWay, tow: MovingTow, end: float
+    ) -> Iterator[MotionPrediction]:
+        while motion.time < end - 1e-6:
             before = motion.towed.factorisations
+            left = end - motion.time
             try:
-                motion.advance(tow.step_s)
+                motion.advance(left if left < tow.step_s - 1e-6 else tow.step_s)
             finally:
                 self.factorisations += motion.towed.factorisations - before
-            yield self._observed(motion)
+            self._seen = self._observed(motion)
+            yield self._seen
 
     def _observed(self, motion: MotionUnderWay) -> MotionPrediction:
         observed, acting = motion.towed.observed(), self._gear.acting
@@ -289,32 +312,3 @@ def _begin(
     acting = gear.with_added_mass(point.added_mass)
     towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting, halved=halved)
     return MotionUnderWay(towed, course, begin + SETTLING_S if anew else 0.0)
-
-
-def _average(
-    tow: MovingTow, stretch: int, motion: MotionUnderWay, instants: list[MotionPrediction]
-) -> _TowedMeans:
-    """Means of a stretch from its instants."""
-    weights, parameters = tow.weights[stretch], motion.towed.parameters
-    values = np.array([instant.values for instant in instants])
-    slopes = np.array([instant.slopes for instant in instants])
-    for column in motion.begun_since(stretch * tow.stretch_s):
-        # The column of the newest knot was another's until this stretch began.
-        slopes[0, :, column] = 0.0
-    mean = np.einsum('ki,ikm->km', weights, slopes)
-    of_effects, added = mean[:, parameters.of_effects], len(ADDED_MASS.parameters)
-    of_inputs = mean[:, parameters.of_inputs]
-    by_knots = []
-    for knots, _, first in tow.inputs.knot_places:
-        acting = knots.acting(motion.time - 1e-6)
-        by_knots.append((acting.start, of_inputs[:, [first + k % knots.columns for k in acting]]))
-    return _TowedMeans(
-        values=np.einsum('ki,ik->k', weights, values),
-        by_coefficients=mean[:, parameters.of_coefficients],
-        by_added_mass=of_effects[:, :added],
-        by_errors=of_inputs[:, : len(INPUT_ERRORS)],
-        by_knots=tuple(by_knots),
-        by_motions=mean[:, parameters.of_motions],
-        by_net=mean[:, parameters.of_net],
-        by_examined=of_effects[:, added:],
-    )

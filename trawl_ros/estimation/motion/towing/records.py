@@ -1,11 +1,16 @@
 """Records of a tow in motion: means of short stretches, and what the gear was towed with."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.estimation.motion.towing.inputs import TowInputs
+
+SETTLING_S = 300.0
+"""Time that a tow which is begun anew is given before its stretches count: by then the slowest
+motion, which is unknown there, has faded."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,8 @@ class MovingTow:
         Warp lengths and speed.
     left_out
         Stretches without any mean, and why.
+    fallen
+        Numbers of the stretches in which a board has fallen; no model is towed along them.
     """
 
     name: str
@@ -57,6 +64,7 @@ class MovingTow:
     weights: FloatArray
     inputs: TowInputs
     left_out: tuple[LeftOut, ...] = ()
+    fallen: tuple[int, ...] = ()
 
     def __len__(self) -> int:
         return len(self.means)
@@ -65,6 +73,14 @@ class MovingTow:
     def steps(self) -> int:
         """Steps in a stretch."""
         return int(self.weights.shape[2]) - 1
+
+    @property
+    def standing(self) -> BoolArray:
+        """Flags (n,) of the stretches in which no board has fallen, nor shortly before."""
+        flags = np.ones(len(self), dtype=np.bool_)
+        for stretch in self.fallen:
+            flags[stretch : stretch + 1 + math.ceil(SETTLING_S / self.stretch_s)] = False
+        return flags
 
     @property
     def middles(self) -> FloatArray:

@@ -6,12 +6,18 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.motion.towing.inputs import CorrectedInputs, TowInputs
+from trawl_ros.estimation.motion.towing.records import SETTLING_S
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.solver.motion.course import InputPoint
+from trawl_ros.solver.motion.slopes import MotionSlopes
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
 HIGHEST_M = 0.0
 """Height above which a node has broken the surface."""
+
+AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
+
+AFTER_A_FALL = 'boards had fallen shortly before'
 
 
 @dataclass
@@ -27,11 +33,15 @@ class InputsUnderWay:
 
 @dataclass
 class MotionUnderWay:
-    """Motion under way: the tow, when (s) it began, and when its stretches begin to count."""
+    """Motion under way: the tow, its inputs, when (s) its stretches begin to count and why they do
+    not before, and since when its derivatives are held, where they are.
+    """
 
     towed: DifferentiatedTow
     course: InputsUnderWay
     counts_from: float
+    held_since: float | None = None
+    settles: str = AFTER_A_STOP
     _newest: dict[str, int] = field(default_factory=dict)
     _newest_from: dict[str, float] = field(default_factory=dict)
 
@@ -63,6 +73,20 @@ class MotionUnderWay:
                 column = self._of_inputs + first + newest % knots.columns
                 self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
+
+    def hold(self, slopes: MotionSlopes, begin: float) -> None:
+        """Hold the derivatives as they were at a time (s); what began to act since has none."""
+        if self.held_since is None:
+            self.held_since = begin
+            self.towed.hold(slopes)
+            for column in self.begun_since(begin):
+                self.towed.forget(slice(column, column + 1))
+
+    def release(self) -> None:
+        """Go on with the derivatives, and let them settle before stretches count."""
+        self.towed.release()
+        self.held_since, self.counts_from = None, self.time + SETTLING_S
+        self.settles = AFTER_A_FALL
 
     def begun_since(self, begin: float) -> list[int]:
         """Columns of the knots that have begun to act since a time (s)."""
