@@ -5,7 +5,7 @@ Their loop is compiled for complex numbers, for a complex step, as that of the b
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar_pass import WaterTable, add_bar_forces, water_of
 from trawl_ros.model.board_law import angle_at, fill_flow
 from trawl_ros.model.compiled import as_kind, compiled, inner, stepped_among
@@ -13,7 +13,6 @@ from trawl_ros.model.current import current_at
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import OBSERVABLES, Observables
-from trawl_ros.records.truth import SIDES
 
 COLLAPSED_NORMAL, LYING_SPAN = -0.35, 0.5
 """Vertical parts of a board's outward normal, below which it has fallen on its face, and of its
@@ -182,20 +181,15 @@ def outward_normal_lift(state: State) -> FloatArray:
 def fallen_boards(state: State) -> tuple[bool, bool]:
     """True for each board, port first, that lies on its face or back or hangs upside down."""
     up = np.real(state.board_rotations[:, 2, 2])
-    port, starboard = _lies(outward_normal_lift(state), up)
+    port, starboard = (outward_normal_lift(state) < COLLAPSED_NORMAL) | (up < LYING_SPAN)
     return bool(port), bool(starboard)
 
 
-def fallen_by_attitude(side: str, pitch: float, roll: float) -> bool:
-    """True if the board of a side lies so, by its pitch and roll (rad); False where one is NaN."""
-    level, outward = np.cos(pitch), OUTWARD[SIDES.index(side)]
-    return bool(_lies(outward * level * np.sin(roll), level * np.cos(roll)))
-
-
-def _lies(outward: FloatArray, up: FloatArray) -> BoolArray:
-    """True for boards with such vertical parts of outward normal and span."""
-    lies: BoolArray = (outward < COLLAPSED_NORMAL) | (up < LYING_SPAN)
-    return lies
+def lies_by_attitude(pitch: float, roll: float) -> bool:
+    """True if a board with such pitch and roll (rad) lies on its back or face, or hangs upside
+    down: inclined by 60° and more, for one on its face may hardly lean more than others stand.
+    """
+    return bool(np.cos(pitch) * np.cos(roll) < LYING_SPAN)
 
 
 def lies_over(model: GearModel, state: State) -> bool:

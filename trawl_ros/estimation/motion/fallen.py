@@ -5,7 +5,7 @@ from collections import deque
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.observables import fallen_by_attitude
+from trawl_ros.model.observables import lies_by_attitude
 from trawl_ros.records.samples import AttitudeSample
 from trawl_ros.records.truth import SIDES
 
@@ -37,7 +37,7 @@ class FallRecorder:
     def feed(self, sample: AttitudeSample) -> None:
         """Take a reading; one that is no angle says nothing."""
         if abs(sample.pitch) <= np.pi and abs(sample.roll) <= np.pi:
-            lies = fallen_by_attitude(sample.side, sample.pitch, sample.roll)
+            lies = lies_by_attitude(sample.pitch, sample.roll)
             self._read[sample.side].append((sample.stamp, lies))
 
     def stamps(self, until_ns: int | None = None) -> tuple[IntArray, ...]:
