@@ -218,7 +218,8 @@ class TowLineariser:
             if begin < motion.counts_from:
                 return motion.settles
             means = average_of(tow, stretch, motion, instants)
-            if np.all(np.abs(means.by_coefficients) < UNSTABLE * tow.noise[stretch][:, None]):
+            # Channels that no reading came of have no noise, and tell nothing.
+            if not np.any(np.abs(means.by_coefficients) > UNSTABLE * tow.noise[stretch][:, None]):
                 return means
             why = 'the motion of the model is unstable'
         if not held and (tossed or begin < motion.counts_from):
