@@ -130,10 +130,14 @@ class DifferentiatedTow:
         """True where the derivatives stay as they are."""
         return self._held_at is not None
 
-    def hold(self, slopes: MotionSlopes) -> None:
+    @property
+    def derivatives(self) -> tuple[MotionSlopes, FloatArray]:
+        """Derivatives of the motion, and of the places (m, 2, 3) of the blocks it goes with."""
+        return self.slopes, self.course.slopes.blocks
+
+    def hold(self, slopes: MotionSlopes, blocks: FloatArray) -> None:
         """Hold the derivatives as they were before boards fell: none holds through that."""
-        self.slopes = slopes
-        self._held_at = self.course.slopes.blocks.copy()
+        self.slopes, self._held_at = slopes, blocks.copy()
 
     def release(self) -> None:
         """Go on with the derivatives; the gear has gone with its blocks meanwhile."""
@@ -203,6 +207,8 @@ class DifferentiatedTow:
         """Set derivatives by some parameters to nought, as if these began to act now."""
         for slopes in self.slopes.arrays:
             slopes[:, columns] = 0.0
+        if self._held_at is not None:
+            self._held_at[columns] = 0.0
         course = self.course
         for slopes in (
             course.way.slopes,

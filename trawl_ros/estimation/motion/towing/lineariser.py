@@ -178,7 +178,7 @@ class TowLineariser:
         try:
             motion = self._motion or self._begun(tow, stretch)
             if fell:
-                motion.hold(motion.towed.slopes, begin)
+                motion.hold(motion.towed.derivatives, begin)
             elif motion.held_since is not None and not self._lies(motion):
                 motion.release()
             found = self._along(motion, tow, stretch)
@@ -199,7 +199,7 @@ class TowLineariser:
     def _along(self, motion: MotionUnderWay, tow: MovingTow, stretch: int) -> TowedMeans | str:
         """Tow along a stretch to its end, behind a step that fails with the derivatives held."""
         begin, held = stretch * tow.stretch_s, motion.held_since is not None
-        slopes, steps = motion.towed.slopes, motion.towed.steps
+        derivatives, steps = motion.towed.derivatives, motion.towed.steps
         instants, why = [self._seen], AFTER_A_FALL if held else ''
         try:
             instants += self._towed_on(motion, tow, begin + tow.stretch_s)
@@ -226,7 +226,7 @@ class TowLineariser:
             # Boards that fall again before all has settled go on falling.
             self._stop(begin)
         elif not held:
-            motion.hold(slopes, begin)
+            motion.hold(derivatives, begin)
             deque(self._towed_on(motion, tow, begin + tow.stretch_s), maxlen=0)
         return why
 

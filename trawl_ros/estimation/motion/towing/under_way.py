@@ -74,11 +74,11 @@ class MotionUnderWay:
                 self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
 
-    def hold(self, slopes: MotionSlopes, begin: float) -> None:
+    def hold(self, derivatives: tuple[MotionSlopes, FloatArray], begin: float) -> None:
         """Hold the derivatives as they were at a time (s); what began to act since has none."""
         if self.held_since is None:
             self.held_since = begin
-            self.towed.hold(slopes)
+            self.towed.hold(*derivatives)
             for column in self.begun_since(begin):
                 self.towed.forget(slice(column, column + 1))
 
