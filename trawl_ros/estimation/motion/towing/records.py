@@ -50,7 +50,7 @@ class MovingTow:
     left_out
         Stretches without any mean, and why.
     fallen
-        Numbers of the stretches in which a board has fallen; no model is towed along them.
+        Numbers of the stretches in which a board has fallen; they do not count.
     """
 
     name: str
