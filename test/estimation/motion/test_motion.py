@@ -13,7 +13,7 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
-from trawl_ros.estimation.motion.towing import lineariser, under_way
+from trawl_ros.estimation.motion.towing import towed_stretch, under_way
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, on_grid
 from trawl_ros.estimation.motion.towing.knots import hats, knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.towing.lineariser import TowLineariser, linearise_tow
@@ -186,7 +186,7 @@ def test_through_a_fall_the_model_is_towed_with_its_derivatives_held(coarse):
     there = linearise_tow(TowedGear(coarse), fell, point)
     assert list(np.flatnonzero(~there.towed)) == [*range(2, 19)]
     assert np.all(fell.standing == there.towed)
-    assert [part.why for part in there.left_out[:2]] == [lineariser.BY_SENSOR] * 2
+    assert [part.why for part in there.left_out[:2]] == [towed_stretch.BY_SENSOR] * 2
     assert {part.why for part in there.left_out[2:]} == {under_way.AFTER_A_FALL}
     usual = linearise_tow(TowedGear(coarse), tow, point)
     np.testing.assert_allclose(there.values[19:], usual.values[19:], rtol=1e-4)
@@ -205,7 +205,7 @@ def test_behind_a_fall_that_lasts_the_tow_is_begun_anew(coarse):
     there = linearise_tow(TowedGear(coarse), fell, point)
     assert list(np.flatnonzero(~there.towed)) == [*range(2, 28)]
     assert [part.why for part in there.left_out] == (
-        [lineariser.BY_SENSOR] * 11 + [under_way.AFTER_A_STOP] * 15
+        [towed_stretch.BY_SENSOR] * 11 + [under_way.AFTER_A_STOP] * 15
     )
 
 
@@ -214,11 +214,11 @@ def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, mo
     usual = linearise_tow(TowedGear(coarse), tow, point)
     assert usual.towed.all()
     sharp = np.abs(usual.by_coefficients) / tow.noise[..., None]
-    assert sharp.max() < 0.1 * lineariser.UNSTABLE
+    assert sharp.max() < 0.1 * towed_stretch.UNSTABLE
     silent = tow.noise.copy()
     silent[1, 0] = np.nan
     assert linearise_tow(TowedGear(coarse), replace(tow, noise=silent), point).towed.all()
-    monkeypatch.setattr(lineariser, 'UNSTABLE', 0.5 * sharp[1:].max())
+    monkeypatch.setattr(towed_stretch, 'UNSTABLE', 0.5 * sharp[1:].max())
     there = linearise_tow(TowedGear(coarse), tow, point)
     assert not there.towed.all()
     assert 'the motion of the model is unstable' in [part.why for part in there.left_out]

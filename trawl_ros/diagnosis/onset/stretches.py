@@ -10,6 +10,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
+from trawl_ros.estimation.motion.fallen import FallRecorder
 from trawl_ros.estimation.motion.series import Series, TowReadings, tow_readings
 from trawl_ros.estimation.motion.stretches import (
     FEWEST,
@@ -20,7 +21,7 @@ from trawl_ros.estimation.motion.stretches import (
 )
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.records.channels import CHANNELS, INPUTS
-from trawl_ros.records.samples import Sample, WinchSample
+from trawl_ros.records.samples import AttitudeSample, Sample, WinchSample
 
 LIVE = StretchOptions(step_s=3.0, stretch_s=30.0, settling_s=0.0, knot_s=30.0, counter_knot_s=90.0)
 """Stretches as they are watched; nothing is left out at their beginning, see `LastStretch`."""
@@ -30,6 +31,11 @@ LAG_S = 15.0
 
 MOST_SAMPLES = 200_000
 """Samples that are kept at most: more than all instruments say in the time that is looked back."""
+
+MOST_ATTITUDES = 20_000
+"""Readings of an inclinometer that tell whether it is mounted otherwise: hours, for a board may lie
+through all of the time that is looked back.
+"""
 
 LOST_S = 1800.0
 """A longer silence of the winches ends a tow; stretches within it are not counted one by one."""
@@ -97,10 +103,13 @@ class StretchCutter:
         self._origin: int | None = None
         self._number = 0
         self._held_speed: float | None = None
+        self._falls = FallRecorder(MOST_ATTITUDES)
 
     def feed(self, sample: Sample) -> Iterator[LastStretch]:
         """Take a sample; yield the stretches that it ends."""
         self._samples.append(sample)
+        if isinstance(sample, AttitudeSample):
+            self._falls.feed(sample)
         if not isinstance(sample, WinchSample):
             return
         if self._origin is None:
@@ -129,7 +138,10 @@ class StretchCutter:
             begin = oldest
             while begin < read.start_ns:
                 begin += length
-            aligned = _from(read, begin)
+            fallen = self._falls.stamps(end + late)
+            aligned = replace(
+                _from(read, begin), fallen=tuple((stamps - begin) / SECOND for stamps in fallen)
+            )
             tow = moving_tow(aligned, 'the tow', self._options)
         except TrawlError as reason:
             if number < FEWEST:

@@ -13,17 +13,27 @@ from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch
 from trawl_ros.effects.base.effect import Effect, Situation, sense
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.estimation.fit.error_terms import MODEL_ANGLE, MODEL_FRACTION
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs
-from trawl_ros.estimation.motion.towing.lineariser import AGAIN_S
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
 from trawl_ros.estimation.motion.towing.records import SETTLING_S, MovingTow
-from trawl_ros.estimation.motion.towing.under_way import HIGHEST_M
+from trawl_ros.estimation.motion.towing.towed_stretch import (
+    AGAIN_S,
+    BY_SENSOR,
+    NotTowed,
+    refused_if_unstable,
+    tow_along,
+)
+from trawl_ros.estimation.motion.towing.under_way import (
+    AFTER_A_FALL,
+    InputsUnderWay,
+    MotionUnderWay,
+)
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import fallen_boards
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import shown_values
 from trawl_ros.solver.motion.course import InputPoint, by_values
 from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
 
@@ -130,22 +140,6 @@ def acts_on_gear(effect: Effect) -> bool:
     return kind.gear is not Effect.gear or kind.apply_to_inputs is not Effect.apply_to_inputs
 
 
-class _Following:
-    """Inputs along which the model is towed; those of each stretch come with it."""
-
-    def __init__(self, tow: MovingTow) -> None:
-        self.take(tow, 0.0, 0.0)
-
-    def take(self, tow: MovingTow, begin: float, time: float) -> None:
-        """Follow a tow from ``begin`` (s) of it on, which is the time ``time`` of the motion."""
-        inputs = replace(tow.inputs, knots=())
-        self._inputs = CorrectedInputs(inputs, np.zeros(len(INPUT_ERRORS)), np.zeros(0))
-        self._ahead = begin - time
-
-    def __call__(self, time: float) -> InputPoint:
-        return replace(self._inputs(time + self._ahead), hours=time / 3600.0)
-
-
 class ModelTow:
     """Tow of the model, stretch by stretch.
 
@@ -165,8 +159,7 @@ class ModelTow:
     def __init__(self, gear: WatchedGear, coefficients: FloatArray) -> None:
         self._gear = gear
         self._parameters = gear.parameters
-        self._motion: DifferentiatedTow | None = None
-        self._following: _Following | None = None
+        self._motion: MotionUnderWay | None = None
         self._next = -1
         self.stopped, self._again = -1, 0
         self._coefficients = coefficients
@@ -192,64 +185,66 @@ class ModelTow:
             return last.why_not
         if last.number < self._again:
             return 'the tow of the model is begun anew after a stop'
-        try:
-            if self._motion is None or last.number != self._next:
-                if last.place * LIVE.stretch_s < SETTLING_S - 1e-6:
-                    return 'what the gear did before is not known'
-                self._begin(last)
-            self._next = last.number + 1
-            return self._towed(last.tow, last.place)
-        except (NoSteadyState, StepFailed) as reason:
-            self._stop(last)
-            return f'the model cannot be towed: {reason}'
-        except _NotPredicted as reason:
-            if reason.ends:
+        if self._motion is None or last.number != self._next:
+            if last.place * LIVE.stretch_s < SETTLING_S - 1e-6:
+                return 'what the gear did before is not known'
+            if any(stretch <= last.place for stretch in last.tow.fallen):
+                return BY_SENSOR if last.place in last.tow.fallen else AFTER_A_FALL
+            try:
+                self._motion = self._begun(last, last.tow)
+            except (NoSteadyState, StepFailed) as reason:
                 self._stop(last)
-            return str(reason)
+                return f'the model cannot be towed: {reason}'
+            if self._motion is None:
+                self._stop(last)
+                return 'a board of the model falls over'
+        self._next = last.number + 1
+        found = self._towed(self._motion, last.tow, last.place)
+        if not isinstance(found, NotTowed):
+            return found
+        if found.ends:
+            self._stop(last)
+        return found.why
 
     def _stop(self, last: LastStretch) -> None:
         self._motion, self.stopped = None, last.number
         self._again = last.number + round(AGAIN_S / LIVE.stretch_s)
 
-    def _begin(self, last: LastStretch) -> None:
-        assert last.tow is not None
-        self._following = _Following(last.tow)
+    def _begun(self, last: LastStretch, tow: MovingTow) -> MotionUnderWay | None:
+        """Motion at the beginning of a stretch; None where a board falls on the way there."""
+        course = InputsUnderWay(without_errors(replace(tow.inputs, knots=())))
         model = self._gear.model.with_coefficients(self._coefficients)
-        self._motion = DifferentiatedTow(
-            model, self._parameters, self._following, self._gear.acting
-        )
-        port, starboard, speed = map(float, self._following(0.0).inputs)
+        towed = DifferentiatedTow(model, self._parameters, course, self._gear.acting)
+        port, starboard, speed = map(float, course(0.0).inputs)
         self._began = (port, starboard, speed)
-        for _ in range(last.place * last.tow.steps):
-            self._motion.advance(last.tow.step_s)
-        self._require_upright()
+        motion = MotionUnderWay(towed, course, DifferentiatedTow.observed, counts_from=0.0)
+        way = motion.towed_on(last.place * tow.stretch_s, tow.step_s)
+        return None if any(motion.fallen for _ in way) else motion
 
-    def _require_upright(self) -> None:
-        assert self._motion is not None
-        if any(fallen_boards(self._motion.motion.state)) and not self._gear.model.paired:
-            raise _NotPredicted('a board of the model falls over', ends=True)
-
-    def _towed(self, tow: MovingTow, place: int) -> TowedStretch:
-        motion, following = self._motion, self._following
-        assert motion is not None
-        assert following is not None
-        following.take(tow, place * tow.stretch_s, motion.time)
-        seen = [motion.observed()]
-        for _ in range(tow.steps):
-            motion.advance(tow.step_s)
-            seen.append(motion.observed())
-        self._require_upright()
-        if np.max(motion.motion.state.nodes[:, 2]) > HIGHEST_M:
-            raise _NotPredicted('the gear of the model breaks the surface', ends=False)
+    def _towed(self, motion: MotionUnderWay, tow: MovingTow, place: int) -> TowedStretch | NotTowed:
+        now = place * tow.stretch_s
+        # Time counts from where the model began to be towed, for what grows with it.
+        hours = (motion.towed.time - now) / 3600.0
+        motion.follow(replace(tow.inputs, knots=(), hours=hours), np.zeros(0), now)
         # Channels without a reading in this stretch take the plain mean; nothing is compared.
         weights = np.full((len(OBSERVABLES), tow.steps + 1), 1.0 / (tow.steps + 1))
-        for name, own in zip(tow.channels, tow.weights[place], strict=True):
+        noise = np.full(len(OBSERVABLES), np.nan)
+        columns = zip(tow.channels, tow.weights[place], tow.noise[place], strict=True)
+        for name, own, scatter in columns:
             if np.isfinite(own).all() and own.sum() > 0.5:
                 weights[OBSERVABLES.index(name)] = own
-        values = np.einsum('sn,ns->n', [one.values for one in seen], weights)
-        slopes = np.einsum('snm,ns->nm', [one.slopes for one in seen], weights)
+                noise[OBSERVABLES.index(name)] = scatter
+
+        def averaged(seen: list[MotionPrediction]) -> TowedStretch | NotTowed:
+            values = np.einsum('sn,ns->n', [one.values for one in seen], weights)
+            slopes = np.einsum('snm,ns->nm', [one.slopes for one in seen], weights)
+            refused = refused_if_unstable(slopes[:, self._parameters.of_coefficients], noise)
+            return refused or self._stretch(motion.course(motion.towed.time), values, slopes)
+
+        return tow_along(motion, tow, place, averaged)
+
+    def _stretch(self, point: InputPoint, values: FloatArray, slopes: FloatArray) -> TowedStretch:
         own = self._parameters
-        point = following(motion.time)
         at = Situation(
             (float(point.inputs[0]), float(point.inputs[1]), float(point.inputs[2])),
             point.heading,
@@ -264,14 +259,6 @@ class ModelTow:
             self._gear.by_values(slopes[:, own.of_effects], values, at),
             at,
         )
-
-
-class _NotPredicted(Exception):
-    """There is no prediction; ``ends`` the motion of the model or not."""
-
-    def __init__(self, why: str, *, ends: bool) -> None:
-        super().__init__(why)
-        self.ends = ends
 
 
 def measured(last: LastStretch, names: Sequence[str] = WATCHED) -> tuple[FloatArray, FloatArray]:

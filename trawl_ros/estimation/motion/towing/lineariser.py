@@ -1,8 +1,8 @@
 """Lineariser of tows in motion: means of stretches, with derivatives by all that is towed."""
 
-from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -14,8 +14,14 @@ from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import SETTLING_S, LeftOut, MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import ADDED_MASS, TowedGear, TowedPoint
 from trawl_ros.estimation.motion.towing.towed_means import TowedMeans, average_of
+from trawl_ros.estimation.motion.towing.towed_stretch import (
+    AGAIN_S,
+    BY_SENSOR,
+    NotTowed,
+    refused_if_unstable,
+    tow_along,
+)
 from trawl_ros.estimation.motion.towing.under_way import (
-    AFTER_A_FALL,
     AFTER_A_STOP,
     InputsUnderWay,
     MotionUnderWay,
@@ -24,24 +30,8 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
 from trawl_ros.solver.motion.parameters import NET, MotionParameters
 from trawl_ros.solver.motion.readings import MotionPrediction
-from trawl_ros.solver.motion.tow import DifferentiatedTow, HalvedSteps
+from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
-
-AGAIN_S = 120.0
-"""Time after which a tow that could not go on is begun anew."""
-
-UNSTABLE = 1e6
-"""Derivative of a mean by a coefficient, in its noise, from which a motion is unstable: behind a
-tumble of boards derivatives may grow until normal equations are no longer definite."""
-
-TOSSED = 8
-"""Steps for each step of a tow, throughout a stretch, from which its boards are tossed about: where
-they come to rest behind a jerk of the winches, four were enough."""
-
-LONGEST_FALL_S = 60.0
-"""Longest fall that the model is towed through: what its boards meet there no law of theirs has."""
-
-BY_SENSOR = 'a board has fallen, by its sensor'
 
 
 class TowLineariser:
@@ -86,7 +76,6 @@ class TowLineariser:
         self.channels, self.factorisations = channels, 0
         self._rows = [OBSERVABLES.index(name) for name in channels]
         self._motion: MotionUnderWay | None = None
-        self._seen: MotionPrediction
         self._again = 0.0
         self._means: list[TowedMeans | None] = []
         self._left_out: list[LeftOut] = []
@@ -131,12 +120,12 @@ class TowLineariser:
             self._motion.follow(tow.inputs, drifts)
         for stretch in range(first, last):
             found = self._towed(tow, stretch)
-            if isinstance(found, str):
+            if isinstance(found, NotTowed):
                 begin = stretch * tow.stretch_s
                 if required is not None and required[stretch]:
-                    raise NoSteadyState(f'{begin:.0f} s after the beginning {found}')
-                self._left_out.append(LeftOut(begin, begin + tow.stretch_s, found))
-            self._means.append(None if isinstance(found, str) else found)
+                    raise NoSteadyState(f'{begin:.0f} s after the beginning {found.why}')
+                self._left_out.append(LeftOut(begin, begin + tow.stretch_s, found.why))
+            self._means.append(None if isinstance(found, NotTowed) else found)
             if self._motion is not None:
                 self._on_stretch(stretch)
         return max(last - first, 0)
@@ -170,90 +159,51 @@ class TowLineariser:
             result.by_examined[stretch] = means.by_examined
         return result
 
-    def _towed(self, tow: MovingTow, stretch: int) -> TowedMeans | str:
+    def _towed(self, tow: MovingTow, stretch: int) -> TowedMeans | NotTowed:
         """Tow along a stretch; the means, or the reason for which it is left out."""
         begin, fell = stretch * tow.stretch_s, stretch in tow.fallen
         if self._motion is None and (fell or begin < self._again):
-            return BY_SENSOR if fell else AFTER_A_STOP
+            return NotTowed(BY_SENSOR if fell else AFTER_A_STOP)
         try:
-            motion = self._motion or self._begun(tow, stretch)
-            if fell:
-                motion.hold(motion.towed.derivatives, begin)
-            elif motion.held_since is not None and not self._lies(motion):
-                motion.release()
-            found = self._along(motion, tow, stretch)
+            motion = self._motion = self._motion or self._begun(tow, begin)
         except (NoSteadyState, StepFailed) as error:
-            self._stop(begin)
-            return f'the model cannot be towed: {error}'
-        if motion.held_since is not None and motion.time - motion.held_since > LONGEST_FALL_S:
-            self._stop(begin)
-        return BY_SENSOR if fell else found
+            self._again = begin + AGAIN_S
+            return NotTowed(f'the model cannot be towed: {error}')
 
-    def _begun(self, tow: MovingTow, stretch: int) -> MotionUnderWay:
-        begin = stretch * tow.stretch_s
-        halved = self._halved.setdefault(begin, set())
-        self._motion = _begin(self._gear, tow, self._point, begin, stretch > 0, halved)
-        self._seen = self._observed(self._motion)
-        return self._motion
-
-    def _along(self, motion: MotionUnderWay, tow: MovingTow, stretch: int) -> TowedMeans | str:
-        """Tow along a stretch to its end, behind a step that fails with the derivatives held."""
-        begin, held = stretch * tow.stretch_s, motion.held_since is not None
-        derivatives, steps = motion.towed.derivatives, motion.towed.steps
-        instants, why = [self._seen], AFTER_A_FALL if held else ''
-        try:
-            instants += self._towed_on(motion, tow, begin + tow.stretch_s)
-        except StepFailed as error:
-            if held:
-                raise
-            why = f'the model cannot be towed: {error}'
-        tossed = motion.towed.steps - steps >= TOSSED * tow.steps
-        if self._lies(motion):
-            why = 'a board of the model falls over'
-        elif tossed:
-            why = 'boards of the model are tossed about'
-        if not why:
-            if motion.surfaced:
-                return 'the gear of the model breaks the surface'
-            if begin < motion.counts_from:
-                return motion.settles
+        def averaged(instants: list[MotionPrediction]) -> TowedMeans | NotTowed:
             means = average_of(tow, stretch, motion, instants)
-            # Channels that no reading came of have no noise, and tell nothing.
-            if not np.any(np.abs(means.by_coefficients) > UNSTABLE * tow.noise[stretch][:, None]):
-                return means
-            why = 'the motion of the model is unstable'
-        if not held and (tossed or begin < motion.counts_from):
-            # Boards that fall again before all has settled go on falling.
-            self._stop(begin)
-        elif not held:
-            motion.hold(derivatives, begin)
-            deque(self._towed_on(motion, tow, begin + tow.stretch_s), maxlen=0)
-        return why
+            return refused_if_unstable(means.by_coefficients, tow.noise[stretch]) or means
 
-    def _lies(self, motion: MotionUnderWay) -> bool:
-        return motion.fallen and not self._gear.model.paired
+        before = motion.towed.factorisations
+        found = tow_along(motion, tow, stretch, averaged)
+        self.factorisations += motion.towed.factorisations - before
+        if isinstance(found, NotTowed) and found.ends:
+            self._motion, self._again = None, begin + AGAIN_S
+        return found
 
-    def _stop(self, begin: float) -> None:
-        self._motion, self._again = None, begin + AGAIN_S
+    def _begun(self, tow: MovingTow, begin: float) -> MotionUnderWay:
+        gear, point, anew = self._gear, self._point, begin > 0.0
+        course = InputsUnderWay(CorrectedInputs(tow.inputs, point.errors, point.drifts, begin))
+        parameters = MotionParameters(
+            coefficients=True,
+            net=bool(gear.net_std),
+            effects=(ADDED_MASS, *gear.examined),
+            inputs=course.inputs.names,
+            motions=0 if anew else gear.motions,
+        )
+        acting, halved = (
+            gear.with_added_mass(point.added_mass),
+            self._halved.setdefault(begin, set()),
+        )
+        towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting, halved=halved)
+        counts_from = begin + SETTLING_S if anew else 0.0
+        return MotionUnderWay(towed, course, partial(self._observed, course), counts_from)
 
-    def _towed_on(
-        self, motion: MotionUnderWay, tow: MovingTow, end: float
-    ) -> Iterator[MotionPrediction]:
-        while motion.time < end - 1e-6:
-            before = motion.towed.factorisations
-            left = end - motion.time
-            try:
-                motion.advance(left if left < tow.step_s - 1e-6 else tow.step_s)
-            finally:
-                self.factorisations += motion.towed.factorisations - before
-            self._seen = self._observed(motion)
-            yield self._seen
-
-    def _observed(self, motion: MotionUnderWay) -> MotionPrediction:
-        observed, acting = motion.towed.observed(), self._gear.acting
+    def _observed(self, course: InputsUnderWay, towed: DifferentiatedTow) -> MotionPrediction:
+        observed, acting = towed.observed(), self._gear.acting
         values, slopes = observed.values, observed.slopes
         if acting.on_sensors:
-            at = motion.course(motion.towed.time).situation
+            at = course(towed.time).situation
             slopes = sensor_slopes(acting, values, at) @ slopes
             values = shown_values(acting, values, at)
         return MotionPrediction(values[self._rows], slopes[self._rows])
@@ -292,24 +242,3 @@ def linearise_tow(
     lineariser = TowLineariser(gear, tow.channels, point, on_stretch, halved)
     lineariser.extend(tow, point.drifts, required=required)
     return lineariser.linearised(tow)
-
-
-def _begin(
-    gear: TowedGear,
-    tow: MovingTow,
-    point: TowedPoint,
-    begin: float,
-    anew: bool,
-    halved: HalvedSteps,
-) -> MotionUnderWay:
-    course = InputsUnderWay(CorrectedInputs(tow.inputs, point.errors, point.drifts, begin))
-    parameters = MotionParameters(
-        coefficients=True,
-        net=bool(gear.net_std),
-        effects=(ADDED_MASS, *gear.examined),
-        inputs=course.inputs.names,
-        motions=0 if anew else gear.motions,
-    )
-    acting = gear.with_added_mass(point.added_mass)
-    towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting, halved=halved)
-    return MotionUnderWay(towed, course, begin + SETTLING_S if anew else 0.0)

@@ -1,5 +1,6 @@
 """Motion of the model under way along a tow's inputs, which may become longer meanwhile."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from trawl_ros.estimation.motion.towing.inputs import CorrectedInputs, TowInputs
 from trawl_ros.estimation.motion.towing.records import SETTLING_S
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.solver.motion.course import InputPoint
+from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.slopes import MotionSlopes
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
@@ -33,12 +35,25 @@ class InputsUnderWay:
 
 @dataclass
 class MotionUnderWay:
-    """Motion under way: the tow, its inputs, when (s) its stretches begin to count and why they do
-    not before, and since when its derivatives are held, where they are.
+    """Motion under way.
+
+    Attributes
+    ----------
+    towed, course
+        The tow of the model, and its inputs.
+    observe
+        Gives what is observed of the tow where it is.
+    counts_from, settles
+        Time (s) from which its stretches count, and why they do not before.
+    held_since
+        Time (s) since which its derivatives are held, where they are.
+    seen
+        Observables now.
     """
 
     towed: DifferentiatedTow
     course: InputsUnderWay
+    observe: Callable[[DifferentiatedTow], MotionPrediction]
     counts_from: float
     held_since: float | None = None
     settles: str = AFTER_A_STOP
@@ -48,15 +63,23 @@ class MotionUnderWay:
     def __post_init__(self) -> None:
         for knots in self.inputs.inputs.knots:
             self._newest[knots.channel] = knots.acting(self.time).stop - 1
+        self.seen = self.observe(self.towed)
 
     @property
     def inputs(self) -> CorrectedInputs:
         """Inputs as they are now."""
         return self.course.inputs
 
-    def follow(self, inputs: TowInputs, drifts: FloatArray) -> None:
-        """Go on along inputs that have become longer, with errors at their knots."""
-        self.course.inputs = replace(self.inputs, inputs=inputs, drifts=drifts)
+    def follow(self, inputs: TowInputs, drifts: FloatArray, time: float | None = None) -> None:
+        """Go on along inputs that have become longer, with errors at their knots; where they begin
+        at another time, ``time`` (s) is the present one in theirs, and none of them has knots.
+        """
+        later = 0.0 if time is None else time - self.time
+        begin = self.inputs.begin + later
+        self.course.inputs = replace(self.inputs, inputs=inputs, drifts=drifts, begin=begin)
+        self.counts_from += later
+        if self.held_since is not None:
+            self.held_since += later
 
     @property
     def time(self) -> float:
@@ -73,6 +96,14 @@ class MotionUnderWay:
                 column = self._of_inputs + first + newest % knots.columns
                 self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
+
+    def towed_on(self, end: float, step_s: float) -> Iterator[MotionPrediction]:
+        """Advance to a time (s) in steps; give what is observed behind each."""
+        while self.time < end - 1e-6:
+            left = end - self.time
+            self.advance(left if left < step_s - 1e-6 else step_s)
+            self.seen = self.observe(self.towed)
+            yield self.seen
 
     def hold(self, derivatives: tuple[MotionSlopes, FloatArray], begin: float) -> None:
         """Hold the derivatives as they were at a time (s); what began to act since has none."""
@@ -102,8 +133,8 @@ class MotionUnderWay:
 
     @property
     def fallen(self) -> bool:
-        """True where a board lies on its face or back."""
-        return any(fallen_boards(self.towed.motion.state))
+        """True where a board lies on its face or back; no board of two ships stands for one."""
+        return not self.towed.model.paired and any(fallen_boards(self.towed.motion.state))
 
     @property
     def surfaced(self) -> bool:
