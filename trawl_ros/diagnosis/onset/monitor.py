@@ -230,7 +230,7 @@ class OnsetMonitor:
         # The model begins some minutes before the first stretch that it is towed along.
         begins = last.tow is not None and last.place * LIVE.stretch_s >= SETTLING_S - 1e-6
         self._moved.append(any(last.moves))
-        rests = begins and not any(list(self._moved)[:-BEFORE])
+        rests = begins and not last.fell and not any(list(self._moved)[:-BEFORE])
         self._kept.append(_Kept(last, before, rests, stretch.towed is not None))
 
     def _catch_up(self) -> None:

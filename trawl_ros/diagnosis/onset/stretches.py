@@ -83,6 +83,11 @@ class LastStretch:
     leaps: tuple[CounterLeap, CounterLeap] = (CounterLeap(), CounterLeap())
     why_not: str = ''
 
+    @property
+    def fell(self) -> bool:
+        """True where a board fell in it, or in the minutes before: no model may begin there."""
+        return self.tow is not None and any(each <= self.place for each in self.tow.fallen)
+
 
 class StretchCutter:
     """Cutter of stretches from samples as they come in.

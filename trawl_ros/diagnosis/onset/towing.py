@@ -188,7 +188,7 @@ class ModelTow:
         if self._motion is None or last.number != self._next:
             if last.place * LIVE.stretch_s < SETTLING_S - 1e-6:
                 return 'what the gear did before is not known'
-            if any(stretch <= last.place for stretch in last.tow.fallen):
+            if last.fell:
                 return BY_SENSOR if last.place in last.tow.fallen else AFTER_A_FALL
             try:
                 self._motion = self._begun(last, last.tow)
