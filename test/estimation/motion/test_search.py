@@ -9,7 +9,7 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.search import USUAL, MotionSearch
-from trawl_ros.estimation.motion.towing import lineariser
+from trawl_ros.estimation.motion.towing import towed_stretch
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
@@ -84,7 +84,7 @@ def test_boards_that_are_tossed_about_are_left_out_and_told(coarse, monkeypatch)
     usual = linearise_tow(TowedGear(coarse), tow, point)
     assert usual.towed.all()
     monkeypatch.setattr(stepper, 'DEPARTURE_M', 0.002)
-    monkeypatch.setattr(lineariser, 'TOSSED', 2)
+    monkeypatch.setattr(towed_stretch, 'TOSSED', 2)
     there = linearise_tow(TowedGear(coarse), tow, point)
     # Boards that rest, as at the beginning, depart nowhere.
     assert list(there.towed) == [True, False, False, False]
