@@ -191,10 +191,8 @@ class TowLineariser:
             inputs=course.inputs.names,
             motions=0 if anew else gear.motions,
         )
-        acting, halved = (
-            gear.with_added_mass(point.added_mass),
-            self._halved.setdefault(begin, set()),
-        )
+        acting = gear.with_added_mass(point.added_mass)
+        halved = self._halved.setdefault(begin, set())
         towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting, halved=halved)
         counts_from = begin + SETTLING_S if anew else 0.0
         return MotionUnderWay(towed, course, partial(self._observed, course), counts_from)
