@@ -187,9 +187,13 @@ class Stepper:
     def _solved(self, motion: Motion, tow: Tow, h: float) -> SolvedStep:
         if self._factor_step != h:
             self._factor = None
+        keep_rate, kept = self._keep_rate(h), self._factor is not None
         try:
-            return self._solve(motion, tow, h, self._keep_rate(h))
+            return self._solve(motion, tow, h, keep_rate)
         except StepFailed:
+            if keep_rate == 0.0 and not kept:
+                # The same once more would fail as it did.
+                raise
             # Ropes that go slack or taut within the step: a matrix for every iteration.
             self._factor = None
             return self._solve(motion, tow, h, 0.0)

@@ -12,7 +12,15 @@ from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.stepper import DifferentiatedStepper, is_too_long
 from trawl_ros.solver.motion.tow import DifferentiatedTow
-from trawl_ros.solver.stepper import SCHEME, Scheme, SolvedStep, Step, StepFailed, at_rest
+from trawl_ros.solver.stepper import (
+    PATIENCE,
+    SCHEME,
+    Scheme,
+    SolvedStep,
+    Step,
+    StepFailed,
+    at_rest,
+)
 
 NONE = MotionParameters(coefficients=False)
 
@@ -83,6 +91,19 @@ def steps_of(
             tow.advance(3.0)
     assert tow.time == pytest.approx(9.0)
     return taken, failed
+
+
+@pytest.mark.parametrize(('h', 'most'), [(3.0, 1), (0.2, 2)])
+def test_a_step_that_fails_is_tried_again_in_another_way_alone(
+    model: GearModel, steady: SteadyState, h: float, most: int
+) -> None:
+    found = steady.equilibrium
+    torn = replace(found.tow, lengths=found.tow.lengths - 200.0)
+    stepper = DifferentiatedStepper(model)
+    with pytest.raises(StepFailed):
+        stepper.step(at_rest(found.state), torn, h)
+    # Long steps take a matrix for each iteration at once; short ones, where they failed with one.
+    assert most - 1 < stepper.factorisations / PATIENCE <= most
 
 
 def test_what_vibrates_faster_than_long_steps_is_damped_more_than_in_a_simulation() -> None:
