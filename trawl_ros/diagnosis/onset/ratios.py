@@ -8,7 +8,7 @@ are correlated with these, for each onset.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtrc, chdtri
+from scipy.special import chdtri, gammaln, log_ndtr, logsumexp, xlogy
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
@@ -149,7 +149,16 @@ class RatioBank:
 
 
 def rarity(ratio: float, freedom: int) -> float:
-    """-log10 of the probability of as large a ratio without any effect."""
-    # Values at their bounds may make a ratio negative; beyond the smallest number it is infinite.
-    with np.errstate(divide='ignore'):
-        return float(-np.log(chdtrc(freedom, max(ratio, 0.0))) / np.log(10.0))
+    """-log10 of the probability of as large a ratio without any effect.
+
+    The survival function of χ² is a finite sum (Abramowitz and Stegun 26.4.4 and 26.4.5), taken in
+    logarithms: what is rarer than the smallest number still has its rarity.
+    """
+    # Values at their bounds may make a ratio negative.
+    half = 0.5 * max(ratio, 0.0)
+    powers = np.arange(0.5 * (freedom % 2), 0.5 * freedom)
+    terms = xlogy(powers, half) - gammaln(powers + 1.0) - half
+    if freedom % 2:
+        terms = np.append(terms, np.log(2.0) + log_ndtr(-np.sqrt(2.0 * half)))
+    # A probability of one may be rounded to more.
+    return max(float(-logsumexp(terms) / np.log(10.0)), 0.0)
