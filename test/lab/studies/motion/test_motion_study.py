@@ -1,13 +1,18 @@
 """The study of fits in motion counts what it says, and resumes where it was."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.estimation.from_gear import identification_for
+from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.studies.motion.plant import PlantTow
 from trawl_ros.lab.studies.motion.rows import BAND, differing, motion_rows
 from trawl_ros.lab.studies.motion.study import MotionStudyPlan, run_motion_study
-from trawl_ros.lab.studies.motion.trial import MotionTrial
+from trawl_ros.lab.studies.motion.trial import MotionTrial, draw_windowed
 
 
 def trial(number, chance, *, ratio=0.5, narrow=1.0, off=0.0):
@@ -75,6 +80,26 @@ def test_holms_procedure_stops_at_the_first_that_is_likely():
     assert differing([0.5, 0.001, 0.02, 0.9]) == 1
     assert differing([0.001] * 4) == 4
     assert differing([0.013, 0.2, 0.3, 0.4]) == 0
+
+
+def test_boards_without_a_steady_window_are_drawn_again_and_counted(steady_tow, coarse_gear):
+    still, short = (tuple(steady_tow.samples(leg_s=leg_s)) for leg_s in (400, 60))
+    drawn = iter([(short, 2), (short, 0), (still, 1)])
+
+    def draw():
+        samples, before = next(drawn)
+        return PlantTow(np.zeros(12), 0.0, samples, (), Counter(collapsed=before))
+
+    found = draw_windowed(draw, lambda: identification_for(load_gear(coarse_gear)), 'finer 3')
+    assert found.plant.samples is still
+    assert found.rejected == {'without a steady window': 2, 'collapsed': 3}
+    assert found.estimate.windows == len(steady_tow.states)
+
+
+def test_a_trial_none_of_whose_boards_has_a_steady_window_says_which_and_why():
+    tow = PlantTow(np.zeros(12), 0.0, (), (), Counter())
+    with pytest.raises(TrawlError, match='finer 3: '):
+        draw_windowed(lambda: tow, lambda: identification_for(load_gear('kaifuha')), 'finer 3')
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,14 +10,22 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.bag_motion import STRETCHES, fit_tows
+from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.from_gear import board_prior, identification_for
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.series import tow_readings
 from trawl_ros.estimation.motion.stretches import moving_tow
+from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.lab.studies.identification.kept import TrialTask
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
-from trawl_ros.lab.studies.motion.plant import AUTOTRAWLED_COURSE, COURSE, MOST_DRAWS, draw_tow
+from trawl_ros.lab.studies.motion.plant import (
+    AUTOTRAWLED_COURSE,
+    COURSE,
+    MOST_DRAWS,
+    PlantTow,
+    draw_tow,
+)
 from trawl_ros.model.water import build_water
 from trawl_ros.scenario.scenario import load_scenario
 
@@ -81,6 +90,40 @@ class MotionTrial:
     cpu_s: float
 
 
+@dataclass(frozen=True)
+class WindowedTow:
+    """Tow with steady windows, what was learned of them, and boards drawn before, by reason."""
+
+    plant: PlantTow
+    identification: Identification
+    estimate: Estimate
+    rejected: Counter[str]
+
+
+def draw_windowed(
+    draw: Callable[[], PlantTow], identify: Callable[[], Identification], name: str
+) -> WindowedTow:
+    """Draw tows until one has a steady window: boards that flutter all the way are towed by nobody,
+    and there is nothing to compare with.
+
+    Raises
+    ------
+    TrawlError
+        If none of `MOST_DRAWS` has one.
+    """
+    rejected: Counter[str] = Counter()
+    for _ in range(MOST_DRAWS):
+        plant, identification = draw(), identify()
+        rejected += plant.rejected
+        for sample in plant.samples:
+            identification.feed(sample)
+        identification.finish()
+        if identification.estimate is not None:
+            return WindowedTow(plant, identification, identification.estimate, rejected)
+        rejected['without a steady window'] += 1
+    raise TrawlError(f'{name}: {identification.why_not()}')
+
+
 def run_motion_trial(task: TrialTask) -> MotionTrial:
     """Run a trial.
 
@@ -91,21 +134,12 @@ def run_motion_trial(task: TrialTask) -> MotionTrial:
     """
     chance, gear = task.chance(), task.cut.model(task.gear)
     course = load_scenario(AUTOTRAWLED_COURSE if task.series == AUTOTRAWLED else COURSE)
-    rejected: Counter[str] = Counter()
-    for _ in range(MOST_DRAWS):
-        plant = draw_tow(task.cut.plant(task.gear), board_prior(gear), course, chance)
-        rejected += plant.rejected
-        identification = identification_for(gear)
-        for sample in plant.samples:
-            identification.feed(sample)
-        identification.finish()
-        estimate = identification.estimate
-        if estimate is not None:
-            break
-        # Boards that flutter all the way are towed by nobody, and have nothing to compare with.
-        rejected['without a steady window'] += 1
-    else:
-        raise TrawlError(f'{task.name}: {identification.why_not()}')
+    windowed = draw_windowed(
+        lambda: draw_tow(task.cut.plant(task.gear), board_prior(gear), course, chance),
+        lambda: identification_for(gear),
+        task.name,
+    )
+    plant, identification, estimate = windowed.plant, windowed.identification, windowed.estimate
     read = tow_readings(plant.samples, build_water(gear).depth, task.name)
     tow = moving_tow(read, task.name, STRETCHES)
     begun = time.process_time()
@@ -142,7 +176,7 @@ def run_motion_trial(task: TrialTask) -> MotionTrial:
         windows=estimate.windows,
         duration_s=len(tow) * tow.stretch_s,
         left_out_s=0.0 if learned is None else _left_out(learned),
-        rejected=dict(rejected),
+        rejected=dict(windowed.rejected),
         measured=stack([paper_values(window.means) for window in unseen]).tolist(),
         predicted=[
             [[None if np.isnan(value) else value for value in row] for row in rows.tolist()]
