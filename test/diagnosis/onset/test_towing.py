@@ -49,18 +49,9 @@ def towed(onset_gear):
     return lambda stretches: list(map(ModelTow(gear, values).advance, stretches))
 
 
-def with_fall(stretches, number):
-    """Stretches of a tow with a fall in one of them."""
-    places = [last.place - (last.number - number) for last in stretches]
-    return [
-        replace(last, tow=replace(last.tow, fallen=(place,)))
-        if last.tow is not None and 0 <= place < len(last.tow)
-        else last
-        for last, place in zip(stretches, places, strict=True)
-    ]
-
-
-def test_through_a_fall_the_model_is_towed_on_and_compared_once_all_has_settled(cut, towed):
+def test_through_a_fall_the_model_is_towed_on_and_compared_once_all_has_settled(
+    cut, towed, with_fall
+):
     stretches = cut(14)
     fell, usual = towed(with_fall(stretches, 12)), towed(stretches)
     assert fell[12:23] == [BY_SENSOR] + [AFTER_A_FALL] * 10

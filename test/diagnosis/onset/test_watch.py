@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.onset.stretches import StretchCutter
 from trawl_ros.diagnosis.onset.towing import WatchedGear
-from trawl_ros.diagnosis.onset.watch import CLOSE, REST, Watch, WatchSettings
+from trawl_ros.diagnosis.onset.watch import CLOSE, LEARNS, REST, Watch, WatchSettings
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
@@ -27,9 +27,17 @@ def onset_gear(coarse_gear):
 
 
 @pytest.fixture
-def stretches(onset_gear, onset_samples):
-    cutter = StretchCutter(build_water(onset_gear).depth)
-    return [one for sample in onset_samples(9) for one in cutter.feed(sample)]
+def cut(onset_gear, onset_samples):
+    def stretches(minutes):
+        cutter = StretchCutter(build_water(onset_gear).depth)
+        return [one for sample in onset_samples(minutes) for one in cutter.feed(sample)]
+
+    return stretches
+
+
+@pytest.fixture
+def stretches(cut):
+    return cut(9)
 
 
 @pytest.fixture
@@ -93,6 +101,30 @@ def test_boards_far_off_are_learned_within_minutes_and_the_tow_is_judged(
     learned = [one for one in compared if one.why_not]
     assert REST <= len(learned) <= 3 * REST
     assert max(one.rarity for one in compared) < 0.5 * monitor.options.limit
+
+
+def test_boards_that_were_close_before_a_fall_have_to_be_so_once_more(
+    settings, onset_gear, cut, with_fall
+):
+    prior = board_prior(onset_gear)
+    right = Knowledge(onset_gear.board.coefficients.array(), np.diag((0.2 * prior.std) ** 2))
+    stretches = cut(16)
+
+    def watched(stretches):
+        """Whether boards were learned still in each stretch; None where nothing was compared."""
+        watch = Watch(settings, right, right.values)
+        seen = [watch.advance(last) for last in stretches]
+        assert watch.away < CLOSE
+        return [None if one.white is None else one.why_not == LEARNS for one in seen]
+
+    usual = watched(stretches)
+    first, last = usual.index(True), len(usual)
+    assert usual[first:] == [True] * REST + [False] * (last - first - REST)
+    fell = watched(with_fall(stretches, first + 2))
+    assert fell[first : first + 2] == [True, True]
+    behind = [one for one in fell[first + 2 :] if one is not None]
+    assert behind == [True] * REST + [False] * (len(behind) - REST)
+    assert len(behind) > REST
 
 
 def test_boards_known_by_the_gear_file_alone_are_learned_for_longer(

@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trawl_ros.diagnosis.onset import whitening
 from trawl_ros.diagnosis.onset.candidates import WATCHED, candidate_table
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.ratios import RatioBank
 from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
 from trawl_ros.diagnosis.onset.stretches import LIVE, CounterLeap, LastStretch
 from trawl_ros.diagnosis.onset.towing import TowedStretch
-from trawl_ros.diagnosis.onset.whitening import AWAY, MOST, WhiteningFilter
+from trawl_ros.diagnosis.onset.whitening import AWAY, LEANING, LEANING_S, MOST, WhiteningFilter
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
@@ -149,3 +150,31 @@ def test_a_prediction_is_the_less_exact_the_farther_boards_are_from_those_towed_
         found.append(np.linalg.norm(white.root, axis=1))
     assert (found[1] >= 0.99 * AWAY * 1000.0 * NOISE).all()
     assert (found[0] < 0.1 * found[1]).any()
+
+
+def test_a_stretch_in_which_winches_run_tells_less_of_what_lasts(monkeypatch):
+    still = TowedStretch(
+        VALUES, np.zeros((K, 12)), np.zeros((K, len(INPUT_ERRORS))), np.zeros((K, P)),
+        Situation((400.0, 400.0, 2.2)),
+    )  # fmt: skip
+
+    def variances(leaning, moves):
+        """Variances of the innovations in two stretches, of which warps run in the first."""
+        monkeypatch.setattr(whitening, 'LEANING', leaning)
+        filtered, found = WhiteningFilter(KNOWN, responses(), 1.0), []
+        for number in range(2):
+            last = LastStretch(
+                number, number, number + 1, log_std=0.01, leaps=(STEADY, STEADY),
+                moves=(moves and number == 0, False),
+            )  # fmt: skip
+            white = filtered.step(VALUES, NOISE, still, np.zeros(12), last, np.zeros((K, 6)))
+            found.append(np.sum(white.root**2, axis=1))
+        return np.array(found)
+
+    more = (variances(LEANING, True) - variances(0.0, True)) / still.model_error**2
+    np.testing.assert_allclose(more[0], LEANING**2)
+    # In the next a part of that is left, and less is known from the first.
+    faded = LEANING**2 * np.exp(-2.0 * LIVE.stretch_s / LEANING_S)
+    assert (more[1] > faded).all()
+    assert (more[1] < LEANING**2).all()
+    np.testing.assert_array_equal(variances(LEANING, False), variances(0.0, False))

@@ -20,7 +20,7 @@ class WatchedCourse:
     innovations
         Whitened innovations (n, k) of the channels `WATCHED`, NaN where there are none.
     rarities
-        Rarity (n,) of the rarest candidate; NaN where nothing was compared.
+        Rarity (n,) of the rarest candidate; NaN where nothing was judged.
     """
 
     ends_ns: IntArray
@@ -39,7 +39,8 @@ class CourseKeeper:
         shown, white = np.full(len(WATCHED), np.nan), stretch.white
         if white is not None:
             shown[white.rows] = white.whitened(white.residual)
-        rarity = np.nan if white is None else stretch.rarity
+        judged = white is not None and not stretch.why_not
+        rarity = stretch.rarity if judged else np.nan
         self._rows.append((stretch.end_ns, shown, rarity))
 
     @property

@@ -24,8 +24,8 @@ from trawl_ros.solver.stepper import StepFailed
 
 CLOSE, REST = 8.0, 4
 """Change of a channel by what coefficients were learned to be, in the model's own error, within
-which boards are found once, through so many stretches, before anything is judged: derivatives of
-boards farther off are of another gear. Beyond it an effect may lead later."""
+which boards are found once, through so many stretches in a row, before anything is judged:
+derivatives of boards farther off are of another gear. Beyond it an effect may lead later."""
 
 LEARNS = 'boards are learned first, for what is known of them is too far off, or too little'
 """Reason for which nothing is judged."""
@@ -186,6 +186,9 @@ class Watch:
             self.away = float(np.max(np.abs(moved) / model.model_error))
             if self.learns:
                 self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
+        elif self.learns:
+            # The model begins anew: that its boards were close before a fall proves nothing.
+            self.close = 0
         return WatchedStretch(last.end_ns, means, model, white, marks, evidence, why_not)
 
     def _begin(self) -> None:

@@ -42,6 +42,12 @@ RUNNING, UNREST_S = 3.0, 150.0
 """Factor on the model's own error while winches run or speed changes, and time in which it fades:
 derivatives are less exact then, and a gear that is not the model differs more."""
 
+LEANING, LEANING_S = 3.0, 30.0
+"""Std of what boards that lean over in passing change, when winches or speed begin to change, in
+the model's own error, and time in which it fades. Boards near their stall were 6 to 10 of it off in
+pitch and roll in one stretch, depths and spread 8 in the next, and nothing in the third: as part of
+what fades in minutes that spoke for a slope of the lift, of a rarity of 8.2; with this, of 6.4."""
+
 APART = 0.5
 """Std of what the model is wrong by on one side more than on both, in what it is on both."""
 
@@ -245,7 +251,8 @@ class WhiteningFilter:
         least = [self._least.get(name, 0.0) for name in WATCHED]
         scatter = np.maximum(_by_channel(self._sizes.noise) * noise, least)
         drift = _by_channel(self._sizes.drift) * own
-        white = (scatter**2 + drift**2)[rows] * self._inflation**2
+        leaning = LEANING * self._unrest ** (UNREST_S / LEANING_S) * towed.model_error
+        white = (self._inflation**2 * (scatter**2 + drift**2) + leaning**2)[rows]
         root = np.linalg.cholesky(model @ self.variance @ model.T + np.diag(white))
         # A reading far off is one at the edge of errors that large: in the filter and in all that
         # a signature leaves in it, or what explains such readings would not be what made them.
