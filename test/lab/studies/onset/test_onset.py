@@ -8,15 +8,18 @@ import pytest
 from trawl_ros.diagnosis.onset.candidates import candidate_table
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.studies.onset.limit import drawn_rarest
+from trawl_ros.lab.studies.onset.plant import KNOWN, knowledge, random_course, with_boards
 from trawl_ros.lab.studies.onset.report import write_onset
 from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
-from trawl_ros.lab.studies.onset.study import OnsetPlan
+from trawl_ros.lab.studies.onset.study import OnsetPlan, own_trials, wanted_trials
 from trawl_ros.lab.studies.onset.trial import Beginning, OnsetTrial, make_trial
 from trawl_ros.records.observables import OBSERVABLES
 
 FOUND = OnsetTrial(
-    0, 'kite', 0.35, 900.0, 960.0, 930.0, 'kite', (), 20.0, 0, 1800.0, 330.0, 20.0
+    0, 'kite', 0.35, 900.0, 960.0, 930.0, 'kite', (), 20.0, 0, 1800.0, 330.0, 600.0, 20.0
 )  # fmt: skip
 CLEAN = OnsetTrial(0, '', 0.0, None, rarity=3.0, watched_s=3600.0, unwatched_s=0.0, seconds=36.0)
 
@@ -43,8 +46,17 @@ def test_every_size_of_the_table_is_possible_three_times_over():
         assert any(there.low <= value <= there.high for value in way), name
 
 
+def test_shards_share_all_trials_and_each_has_both_kinds():
+    plan = OnsetPlan(trials=9, clean=6)
+    parts = [own_trials(replace(plan, shard=shard, shards=2)) for shard in (1, 2)]
+    assert sorted([*parts[0], *parts[1]]) == sorted(wanted_trials(plan))
+    for part in parts:
+        assert sum(clean for _, clean in part) == 3
+    assert own_trials(plan) == wanted_trials(plan)
+
+
 def test_delays_onsets_and_false_findings_are_counted(tmp_path):
-    missed = replace(FOUND, number=1, raised_s=None, onset_s=None, name='')
+    missed = replace(FOUND, number=1, raised_s=None, onset_s=None, name='', behind_s=270.0)
     alarmed = replace(CLEAN, false=1)
     trials = [FOUND, missed, CLEAN, alarmed]
     rows = {row.what: row for row in write_onset(tmp_path, OnsetPlan(), trials)}
@@ -57,6 +69,11 @@ def test_delays_onsets_and_false_findings_are_counted(tmp_path):
     assert false.low < false.value < false.high
     assert not false.ok
     assert rows['largest rarity in 2 clean tows'].value == 3.0
+    same = rows['the same, of tows judged for half of the 10 min behind its beginning']
+    assert same.value == 100.0
+    judged = rows['of the tows that is judged']
+    assert judged.value == pytest.approx(100.0 * 10800.0 / 11460.0)
+    assert judged.note.endswith('less than half in 0 of 4 tows')
     assert (tmp_path / 'onset.md').exists()
 
 
@@ -70,6 +87,25 @@ def test_candidates_without_a_mark_are_never_rare_and_one_that_has_some_is_as_ch
     marks[:, 0, column] = 1e6 / table.scale[column]
     rarest = drawn_rarest(table, [marks, marks], 4000, chance)
     assert np.mean(rarest > 2.0) == pytest.approx(0.01, abs=0.006)
+
+
+def test_plants_have_boards_of_their_own_and_what_is_known_of_them_is_wrong_as_stated(
+    coarse_gear, tmp_path
+):
+    record, prior = load_gear(coarse_gear), board_prior(load_gear(coarse_gear))
+    course = random_course(tmp_path, record, 6.0, np.random.default_rng(5))
+    first, other = (with_boards(course, np.random.default_rng(seed)) for seed in (1, 2))
+    boards = first.plant.board.coefficients.array()
+    assert np.all((prior.low <= boards) & (boards <= prior.high))
+    assert np.ptp((boards - prior.start) / prior.std) > 0.5
+    assert not np.array_equal(boards, other.plant.board.coefficients.array())
+    # The model that watches is that of the gear file, on the same course.
+    assert first.gear == course.gear
+    assert first.commands == course.commands
+    chance = np.random.default_rng(6)
+    away = [knowledge(record, boards, chance).values - boards for _ in range(300)]
+    inside = np.minimum(boards - prior.low, prior.high - boards) > 3.0 * KNOWN * prior.std
+    assert np.std(away, axis=0)[inside] == pytest.approx(KNOWN * prior.std[inside], rel=0.15)
 
 
 @pytest.mark.slow

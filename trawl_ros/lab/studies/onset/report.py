@@ -13,7 +13,7 @@ from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.report.rates import rate
 from trawl_ros.lab.studies.onset.sizes import TIMES
 from trawl_ros.lab.studies.onset.study import OnsetPlan
-from trawl_ros.lab.studies.onset.trial import OnsetTrial
+from trawl_ros.lab.studies.onset.trial import BEHIND_MIN, OnsetTrial
 
 REPORT = 'onset.md'
 
@@ -37,7 +37,8 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
         f'--minutes {plan.minutes:g} --seed {plan.seed}',
         method='Tows with random hauling, veering and speed steps. The plant has warps and bridles '
         'twice as fine as the model and no joined meshes, and is read by the default instruments; '
-        'the net has 12 meshes around. Boards are known to 0.2 of the std of the gear file. An '
+        'the net has 12 meshes around. Boards are drawn from the prior of the gear file until they '
+        'tow the course at rest, and known to 0.2 of its std. An '
         f'effect of {TIMES:g} times what steady windows detect, by a frozen table, begins between '
         'the 10th and the 20th minute. The class that watches in the node is fed with all samples. '
         f'Findings are raised beyond a rarity of {options.limit:g}.',
@@ -51,18 +52,23 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
             [trial.raised_s is not None for trial in hidden],
             least=95.0,
         ),
+        rate(
+            f'the same, of tows judged for half of the {BEHIND_MIN:g} min behind its beginning',
+            [trial.raised_s is not None for trial in hidden if trial.behind_s >= 30.0 * BEHIND_MIN],
+        ),
         _quantile('delay, median', delays, 0.5, 5.0, 'delay_median'),
         _quantile('delay, 90 %', delays, 0.9, 15.0, 'delay_90'),
         rate('onsets within 3 min, of those detected', right, least=80.0),
         rate('the effect is named or among those not told apart, of those detected', named),
         _false(made),
         *_rarest(made, options.limit),
+        _judged(made),
         _core(made),
     ]
     table = TextTable(
         'Trials with an effect',
-        ('trial', 'effect', 'size', 'began, min', 'raised after, min', 'onset off by, min', 'name',
-         'not told from'),
+        ('trial', 'effect', 'size', 'began, min', 'judged behind, min', 'raised after, min',
+         'onset off by, min', 'name', 'not told from'),
         tuple(_row(trial) for trial in hidden),
     )  # fmt: skip
     refused = [f'{trial.number} ({trial.effect or "clean"}): {trial.why_not}'
@@ -127,6 +133,16 @@ def _rarest(made: Sequence[OnsetTrial], limit: float) -> list[MeasuredValue]:
     return [MeasuredValue(what, max(clean), '', at_most(limit), note, key='rarest_clean')]
 
 
+def _judged(made: Sequence[OnsetTrial]) -> MeasuredValue:
+    """Part of the tows in which innovations were judged."""
+    judged = sum(trial.watched_s for trial in made)
+    towed = sum(trial.watched_s + trial.unwatched_s for trial in made)
+    part = 100.0 * judged / towed if towed else np.nan
+    idle = sum(trial.unwatched_s > 0.5 * (trial.watched_s + trial.unwatched_s) for trial in made)
+    note = f'of {towed / 3600.0:.1f} h; less than half in {idle} of {len(made)} tows'
+    return MeasuredValue('of the tows that is judged', part, '%', note=note, key='judged')
+
+
 def _core(made: Sequence[OnsetTrial]) -> MeasuredValue:
     seconds = sum(trial.seconds for trial in made)
     towed = sum(trial.watched_s + trial.unwatched_s for trial in made)
@@ -137,7 +153,10 @@ def _core(made: Sequence[OnsetTrial]) -> MeasuredValue:
 
 def _row(trial: OnsetTrial) -> tuple[str, ...]:
     assert trial.begin_s is not None
-    head = str(trial.number), trial.effect, f'{trial.size:.3g}', f'{trial.begin_s / 60.0:.1f}'
+    head = (
+        str(trial.number), trial.effect, f'{trial.size:.3g}', f'{trial.begin_s / 60.0:.1f}',
+        f'{trial.behind_s / 60.0:.1f}',
+    )  # fmt: skip
     if trial.raised_s is None:
         return *head, 'not detected', '', '', ''
     return (

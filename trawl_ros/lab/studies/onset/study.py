@@ -28,19 +28,28 @@ class OnsetPlan:
     pictures: bool = False
 
 
-def run_onset(plan: OnsetPlan, folder: Path, on_progress: OnProgress) -> list[OnsetTrial]:
-    """Make the trials that are not there yet; return all that are there.
+def wanted_trials(plan: OnsetPlan) -> list[tuple[int, bool]]:
+    """Number of each trial, and whether it is a clean one.
 
     A clean tow and one with an effect take turns, so that a study that was stopped has both.
     """
-    made_folder(folder)
-    wanted = [
+    return [
         (number, clean)
         for number in range(max(plan.trials, plan.clean))
         for clean, of in ((False, plan.trials), (True, plan.clean))
         if number < of
     ]
-    own = wanted[plan.shard - 1 :: plan.shards]
+
+
+def own_trials(plan: OnsetPlan) -> list[tuple[int, bool]]:
+    """Trials of a plan's shard; by turns again, so that none has those of one kind alone."""
+    return [one for one in wanted_trials(plan) if sum(one) % plan.shards == plan.shard - 1]
+
+
+def run_onset(plan: OnsetPlan, folder: Path, on_progress: OnProgress) -> list[OnsetTrial]:
+    """Make the trials that are not there yet; return all that are there."""
+    made_folder(folder)
+    own = own_trials(plan)
     for done, (number, clean) in enumerate(own):
         path = _path(plan, folder, number, clean)
         if path.exists():
@@ -49,7 +58,7 @@ def run_onset(plan: OnsetPlan, folder: Path, on_progress: OnProgress) -> list[On
         picture = path.with_suffix('.png') if plan.pictures else None
         trial = make_trial(plan.gear, plan.seed, number, plan.minutes, clean, picture)
         write_json(path, trial.record(), indent=1)
-    paths = (_path(plan, folder, number, clean) for number, clean in wanted)
+    paths = (_path(plan, folder, number, clean) for number, clean in wanted_trials(plan))
     return [_read(path) for path in paths if path.exists()]
 
 

@@ -7,26 +7,24 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-import yaml
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import write_figure, write_text
+from trawl_ros.core.files import write_figure
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.diagnosis.onset.history import CourseKeeper
-from trawl_ros.diagnosis.onset.knowledge import Knowledge
+from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.diagnosis.onset.stretches import LIVE
 from trawl_ros.diagnosis.onset.watch import WatchedStretch
 from trawl_ros.diagnosis.report.onset_figure import onset_figure
 from trawl_ros.effects.base.effect import Effect, Readings, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.effects.sensor_effects import SensorEffects
-from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
-from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.suite import InstrumentSuite
+from trawl_ros.lab.studies.onset.plant import knowledge, random_course, with_boards
 from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
 from trawl_ros.lab.studies.soak.long_tow import coarse_gear
 from trawl_ros.model.gear_model import GearModel
@@ -34,17 +32,13 @@ from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 from trawl_ros.report.style import DPI
 from trawl_ros.scenario.run import Trial
-from trawl_ros.scenario.scenario import Scenario, load_scenario
-
-KNOWN = 0.2
-"""Std of the boards as they are known when the tow begins, in that of the gear file's prior: five
-steady states tell as much."""
+from trawl_ros.scenario.scenario import Scenario
 
 EARLIEST_MIN, LATEST_MIN = 10.0, 20.0
 """Minutes of a tow between which an effect begins."""
 
-LENGTHS_M, SPEEDS_M_S = (320.0, 480.0), (2.1, 2.45)
-LEG_MIN = (3.0, 9.0)
+BEHIND_MIN = 10.0
+"""Minutes behind its beginning of which it is told how long they were judged."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +89,8 @@ class OnsetTrial:
         Findings that were raised before anything began.
     watched_s, unwatched_s
         Time that was compared with the model, and that could not be.
+    behind_s
+        Time that was judged of the `BEHIND_MIN` behind the beginning of the effect.
     seconds
         Processor time of the monitor.
     why_not
@@ -113,6 +109,7 @@ class OnsetTrial:
     false: int = 0
     watched_s: float = 0.0
     unwatched_s: float = 0.0
+    behind_s: float = 0.0
     seconds: float = 0.0
     why_not: str = ''
 
@@ -130,9 +127,10 @@ def make_trial(
     ----------
     gear
         File or name; its net is cut as coarsely as may be, and the plant has warps and bridles
-        twice as fine and no joined meshes.
+        twice as fine, no joined meshes, and boards drawn from the file's prior.
     seed, number, clean
-        Of the study, and of the trial, which decide on the course, the effect and the readings.
+        Of the study, and of the trial, which decide on the course, the boards, the effect and the
+        readings.
     minutes
         Of the tow.
     picture
@@ -147,18 +145,19 @@ def make_trial(
     if effect:
         acting, size = _beginning(catalogue()[effect], begin, chance)
     trial = OnsetTrial(number, effect, size, begin if effect else None)
+    raised: list[Finding] = []
+    keeper = CourseKeeper()
+    spent = 0.0
     with TemporaryDirectory() as folder:
         record = coarse_gear(gear)
-        scenario = _scenario(Path(folder), record, minutes, chance)
-        # An effect that begins is none of a file: it takes the place of the plant's own.
-        vars(scenario)['effect_set'] = acting
-        raised: list[Finding] = []
-        keeper = CourseKeeper()
-        monitor = OnsetMonitor(
-            load_gear(Path(folder) / 'gear.yaml'), _knowledge(record, chance), on_stretch=keeper
-        )
-        spent = 0.0
+        scenario = random_course(Path(folder), record, minutes, chance)
+        believed = load_gear(Path(folder) / 'gear.yaml')
         try:
+            scenario = with_boards(scenario, chance)
+            known = knowledge(record, scenario.plant.board.coefficients.array(), chance)
+            # An effect that begins is none of a file: it takes the place of the plant's own.
+            vars(scenario)['effect_set'] = acting
+            monitor = OnsetMonitor(believed, known, on_stretch=keeper)
             for sample in _samples(scenario, acting):
                 begun = time.process_time()
                 raised += monitor.feed(sample)
@@ -174,8 +173,8 @@ def make_trial(
     early = [one for one in first.values() if one.raised_ns / SECOND < from_s]
     later = [one for one in first.values() if one.raised_ns / SECOND >= from_s]
     trial = replace(
-        trial, false=len(early), watched_s=30.0 * monitor.watched,
-        unwatched_s=30.0 * monitor.unwatched, seconds=spent,
+        trial, behind_s=_judged_behind(course, from_s), false=len(early), seconds=spent,
+        watched_s=30.0 * monitor.watched, unwatched_s=30.0 * monitor.unwatched,
         rarity=float(np.nanmax(course.rarities, initial=0.0)),
     )  # fmt: skip
     if not later:
@@ -189,7 +188,9 @@ def make_trial(
 
 
 def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
-    """Marks (w, r, p) that the candidates would leave in each stretch of a clean tow."""
+    """Marks (w, r, p) that the candidates would leave in each stretch of a clean tow of the boards
+    of the gear file.
+    """
     chance = np.random.default_rng(seed)
     found: list[FloatArray] = []
 
@@ -199,13 +200,23 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
 
     with TemporaryDirectory() as folder:
         record = coarse_gear(gear)
-        scenario = _scenario(Path(folder), record, minutes, chance)
+        boards = record.board.coefficients.array()
+        scenario = random_course(Path(folder), record, minutes, chance)
         monitor = OnsetMonitor(
-            load_gear(Path(folder) / 'gear.yaml'), _knowledge(record, chance), on_stretch=keep
+            load_gear(Path(folder) / 'gear.yaml'),
+            knowledge(record, boards, chance),
+            on_stretch=keep,
         )
         for sample in _samples(scenario, NO_EFFECTS):
             monitor.feed(sample)
     return found
+
+
+def _judged_behind(course: WatchedCourse, from_s: float) -> float:
+    """Time (s) that was judged of the minutes behind a time."""
+    ends = course.ends_ns / SECOND
+    behind = (ends > from_s) & (ends <= from_s + 60.0 * BEHIND_MIN)
+    return LIVE.stretch_s * float(np.sum(np.isfinite(course.rarities[behind])))
 
 
 def _beginning(
@@ -224,44 +235,6 @@ def _beginning(
     same = {key: getattr(effect, key) for key in Effect.__dataclass_fields__}
     beginning = Beginning(**same, of=effect, begin_h=begin_s / 3600.0)
     return EffectSet((ActiveEffect(beginning, values),)), float(size)
-
-
-def _knowledge(gear: GearRecord, chance: np.random.Generator) -> Knowledge:
-    """Boards as they are known: the truth, wrong by as much as is stated."""
-    std = KNOWN * board_prior(gear).std
-    truth = gear.board.coefficients.array()
-    return Knowledge(truth + std * chance.standard_normal(len(std)), np.diag(std**2))
-
-
-def _scenario(
-    folder: Path, gear: GearRecord, minutes: float, chance: np.random.Generator
-) -> Scenario:
-    write_text(folder / 'gear.yaml', yaml.safe_dump(gear.model_dump(mode='json')))
-    length, speed = chance.uniform(*LENGTHS_M), chance.uniform(*SPEEDS_M_S)
-    steps: list[dict[str, object]] = []
-    left = minutes
-    while left > 0.0:
-        leg = min(left, chance.uniform(*LEG_MIN))
-        step: dict[str, object] = {'name': f'leg {len(steps) + 1}', 'minutes': float(leg)}
-        if steps and chance.uniform() < 0.5:
-            step['speed_m_s'] = float(chance.uniform(*SPEEDS_M_S))
-        elif steps:
-            step['warp_length_m'] = float(chance.uniform(*LENGTHS_M))
-        steps.append(step)
-        left -= leg
-    record = {
-        'description': 'a tow in which something may begin',
-        'gear': 'gear.yaml',
-        'seed': int(chance.integers(2**31)),
-        'refine': {'warp': 2, 'bridle': 2, 'unjoined': True},
-        'start': {'warp_length_m': float(length), 'speed_m_s': float(speed)},
-        'steps': steps,
-        'truth_rate_hz': 2.0,
-        'record': ['instruments'],
-    }
-    path = folder / 'scenario.yaml'
-    write_text(path, yaml.safe_dump(record))
-    return load_scenario(path)
 
 
 def _samples(scenario: Scenario, acting: EffectSet) -> Iterator[Sample]:
