@@ -11,7 +11,7 @@ def with_fall():
         """Stretches of a tow with a fall in one of them."""
         places = [last.place - (last.number - number) for last in stretches]
         return [
-            replace(last, tow=replace(last.tow, fallen=(place,)))
+            replace(last, tow=replace(last.tow, fallen=(*last.tow.fallen, place)))
             if last.tow is not None and 0 <= place < len(last.tow)
             else last
             for last, place in zip(stretches, places, strict=True)

@@ -1,6 +1,7 @@
 """A tow is watched again with boards as they were learned, as if it had been from the beginning."""
 
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 import pytest
@@ -103,12 +104,12 @@ def test_boards_far_off_are_learned_within_minutes_and_the_tow_is_judged(
     assert max(one.rarity for one in compared) < 0.5 * monitor.options.limit
 
 
+@pytest.mark.parametrize(('compared', 'falls', 'minutes'), [(2, 1, 15), (REST + 1, 3, 20)])
 def test_boards_that_were_close_before_a_fall_have_to_be_so_once_more(
-    settings, onset_gear, cut, with_fall
+    settings, onset_gear, cut, with_fall, compared, falls, minutes
 ):
     prior = board_prior(onset_gear)
     right = Knowledge(onset_gear.board.coefficients.array(), np.diag((0.2 * prior.std) ** 2))
-    stretches = cut(16)
 
     def watched(stretches):
         """Whether boards were learned still in each stretch; None where nothing was compared."""
@@ -117,12 +118,14 @@ def test_boards_that_were_close_before_a_fall_have_to_be_so_once_more(
         assert watch.away < CLOSE
         return [None if one.white is None else one.why_not == LEARNS for one in seen]
 
-    usual = watched(stretches)
-    first, last = usual.index(True), len(usual)
-    assert usual[first:] == [True] * REST + [False] * (last - first - REST)
-    fell = watched(with_fall(stretches, first + 2))
-    assert fell[first : first + 2] == [True, True]
-    behind = [one for one in fell[first + 2 :] if one is not None]
+    stretches = cut(minutes)
+    first = next(number for number, last in enumerate(stretches) if last.tow is not None) + 1
+    # While they are learned one fall is enough; later it takes one that the model is begun behind.
+    fell = reduce(with_fall, range(first + compared, first + compared + falls), stretches)
+    found = watched(fell)
+    learned = min(compared, REST)
+    assert found[first : first + compared] == [True] * learned + [False] * (compared - learned)
+    behind = [one for one in found[first + compared :] if one is not None]
     assert behind == [True] * REST + [False] * (len(behind) - REST)
     assert len(behind) > REST
 

@@ -186,8 +186,8 @@ class Watch:
             self.away = float(np.max(np.abs(moved) / model.model_error))
             if self.learns:
                 self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
-        elif self.learns:
-            # The model begins anew: that its boards were close before a fall proves nothing.
+        elif self.learns or self._model.stopped == last.number:
+            # The model may come to rest elsewhere: that boards were close before proves nothing.
             self.close = 0
         return WatchedStretch(last.end_ns, means, model, white, marks, evidence, why_not)
 
