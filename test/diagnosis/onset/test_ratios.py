@@ -11,7 +11,7 @@ from trawl_ros.diagnosis.onset.ratios import NEAR, rarity
 def test_a_ratio_is_as_rare_as_chi_squared(ratio):
     for freedom in (1, 2, 3, 4, 7):
         expected = -chi2.logsf(ratio, freedom) / np.log(10.0)
-        assert rarity(ratio, freedom) == pytest.approx(expected, rel=1e-10, abs=1e-12)
+        assert rarity(ratio, freedom) == pytest.approx(expected, rel=1e-12, abs=1e-15)
 
 
 def test_what_is_rarer_than_the_smallest_number_still_has_its_rarity():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trawl_ros.core.errors import GearError
 from trawl_ros.diagnosis.onset.candidates import candidate_table
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
@@ -106,6 +107,11 @@ def test_plants_have_boards_of_their_own_and_what_is_known_of_them_is_wrong_as_s
     away = [knowledge(record, boards, chance).values - boards for _ in range(300)]
     inside = np.minimum(boards - prior.low, prior.high - boards) > 3.0 * KNOWN * prior.std
     assert np.std(away, axis=0)[inside] == pytest.approx(KNOWN * prior.std[inside], rel=0.15)
+
+
+def test_a_gear_without_boards_is_refused_at_once(pair_file):
+    with pytest.raises(GearError, match='has no boards'):
+        make_trial(str(pair_file), 1, 0, 25.0, clean=True)
 
 
 @pytest.mark.slow

@@ -45,6 +45,8 @@ def command(
 ) -> None:
     """Let effects begin during tows, and count how soon they are found, and what is found without.
 
+    Each tow has boards of its own, drawn from the prior of the gear file.
+
     Writes onset.json, .md and .html. Trials that are in the folder already are not made again, so
     that several shards may share one.
     """

@@ -106,6 +106,15 @@ def draw_windowed(
     """Draw tows until one has a steady window: boards that flutter all the way are towed by nobody,
     and there is nothing to compare with.
 
+    Parameters
+    ----------
+    draw
+        Draws a tow.
+    identify
+        Makes an identification that knows of none.
+    name
+        Of the trial, for errors.
+
     Raises
     ------
     TrawlError

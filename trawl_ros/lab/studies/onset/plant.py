@@ -27,7 +27,17 @@ LEG_MIN = (3.0, 9.0)
 
 
 def knowledge(gear: GearRecord, truth: FloatArray, chance: np.random.Generator) -> Knowledge:
-    """Boards as they are known: the truth, wrong by as much as is stated, within their bounds."""
+    """Boards as they are known: the truth, wrong by as much as is stated, within their bounds.
+
+    Parameters
+    ----------
+    gear
+        Gear whose prior says how large `KNOWN` is.
+    truth
+        Coefficients (12,) of the plant.
+    chance
+        Generator of random numbers.
+    """
     prior = board_prior(gear)
     std = KNOWN * prior.std
     values = truth + std * chance.standard_normal(len(std))
@@ -37,7 +47,19 @@ def knowledge(gear: GearRecord, truth: FloatArray, chance: np.random.Generator) 
 def random_course(
     folder: Path, gear: GearRecord, minutes: float, chance: np.random.Generator
 ) -> Scenario:
-    """Random course, of a plant with the boards of the gear file."""
+    """Random course, of a plant with the boards of the gear file.
+
+    Parameters
+    ----------
+    folder
+        Takes the gear, as ``gear.yaml``, and the scenario.
+    gear
+        Of model and plant.
+    minutes
+        Of the tow.
+    chance
+        Generator of random numbers.
+    """
     write_text(folder / 'gear.yaml', yaml.safe_dump(gear.model_dump(mode='json')))
     length, speed = chance.uniform(*LENGTHS_M), chance.uniform(*SPEEDS_M_S)
     steps: list[dict[str, object]] = []
@@ -67,7 +89,13 @@ def random_course(
 
 
 def with_boards(scenario: Scenario, chance: np.random.Generator) -> Scenario:
-    """The same course, of a plant with boards from the gear file's prior that tow it at rest."""
+    """The same course, of a plant with boards from the gear file's prior that tow it at rest.
+
+    Raises
+    ------
+    TrawlError
+        If none of those drawn tows.
+    """
     states = tuple((command.port_length, command.speed) for _, command in scenario.commands)
     drawn = draw_board(scenario.plant, board_prior(scenario.gear), (states,), chance)
     board = CoefficientsRecord(**dict(zip(COEFFICIENTS, drawn.coefficients.tolist(), strict=True)))

@@ -46,6 +46,7 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
     delays = np.array([_delay(trial) / 60.0 for trial in found])
     right = [abs(_late(trial)) <= NEAR_S for trial in found]
     named = [trial.effect == trial.name or trial.effect in trial.alike for trial in found]
+    half_s = 0.5 * 60.0 * BEHIND_MIN
     rows = [
         rate(
             'effects that are detected',
@@ -54,7 +55,7 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
         ),
         rate(
             f'the same, of tows judged for half of the {BEHIND_MIN:g} min behind its beginning',
-            [trial.raised_s is not None for trial in hidden if trial.behind_s >= 30.0 * BEHIND_MIN],
+            [trial.raised_s is not None for trial in hidden if trial.behind_s >= half_s],
         ),
         _quantile('delay, median', delays, 0.5, 5.0, 'delay_median'),
         _quantile('delay, 90 %', delays, 0.9, 15.0, 'delay_90'),

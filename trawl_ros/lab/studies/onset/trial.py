@@ -135,7 +135,14 @@ def make_trial(
         Of the tow.
     picture
         PNG file into which the tow is drawn as it was watched; None for none.
+
+    Raises
+    ------
+    GearError
+        If the gear cannot be read, or has no boards.
     """
+    record = coarse_gear(gear)
+    record.require_boards('whose tow could be watched')
     chance = np.random.default_rng([seed, number, int(clean)])
     names = list(STEADY_SIZES)
     effect = '' if clean else names[number % len(names)]
@@ -149,7 +156,6 @@ def make_trial(
     keeper = CourseKeeper()
     spent = 0.0
     with TemporaryDirectory() as folder:
-        record = coarse_gear(gear)
         scenario = random_course(Path(folder), record, minutes, chance)
         believed = load_gear(Path(folder) / 'gear.yaml')
         try:
@@ -174,7 +180,8 @@ def make_trial(
     later = [one for one in first.values() if one.raised_ns / SECOND >= from_s]
     trial = replace(
         trial, behind_s=_judged_behind(course, from_s), false=len(early), seconds=spent,
-        watched_s=30.0 * monitor.watched, unwatched_s=30.0 * monitor.unwatched,
+        watched_s=LIVE.stretch_s * monitor.watched,
+        unwatched_s=LIVE.stretch_s * monitor.unwatched,
         rarity=float(np.nanmax(course.rarities, initial=0.0)),
     )  # fmt: skip
     if not later:
