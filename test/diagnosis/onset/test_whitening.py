@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.diagnosis.onset import whitening
 from trawl_ros.diagnosis.onset.candidates import WATCHED, candidate_table
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.ratios import RatioBank
+from trawl_ros.diagnosis.onset.ratios import FEWEST, MOVING, RatioBank, rarity
 from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
 from trawl_ros.diagnosis.onset.stretches import LIVE, CounterLeap, LastStretch
 from trawl_ros.diagnosis.onset.towing import TowedStretch
@@ -40,8 +40,10 @@ def responses(by_log=0.0):
     )
 
 
-def watched(size, stretches=12):
-    """Innovations, marks and evidence of a tension cell that reads too much from the start."""
+def watched(size, stretches=12, begin=0, winches=()):
+    """Innovations, marks and evidence of a tension cell that begins to read too much, and winches
+    that run in some stretches.
+    """
     nothing = responses()
     filtered = WhiteningFilter(KNOWN, nothing, 1.0)
     bank = RatioBank(TABLE, stretches + 1, filtered.size)
@@ -52,10 +54,13 @@ def watched(size, stretches=12):
         VALUES, by_coefficients, np.zeros((K, len(INPUT_ERRORS))), by_values,
         Situation((400.0, 400.0, 2.2)),
     )  # fmt: skip
-    means = VALUES + size * by_values[:, 0]
     seen = []
     for number in range(stretches):
-        last = LastStretch(number, number, number + 1, log_std=0.01, leaps=(STEADY, STEADY))
+        means = VALUES + (number >= begin) * size * by_values[:, 0]
+        last = LastStretch(
+            number, number, number + 1, log_std=0.01, leaps=(STEADY, STEADY),
+            moves=(number in winches, False),
+        )  # fmt: skip
         white = filtered.step(means, NOISE, towed, np.zeros(12), last, np.zeros((K, 6)))
         lasting = np.repeat(by_values[None], stretches + 1, axis=0)
         marks = bank.step(filtered, white, lasting)
@@ -72,6 +77,22 @@ def test_innovations_are_the_marks_of_what_made_them_and_never_beyond_the_edge(s
         assert np.abs(innovations).max() <= MOST + 1e-9
     told = evidence['tension_cell']
     assert told.ratio == max(one.ratio for one in evidence.values())
+
+
+def test_more_is_asked_for_of_an_onset_near_winches_that_run():
+    size, begin = 15.0 * NOISE[TENSIONS[0]], 6
+    evidence = {
+        winches: watched(size, begin=begin, winches=winches)[1]['tension_cell']
+        for winches in ((), (begin,), (begin + FEWEST,), (begin + FEWEST + 1,))
+    }
+    still = evidence[()]
+    freedom = len(TABLE.candidates[still.candidate].columns)
+    assert still.age == 12 - 1 - begin
+    assert still.rarity == pytest.approx(rarity(still.ratio, freedom))
+    for winches, one in evidence.items():
+        asked = rarity(one.ratio, freedom) - one.rarity
+        near = any(begin <= number <= begin + FEWEST for number in winches)
+        assert asked == pytest.approx(MOVING if near else 0.0, abs=0.5), winches
 
 
 def innovations(known, by_log=0.0, noise=1.0, log=0.0, stretches=200):

@@ -20,7 +20,6 @@ from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch, StretchCutter
 from trawl_ros.diagnosis.onset.towing import WatchedGear
 from trawl_ros.diagnosis.onset.watch import (
-    CLOSE,
     REST,
     Watch,
     WatchedStretch,
@@ -44,6 +43,11 @@ BEFORE, QUIET = FEWEST - 1, 8
 """Stretches up to the newest, behind the first that a model begun anew with the next is towed
 along; and the last of those before, that first among them, in which nothing may have moved: the
 model would begin in an equilibrium while the gear was on its way to one."""
+
+FAR = 4.0
+"""Change of a channel by what boards were learned to be, in the model's own error, beyond which the
+tow is watched again with these: somewhat before nothing that begins is looked at (`watch.CLOSE`).
+"""
 
 AGAIN, MOST_KEPT, AHEAD, HURRIED = 60, 120, 4, 8
 """Stretches that are watched again, at least where the tow is that long; that are kept, at most;
@@ -257,7 +261,7 @@ class OnsetMonitor:
         """Watch with the boards as they were learned; None where there is no reason for one."""
         watch, learned = self._watch, self._watch.learned
         begun = self._rarity > AT_REST
-        if learned is None or begun or watch.away < CLOSE or watch.number < self._not_before:
+        if learned is None or begun or watch.away < FAR or watch.number < self._not_before:
             return None
         resting = [place for place, kept in enumerate(self._kept) if kept.rests]
         enough = [place for place in resting if place <= len(self._kept) - AGAIN]
@@ -283,7 +287,7 @@ class OnsetMonitor:
         hurried = self._watch.learns and not self._settings.learning
         if self._watch.learns:
             # That boards are close to what they were learned from proves nothing.
-            other.close = 0
+            other.close, other.found = 0, False
         self._watch, self._next = other, None
         self._settle(other, 0 if hurried else REST)
 

@@ -17,6 +17,11 @@ from trawl_ros.diagnosis.onset.whitening import Whitened, WhiteningFilter
 FEWEST = 2
 """Stretches since an onset, at least, before it counts."""
 
+MOVING = 6.0
+"""Rarity that is asked for beyond the limit of an onset while winches or speed change, which fades
+as the model's error does (`WhiteningFilter.unrest`): what boards near their stall do then is not
+within the derivatives of a course, and looks like something that begins."""
+
 NEAR = float(chdtri(1, 0.05))
 """Difference from the largest ratio that 95 % of the likelihood do not exclude."""
 
@@ -34,7 +39,8 @@ class OnsetEvidence:
     ratio
         Twice the logarithm of the likelihood ratio.
     rarity
-        -log10 of the probability of as much at one onset without any effect.
+        -log10 of the probability of as much at one onset without any effect, at the onset at which
+        it is largest less what is asked for beyond the limit (`MOVING`).
     values, covariance
         Departures (m,) from neutral, and their covariance (m, m).
     ages : (n,) int array
@@ -75,17 +81,18 @@ class RatioBank:
         p = len(table.parameters)
         self._means = np.zeros((window, size, p))
         self.products, self.squares = np.zeros((window, p)), np.zeros((window, p, p))
-        self.known = 0
+        self._looked_at, self._asked = np.zeros(window, bool), np.zeros(window)
 
     def forget(self) -> None:
         """Discard all onsets so far."""
         for array in (self._means, self.products, self.squares):
             array[:] = 0.0
-        self.known = 0
+        self._looked_at[:] = False
 
     def step(
-        self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None
-    ) -> FloatArray | None:
+        self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None,
+        another: bool = True,
+    ) -> FloatArray | None:  # fmt: skip
         """Advance by a stretch, in which another onset may lie.
 
         Parameters
@@ -96,6 +103,8 @@ class RatioBank:
             Its innovations; None where there are none.
         signatures : (w, k, p) array
             Of the stretch, by age.
+        another
+            False where an onset in this stretch is not looked at.
 
         Returns
         -------
@@ -105,7 +114,15 @@ class RatioBank:
         for array in (self._means, self.products, self.squares):
             array[1:] = array[:-1].copy()
             array[0] = 0.0
-        self.known = min(self.known + 1, self._window)
+        for told, newest in (
+            (self._looked_at, another),
+            (self._asked, MOVING * whitening.unrest),
+        ):
+            told[1:] = told[:-1].copy()
+            told[0] = newest
+        if whitening.unrest == 1.0:
+            # An onset just before is told by what moved alone.
+            self._asked[: 1 + FEWEST] = MOVING
         means = np.moveaxis(self._means, 1, 0)
         whitening.advance(means)
         if white is None or signatures is None:
@@ -120,7 +137,7 @@ class RatioBank:
 
     def best(self) -> list[OnsetEvidence]:
         """Evidence for each candidate at its likeliest onset; the rarest first."""
-        ages = np.arange(FEWEST - 1, self.known)
+        ages = FEWEST - 1 + np.flatnonzero(self._looked_at[FEWEST - 1 :])
         if not len(ages):
             return []
         found = []
@@ -138,10 +155,11 @@ class RatioBank:
             )
             best = int(np.argmax(ratios))
             near = ages[ratios >= ratios[best] - NEAR]
+            worth = ratios - 2.0 * np.log(10.0) * self._asked[ages]
             found.append(
                 OnsetEvidence(
                     number, int(ages[best]), float(ratios[best]),
-                    rarity(ratios[best], len(own)),
+                    rarity(np.max(worth), len(own)),
                     values[best], np.linalg.inv(informed[best]), near,
                 )
             )  # fmt: skip

@@ -22,13 +22,17 @@ from trawl_ros.diagnosis.onset.whitening import (
 )
 from trawl_ros.solver.stepper import StepFailed
 
-CLOSE, REST = 8.0, 4
+CLOSE, REST = 6.0, 4
 """Change of a channel by what coefficients were learned to be, in the model's own error, within
-which boards are found once, through so many stretches in a row, before anything is judged:
-derivatives of boards farther off are of another gear. Beyond it an effect may lead later."""
+which boards have to be found through so many stretches in a row before anything is judged, and
+before each onset that is looked at: derivatives of boards farther off are of another gear. Behind
+an onset an effect may lead beyond it."""
 
 LEARNS = 'boards are learned first, for what is known of them is too far off, or too little'
 """Reason for which nothing is judged."""
+
+FAR_OFF = 'boards were learned to be others than those that the model is towed with'
+"""Reason for which nothing that begins is looked at."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class WatchedStretch:
     """Stretch as it was watched: the readings beside the model's, and the evidence after it.
 
     ``marks`` (w, r, p) are what the candidates would leave in the innovations, by age.
-    ``why_not`` is the reason where nothing was judged.
+    ``why_not`` is the reason where nothing that begins in it is judged.
     """
 
     end_ns: int
@@ -83,6 +87,7 @@ class WatchState:
     absorbed: tuple[_Absorbed, ...] = ()
     taken: int = 0
     close: int = 0
+    found: bool = False
     compared: int = 0
 
 
@@ -105,8 +110,11 @@ class Watch:
         when the model was towed last.
     number
         Of the stretch that was watched last.
-    close, compared
-        Stretches up to now in which boards were close, up to `REST`; and that were compared.
+    close, found
+        Stretches up to the newest in which boards were close, up to `REST`; and whether they were
+        through so many.
+    compared
+        Stretches that were compared.
     refused
         True if nothing was ever compared, and the newest stretch cannot be: the model has no such
         tow with these boards.
@@ -127,14 +135,16 @@ class Watch:
         self._filter: WhiteningFilter | None = None
         self._responses: OnsetResponses | None = None
         self._absorbed, self._taken = self.begin.absorbed, self.begin.taken
-        self.close, self.compared = self.begin.close, self.begin.compared
+        self.close, self.found = self.begin.close, self.begin.found
+        self.compared = self.begin.compared
         self._moving, self.refused = (False, False), False
 
     @property
     def state(self) -> WatchState:
         """State after the stretches so far."""
         known = self.begin.filter if self._filter is None else self._filter.state
-        return WatchState(known, self._absorbed, self._taken, self.close, self.compared)
+        own = self._absorbed, self._taken, self.close, self.found, self.compared
+        return WatchState(known, *own)
 
     @property
     def learned(self) -> FloatArray | None:
@@ -144,7 +154,7 @@ class Watch:
     @property
     def learns(self) -> bool:
         """True until boards have been close to those that derivatives are of."""
-        return self.close < REST or self.compared < self.settings.learning
+        return not self.found or self.compared < self.settings.learning
 
     def advance(self, last: LastStretch) -> WatchedStretch:
         """Watch the next stretch."""
@@ -172,7 +182,8 @@ class Watch:
         if lasting is not None:
             ages = np.arange(self.settings.window)
             signatures = self._responses.since(lasting, ages, self._growing)
-        marks = self._bank.step(self._filter, white, signatures)
+        close = self.close == REST
+        marks = self._bank.step(self._filter, white, signatures, close)
         evidence: tuple[OnsetEvidence, ...] = ()
         if white is not None and self.learns:
             # An onset that was seen by other boards is none.
@@ -180,15 +191,16 @@ class Watch:
             why_not = LEARNS
         elif white is not None:
             evidence = tuple(self._bank.best())
+            why_not = '' if close else FAR_OFF
         if model is not None and white is not None:
             self.compared += 1
             moved = model.by_coefficients @ (self._filter.coefficients - self.coefficients)
             self.away = float(np.max(np.abs(moved) / model.model_error))
-            if self.learns:
-                self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
+            self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
+            self.found = self.found or self.close == REST
         elif self.learns or self._model.stopped == last.number:
             # The model may come to rest elsewhere: that boards were close before proves nothing.
-            self.close = 0
+            self.close, self.found = 0, False
         return WatchedStretch(last.end_ns, means, model, white, marks, evidence, why_not)
 
     def _begin(self) -> None:

@@ -116,6 +116,11 @@ class WhiteningFilter:
         Factor on the std of all errors that are stated.
     state
         To begin in; by default nothing is known but ``known``.
+
+    Attributes
+    ----------
+    unrest
+        1 while winches or speed change; it fades within `UNREST_S`.
     """
 
     def __init__(
@@ -138,15 +143,15 @@ class WhiteningFilter:
         self.variance[self._absorbed, self._absorbed] = 0.0
         for part in self._leaps:
             self.variance[part, part] = 0.0
-        self._unrest = 0.0
+        self.unrest = 0.0
         if state is not None:
             self.mean, self.variance = state.mean.copy(), state.variance.copy()
-            self._unrest = state.unrest
+            self.unrest = state.unrest
 
     @property
     def state(self) -> FilterState:
         """State as it is."""
-        return FilterState(self.mean.copy(), self.variance.copy(), self._unrest)
+        return FilterState(self.mean.copy(), self.variance.copy(), self.unrest)
 
     @cached_property
     def _starts(self) -> tuple[int, ...]:
@@ -236,7 +241,7 @@ class WhiteningFilter:
         self.advance(self.mean)
         self._spread(last.log_std)
         fading = np.exp(-LIVE.stretch_s / UNREST_S)
-        self._unrest = 1.0 if any(last.moves) else self._unrest * float(fading)
+        self.unrest = 1.0 if any(last.moves) else self.unrest * float(fading)
         for number, leap in enumerate(last.leaps):
             self._leap(number, leap)
         if towed is None:
@@ -251,7 +256,7 @@ class WhiteningFilter:
         least = [self._least.get(name, 0.0) for name in WATCHED]
         scatter = np.maximum(_by_channel(self._sizes.noise) * noise, least)
         drift = _by_channel(self._sizes.drift) * own
-        leaning = LEANING * self._unrest ** (UNREST_S / LEANING_S) * towed.model_error
+        leaning = LEANING * self.unrest ** (UNREST_S / LEANING_S) * towed.model_error
         white = (self._inflation**2 * (scatter**2 + drift**2) + leaning**2)[rows]
         root = np.linalg.cholesky(model @ self.variance @ model.T + np.diag(white))
         # A reading far off is one at the edge of errors that large: in the filter and in all that
@@ -321,7 +326,7 @@ class WhiteningFilter:
         log = CHANNELS['speed'].bias_std(towed.situation.speed)
         sizes = np.array([COUNTER_STD_M, COUNTER_STD_M, self._sizes.log * STATE_SHARE * log])
         groups, apart = np.zeros((2, k, len(GROUPS)))
-        worse = 1.0 + (RUNNING - 1.0) * self._unrest
+        worse = 1.0 + (RUNNING - 1.0) * self.unrest
         errors_of_model = worse * _by_channel(self._sizes.model) * towed.model_error
         moved = towed.by_coefficients @ (self.coefficients - linearised_at)
         still = np.einsum(
