@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
-from trawl_ros.diagnosis.onset.monitor import BEFORE, OnsetMonitor
+from trawl_ros.diagnosis.onset.monitor import BEFORE, NOT_CLOSE, OnsetMonitor
 from trawl_ros.diagnosis.onset.stretches import LIVE, StretchCutter
 from trawl_ros.diagnosis.onset.watch import LEARNS, REST
 from trawl_ros.effects.registry import catalogue
@@ -49,6 +49,21 @@ def test_cells_that_begin_to_show_too_much_are_found_with_time_and_size(monitor,
     more = onset_samples(15, BEGIN_S)
     again = [one for sample in more if sample.stamp > 720 * SECOND for one in monitor.feed(sample)]
     assert not again, 'what was dismissed is not raised anew'
+
+
+def test_evidence_by_boards_that_are_not_close_is_confirmed_by_those_as_learned_before_it_is_raised(
+    monitor, onset_samples, monkeypatch
+):
+    told, findings = [], []
+    for sample in onset_samples(14, BEGIN_S):
+        if sample.stamp > BEGIN_S * SECOND:
+            # From here on no boards are close.
+            monkeypatch.setattr('trawl_ros.diagnosis.onset.monitor.CLOSE', 0.0)
+        findings += monitor.feed(sample)
+        told.append((bool(findings), monitor.why_not))
+    assert (False, NOT_CLOSE) in told
+    assert (True, NOT_CLOSE) not in told
+    assert abs(findings[0].onset_ns - BEGIN_S * SECOND) < 90.0 * SECOND
 
 
 @pytest.mark.slow

@@ -11,15 +11,7 @@ from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.onset.stretches import StretchCutter
 from trawl_ros.diagnosis.onset.towing import WatchedGear
-from trawl_ros.diagnosis.onset.watch import (
-    CLOSE,
-    FAR_OFF,
-    LEARNS,
-    REST,
-    Watch,
-    WatchSettings,
-    WatchState,
-)
+from trawl_ros.diagnosis.onset.watch import CLOSE, LEARNS, REST, Watch, WatchSettings
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
@@ -55,13 +47,6 @@ def far_off(onset_gear):
     std = 0.2 * board_prior(onset_gear).std
     wrong = onset_gear.board.coefficients.array() + std * np.resize([1.0, -1.0], len(std))
     return Knowledge(wrong, np.diag(std**2))
-
-
-@pytest.fixture
-def right(onset_gear):
-    """Boards as they are, known as well."""
-    std = 0.2 * board_prior(onset_gear).std
-    return Knowledge(onset_gear.board.coefficients.array(), np.diag(std**2))
 
 
 @pytest.fixture
@@ -121,8 +106,11 @@ def test_boards_far_off_are_learned_within_minutes_and_the_tow_is_judged(
 
 @pytest.mark.parametrize(('compared', 'falls', 'minutes'), [(2, 1, 15), (REST + 1, 3, 20)])
 def test_boards_that_were_close_before_a_fall_have_to_be_so_once_more(
-    settings, right, cut, with_fall, compared, falls, minutes
+    settings, onset_gear, cut, with_fall, compared, falls, minutes
 ):
+    prior = board_prior(onset_gear)
+    right = Knowledge(onset_gear.board.coefficients.array(), np.diag((0.2 * prior.std) ** 2))
+
     def watched(stretches):
         """Whether boards were learned still in each stretch; None where nothing was compared."""
         watch = Watch(settings, right, right.values)
@@ -140,34 +128,6 @@ def test_boards_that_were_close_before_a_fall_have_to_be_so_once_more(
     behind = [one for one in found[first + compared :] if one is not None]
     assert behind == [True] * REST + [False] * (len(behind) - REST)
     assert len(behind) > REST
-
-
-def test_an_onset_is_looked_at_behind_stretches_with_boards_close_by_alone(
-    settings, right, far_off, cut
-):
-    *stretches, newest = cut(10)
-
-    def watched(known):
-        """Watch that has learned its boards before, and the stretches that it compared."""
-        watch = Watch(settings, known, known.values, WatchState(found=True))
-        seen = [watch.advance(last) for last in stretches]
-        return watch, [one for one in seen if one.white is not None]
-
-    watch, seen = watched(far_off)
-    assert watch.away > CLOSE
-    assert {(one.why_not, one.evidence) for one in seen} == {(FAR_OFF, ())}
-    watch, seen = watched(right)
-    behind = len(seen) - REST
-    assert behind > 1
-    assert [one.why_not for one in seen] == [FAR_OFF] * REST + [''] * behind
-    # Of an onset two stretches tell, at least.
-    assert [bool(one.evidence) for one in seen] == [False] * (REST + 1) + [True] * (behind - 1)
-    # What began before is followed where boards seem to be others since.
-    watch.close = 0
-    since = watch.advance(newest)
-    assert since.why_not == FAR_OFF
-    assert {1 + one.age for one in since.evidence} <= set(range(2, behind + 2))
-    assert since.evidence
 
 
 def test_boards_known_by_the_gear_file_alone_are_learned_for_longer(

@@ -39,7 +39,7 @@ class CourseKeeper:
         shown, white = np.full(len(WATCHED), np.nan), stretch.white
         if white is not None:
             shown[white.rows] = white.whitened(white.residual)
-        judged = white is not None and (not stretch.why_not or stretch.evidence)
+        judged = white is not None and not stretch.why_not
         rarity = stretch.rarity if judged else np.nan
         self._rows.append((stretch.end_ns, shown, rarity))
 

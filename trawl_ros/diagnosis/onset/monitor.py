@@ -20,6 +20,7 @@ from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch, StretchCutter
 from trawl_ros.diagnosis.onset.towing import WatchedGear
 from trawl_ros.diagnosis.onset.watch import (
+    CLOSE,
     REST,
     Watch,
     WatchedStretch,
@@ -36,18 +37,13 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 
-AT_REST = 5.0
-"""Rarity beyond which a tow is not watched again, for something may have begun."""
+NOT_CLOSE = 'something may have begun, or boards are others: the tow is watched again first'
+"""Reason for which no finding is raised of evidence beyond the limit."""
 
 BEFORE, QUIET = FEWEST - 1, 8
 """Stretches up to the newest, behind the first that a model begun anew with the next is towed
 along; and the last of those before, that first among them, in which nothing may have moved: the
 model would begin in an equilibrium while the gear was on its way to one."""
-
-FAR = 4.0
-"""Change of a channel by what boards were learned to be, in the model's own error, beyond which the
-tow is watched again with these: somewhat before nothing that begins is looked at (`watch.CLOSE`).
-"""
 
 AGAIN, MOST_KEPT, AHEAD, HURRIED = 60, 120, 4, 8
 """Stretches that are watched again, at least where the tow is that long; that are kept, at most;
@@ -173,7 +169,7 @@ class OnsetMonitor:
         self._kept: deque[_Kept] = deque(maxlen=MOST_KEPT)
         self._moved: deque[bool] = deque(maxlen=QUIET + BEFORE)
         self._rarity, self._part, self._not_before = 0.0, 1.0, 0
-        self._owed = False
+        self._owed = self._confirmed = False
         self.watched = self.unwatched = 0
         self.why_not = 'the tow has just begun'
 
@@ -248,20 +244,23 @@ class OnsetMonitor:
         if self._next is None:
             return
         behind = [kept for kept in self._kept if kept.last.number > self._next.number]
-        pace = HURRIED if self._watch.learns else AHEAD
+        limit, rarity = self.options.limit, 0.0
+        pace = HURRIED if self._watch.learns or self._rarity > limit else AHEAD
         for kept in behind[:pace]:
             stretch = self._next.advance(kept.last)
+            rarity = stretch.rarity
             if kept.predicted and stretch.towed is None:
                 self._refuse()
                 return
         if len(behind) <= pace:
+            # Of boards a part of the way to those as learned the same evidence proves nothing.
+            self._confirmed = rarity > limit and self._part == 1.0
             self._compare(self._next)
 
     def _again(self) -> Watch | None:
         """Watch with the boards as they were learned; None where there is no reason for one."""
         watch, learned = self._watch, self._watch.learned
-        begun = self._rarity > AT_REST
-        if learned is None or begun or watch.away < FAR or watch.number < self._not_before:
+        if learned is None or watch.away < CLOSE or watch.number < self._not_before:
             return None
         resting = [place for place, kept in enumerate(self._kept) if kept.rests]
         enough = [place for place in resting if place <= len(self._kept) - AGAIN]
@@ -287,7 +286,7 @@ class OnsetMonitor:
         hurried = self._watch.learns and not self._settings.learning
         if self._watch.learns:
             # That boards are close to what they were learned from proves nothing.
-            other.close, other.found = 0, False
+            other.close = 0
         self._watch, self._next = other, None
         self._settle(other, 0 if hurried else REST)
 
@@ -299,8 +298,7 @@ class OnsetMonitor:
         before, limit = self.open, self.options.limit
         rarest = evidence[0]
         if before is None:
-            if rarest.rarity > limit:
-                yield self._raise(last, evidence)
+            yield from self._raise(last, evidence)
             return
         if rarest.rarity < 0.5 * limit:
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
@@ -309,8 +307,7 @@ class OnsetMonitor:
         if found.onset_ns >= before.raised_ns:
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
-            if rarest.rarity > limit:
-                yield self._raise(last, evidence)
+            yield from self._raise(last, evidence)
             return
         age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
         if age >= self.options.settled:
@@ -318,10 +315,16 @@ class OnsetMonitor:
             self._take_along(found)
         yield self._put(found)
 
-    def _raise(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Finding:
-        self._newest += 1
+    def _raise(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
         now, limit = last.end_ns, self.options.limit
-        return self._put(finding(self.table, self._newest, now, evidence, now, limit))
+        if evidence[0].rarity <= limit:
+            return
+        if self._watch.away >= CLOSE and not self._confirmed:
+            # Where the gear of other boards would go on is as much evidence.
+            self.why_not = NOT_CLOSE
+            return
+        self._newest, self._confirmed = self._newest + 1, False
+        yield self._put(finding(self.table, self._newest, now, evidence, now, limit))
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found along as known to be there, and watch for what comes beside it."""

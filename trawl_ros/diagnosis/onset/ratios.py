@@ -81,18 +81,18 @@ class RatioBank:
         p = len(table.parameters)
         self._means = np.zeros((window, size, p))
         self.products, self.squares = np.zeros((window, p)), np.zeros((window, p, p))
-        self._looked_at, self._asked = np.zeros(window, bool), np.zeros(window)
+        self._asked = np.zeros(window)
+        self.known = 0
 
     def forget(self) -> None:
         """Discard all onsets so far."""
         for array in (self._means, self.products, self.squares):
             array[:] = 0.0
-        self._looked_at[:] = False
+        self.known = 0
 
     def step(
-        self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None,
-        another: bool = True,
-    ) -> FloatArray | None:  # fmt: skip
+        self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None
+    ) -> FloatArray | None:
         """Advance by a stretch, in which another onset may lie.
 
         Parameters
@@ -103,26 +103,20 @@ class RatioBank:
             Its innovations; None where there are none.
         signatures : (w, k, p) array
             Of the stretch, by age.
-        another
-            False where an onset in this stretch is not looked at.
 
         Returns
         -------
         array or None
             Marks (w, r, p) of the signatures in the innovations, of unit size; None without any.
         """
-        for array in (self._means, self.products, self.squares):
+        for array in (self._means, self.products, self.squares, self._asked):
             array[1:] = array[:-1].copy()
             array[0] = 0.0
-        for told, newest in (
-            (self._looked_at, another),
-            (self._asked, MOVING * whitening.unrest),
-        ):
-            told[1:] = told[:-1].copy()
-            told[0] = newest
+        self._asked[0] = MOVING * whitening.unrest
         if whitening.unrest == 1.0:
             # An onset just before is told by what moved alone.
             self._asked[: 1 + FEWEST] = MOVING
+        self.known = min(self.known + 1, self._window)
         means = np.moveaxis(self._means, 1, 0)
         whitening.advance(means)
         if white is None or signatures is None:
@@ -137,7 +131,7 @@ class RatioBank:
 
     def best(self) -> list[OnsetEvidence]:
         """Evidence for each candidate at its likeliest onset; the rarest first."""
-        ages = FEWEST - 1 + np.flatnonzero(self._looked_at[FEWEST - 1 :])
+        ages = np.arange(FEWEST - 1, self.known)
         if not len(ages):
             return []
         found = []

@@ -24,15 +24,12 @@ from trawl_ros.solver.stepper import StepFailed
 
 CLOSE, REST = 6.0, 4
 """Change of a channel by what coefficients were learned to be, in the model's own error, within
-which boards have to be found through so many stretches in a row before anything is judged, and
-before each onset that is looked at: derivatives of boards farther off are of another gear. Behind
-an onset an effect may lead beyond it."""
+which boards are found once, through so many stretches in a row, before anything is judged:
+derivatives of boards farther off are of another gear. Beyond it an effect may lead later; what is
+found then has to be so by the boards as they were learned too."""
 
 LEARNS = 'boards are learned first, for what is known of them is too far off, or too little'
 """Reason for which nothing is judged."""
-
-FAR_OFF = 'boards were learned to be others than those that the model is towed with'
-"""Reason for which nothing that begins is looked at."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +37,7 @@ class WatchedStretch:
     """Stretch as it was watched: the readings beside the model's, and the evidence after it.
 
     ``marks`` (w, r, p) are what the candidates would leave in the innovations, by age.
-    ``why_not`` is the reason where nothing that begins in it is judged.
+    ``why_not`` is the reason where nothing was judged.
     """
 
     end_ns: int
@@ -87,7 +84,6 @@ class WatchState:
     absorbed: tuple[_Absorbed, ...] = ()
     taken: int = 0
     close: int = 0
-    found: bool = False
     compared: int = 0
 
 
@@ -110,11 +106,8 @@ class Watch:
         when the model was towed last.
     number
         Of the stretch that was watched last.
-    close, found
-        Stretches up to the newest in which boards were close, up to `REST`; and whether they were
-        through so many.
-    compared
-        Stretches that were compared.
+    close, compared
+        Stretches up to now in which boards were close, up to `REST`; and that were compared.
     refused
         True if nothing was ever compared, and the newest stretch cannot be: the model has no such
         tow with these boards.
@@ -135,16 +128,14 @@ class Watch:
         self._filter: WhiteningFilter | None = None
         self._responses: OnsetResponses | None = None
         self._absorbed, self._taken = self.begin.absorbed, self.begin.taken
-        self.close, self.found = self.begin.close, self.begin.found
-        self.compared = self.begin.compared
+        self.close, self.compared = self.begin.close, self.begin.compared
         self._moving, self.refused = (False, False), False
 
     @property
     def state(self) -> WatchState:
         """State after the stretches so far."""
         known = self.begin.filter if self._filter is None else self._filter.state
-        own = self._absorbed, self._taken, self.close, self.found, self.compared
-        return WatchState(known, *own)
+        return WatchState(known, self._absorbed, self._taken, self.close, self.compared)
 
     @property
     def learned(self) -> FloatArray | None:
@@ -154,7 +145,7 @@ class Watch:
     @property
     def learns(self) -> bool:
         """True until boards have been close to those that derivatives are of."""
-        return not self.found or self.compared < self.settings.learning
+        return self.close < REST or self.compared < self.settings.learning
 
     def advance(self, last: LastStretch) -> WatchedStretch:
         """Watch the next stretch."""
@@ -182,8 +173,7 @@ class Watch:
         if lasting is not None:
             ages = np.arange(self.settings.window)
             signatures = self._responses.since(lasting, ages, self._growing)
-        close = self.close == REST
-        marks = self._bank.step(self._filter, white, signatures, close)
+        marks = self._bank.step(self._filter, white, signatures)
         evidence: tuple[OnsetEvidence, ...] = ()
         if white is not None and self.learns:
             # An onset that was seen by other boards is none.
@@ -191,16 +181,15 @@ class Watch:
             why_not = LEARNS
         elif white is not None:
             evidence = tuple(self._bank.best())
-            why_not = '' if close else FAR_OFF
         if model is not None and white is not None:
             self.compared += 1
             moved = model.by_coefficients @ (self._filter.coefficients - self.coefficients)
             self.away = float(np.max(np.abs(moved) / model.model_error))
-            self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
-            self.found = self.found or self.close == REST
+            if self.learns:
+                self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
         elif self.learns or self._model.stopped == last.number:
             # The model may come to rest elsewhere: that boards were close before proves nothing.
-            self.close, self.found = 0, False
+            self.close = 0
         return WatchedStretch(last.end_ns, means, model, white, marks, evidence, why_not)
 
     def _begin(self) -> None:
