@@ -14,6 +14,8 @@ from trawl_ros.diagnosis.onset.watch import LEARNS, REST
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
+from trawl_ros.messages.diagnostics import WARN
+from trawl_ros.nodes.workers.finding_status import onset_watch_status
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import WinchSample
 
@@ -60,9 +62,10 @@ def test_evidence_by_boards_that_are_not_close_is_confirmed_by_those_as_learned_
             # From here on no boards are close.
             monkeypatch.setattr('trawl_ros.diagnosis.onset.monitor.CLOSE', 0.0)
         findings += monitor.feed(sample)
-        told.append((bool(findings), monitor.why_not))
-    assert (False, NOT_CLOSE) in told
-    assert (True, NOT_CLOSE) not in told
+        told.append((bool(findings), onset_watch_status(monitor, '')))
+    withheld = {status.level for _, status in told if status.message == NOT_CLOSE}
+    assert withheld == {WARN}
+    assert not [status for found, status in told if found and status.message == NOT_CLOSE]
     assert abs(findings[0].onset_ns - BEGIN_S * SECOND) < 90.0 * SECOND
 
 

@@ -130,6 +130,8 @@ class OnsetMonitor:
         Numbers of stretches that were judged, and that could not be.
     why_not
         Reason why the newest stretch was not judged; empty where it was.
+    withheld
+        Reason why evidence beyond the limit raises nothing yet; empty where there is none.
     """
 
     def __init__(
@@ -153,7 +155,7 @@ class OnsetMonitor:
         self._settings = WatchSettings(watched, self.table, own.window, own.inflation, learning)
         self._depth = build_water(gear).depth
         self._on_stretch = on_stretch
-        self.why_not = ''
+        self.why_not = self.withheld = ''
         self.findings: dict[int, Finding] = {}
         self._newest = last_number
         self.reset()
@@ -171,7 +173,7 @@ class OnsetMonitor:
         self._rarity, self._part, self._not_before = 0.0, 1.0, 0
         self._owed = self._confirmed = False
         self.watched = self.unwatched = 0
-        self.why_not = 'the tow has just begun'
+        self.why_not, self.withheld = 'the tow has just begun', ''
 
     def feed(self, sample: Sample) -> list[Finding]:
         """Take a sample; return findings that are new or have changed."""
@@ -204,7 +206,7 @@ class OnsetMonitor:
         before = self._watch.state
         stretch = self._watch.advance(last)
         self._keep(last, before, stretch)
-        self.why_not, self._rarity = stretch.why_not, stretch.rarity
+        self.why_not, self.withheld, self._rarity = stretch.why_not, '', stretch.rarity
         if stretch.white is None or stretch.why_not:
             self.unwatched += 1
         else:
@@ -318,10 +320,11 @@ class OnsetMonitor:
     def _raise(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
         now, limit = last.end_ns, self.options.limit
         if evidence[0].rarity <= limit:
+            self._confirmed = False
             return
         if self._watch.away >= CLOSE and not self._confirmed:
             # Where the gear of other boards would go on is as much evidence.
-            self.why_not = NOT_CLOSE
+            self.withheld = NOT_CLOSE
             return
         self._newest, self._confirmed = self._newest + 1, False
         yield self._put(finding(self.table, self._newest, now, evidence, now, limit))

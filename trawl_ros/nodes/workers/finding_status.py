@@ -105,6 +105,8 @@ def onset_watch_status(monitor: 'OnsetMonitor', trouble: str) -> Status:
         return Status('onset', ERROR, trouble, values)
     if (found := monitor.open) is not None:
         return Status('onset', WARN, found.sentence(), values)
+    if monitor.withheld:
+        return Status('onset', WARN, monitor.withheld, values)
     if monitor.why_not:
         return Status('onset', OK, f'not watching: {monitor.why_not}', values)
     return Status('onset', OK, 'watching', values)
