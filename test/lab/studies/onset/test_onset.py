@@ -20,9 +20,10 @@ from trawl_ros.lab.studies.onset.trial import Beginning, OnsetTrial, make_trial
 from trawl_ros.records.observables import OBSERVABLES
 
 FOUND = OnsetTrial(
-    0, 'kite', 0.35, 900.0, 960.0, 930.0, 'kite', (), 20.0, 0, 1800.0, 330.0, 600.0, 20.0
+    0, 'kite', 0.35, 900.0, 960.0, 930.0, 'kite', (), 20.0, watched_s=1800.0, unwatched_s=330.0,
+    behind_s=600.0, clean_s=570.0, seconds=20.0,
 )  # fmt: skip
-CLEAN = OnsetTrial(0, '', 0.0, None, rarity=3.0, watched_s=3600.0, unwatched_s=0.0, seconds=36.0)
+CLEAN = OnsetTrial(0, '', 0.0, None, rarity=3.0, watched_s=3600.0, clean_s=3600.0, seconds=36.0)
 
 
 def test_an_effect_that_begins_is_not_there_before():
@@ -65,7 +66,7 @@ def test_delays_onsets_and_false_findings_are_counted(tmp_path):
     assert rows['delay, median'].value == pytest.approx(1.0)
     assert rows['onsets within 3 min, of those detected'].value == 100.0
     false = rows['false findings in 230 h']
-    # Two clean hours, and both tows with an effect up to it without their first minutes.
+    # Two clean hours, and what was judged of both tows with an effect up to it.
     assert false.value == pytest.approx(230.0 / (2.0 + 2 * 570.0 / 3600.0))
     assert false.low < false.value < false.high
     assert not false.ok
@@ -76,6 +77,17 @@ def test_delays_onsets_and_false_findings_are_counted(tmp_path):
     assert judged.value == pytest.approx(100.0 * 10800.0 / 11460.0)
     assert judged.note.endswith('less than half in 0 of 4 tows')
     assert (tmp_path / 'onset.md').exists()
+
+
+def test_tows_whose_boards_lie_are_told_apart_from_those_a_ship_would_tow_on(tmp_path):
+    lying = replace(FOUND, number=1, raised_s=None, onset_s=None, name='', fallen_s=300.0)
+    alarmed = replace(CLEAN, false=1, fallen_s=90.0)
+    rows = {row.what: row for row in write_onset(tmp_path, OnsetPlan(), [FOUND, lying, alarmed])}
+    standing = 'of tows in which boards lie for less than 60 s'
+    assert rows['effects that are detected'].value == 50.0
+    assert rows[f'the same, {standing}'].value == 100.0
+    assert rows[f'false findings in 230 h {standing}'].value == 0.0
+    assert rows[f'of these, {standing}'].value == pytest.approx(100.0 * 1800.0 / 2130.0)
 
 
 def test_candidates_without_a_mark_are_never_rare_and_one_that_has_some_is_as_chance_says():

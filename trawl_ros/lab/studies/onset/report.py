@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.onset.monitor import OnsetOptions
-from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.report.rates import rate
 from trawl_ros.lab.studies.onset.sizes import TIMES
@@ -19,6 +19,9 @@ REPORT = 'onset.md'
 
 NEAR_S = 180.0
 """An onset is right that is told within so much."""
+
+FALLEN_S = 60.0
+"""Boards that lie for so much of a tow are none that a ship would tow on with: she would haul."""
 
 ASKED_H = 230.0
 """Hours of clean tows in which one false finding is allowed."""
@@ -47,6 +50,9 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
     right = [abs(_late(trial)) <= NEAR_S for trial in found]
     named = [trial.effect == trial.name or trial.effect in trial.alike for trial in found]
     half_s = 0.5 * 60.0 * BEHIND_MIN
+    upright = [trial for trial in made if trial.fallen_s < FALLEN_S]
+    upright_hidden = [trial.raised_s is not None for trial in upright if trial.effect]
+    standing = f'of tows in which boards lie for less than {FALLEN_S:g} s'
     rows = [
         rate(
             'effects that are detected',
@@ -57,19 +63,22 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
             f'the same, of tows judged for half of the {BEHIND_MIN:g} min behind its beginning',
             [trial.raised_s is not None for trial in hidden if trial.behind_s >= half_s],
         ),
+        rate(f'the same, {standing}', upright_hidden),
         _quantile('delay, median', delays, 0.5, 5.0, 'delay_median'),
         _quantile('delay, 90 %', delays, 0.9, 15.0, 'delay_90'),
         rate('onsets within 3 min, of those detected', right, least=80.0),
         rate('the effect is named or among those not told apart, of those detected', named),
-        _false(made),
+        _false('false findings in 230 h', made, at_most(1.0), 'false_230_h'),
+        _false(f'false findings in 230 h {standing}', upright, key='false_230_h_upright'),
         *_rarest(made, options.limit),
-        _judged(made),
+        _judged('of the tows that is judged', made, 'judged'),
+        _judged(f'of these, {standing}', upright, 'judged_upright'),
         _core(made),
     ]
     table = TextTable(
         'Trials with an effect',
-        ('trial', 'effect', 'size', 'began, min', 'judged behind, min', 'raised after, min',
-         'onset off by, min', 'name', 'not told from'),
+        ('trial', 'effect', 'size', 'began, min', 'judged behind, min', 'boards lie, min',
+         'raised after, min', 'onset off by, min', 'name', 'not told from'),
         tuple(_row(trial) for trial in hidden),
     )  # fmt: skip
     refused = [f'{trial.number} ({trial.effect or "clean"}): {trial.why_not}'
@@ -106,23 +115,19 @@ def _quantile(what: str, delays: FloatArray, part: float, most: float, key: str)
     return MeasuredValue(what, value, 'min', at_most(most), note, float(low), float(high), key)
 
 
-def _false(made: Sequence[OnsetTrial]) -> MeasuredValue:
-    """False findings per 230 h of what was watched before anything began."""
-    hours = count = 0.0
-    for trial in made:
-        clean = trial.watched_s
-        if trial.begin_s is not None:
-            # The first minutes are not watched.
-            clean = max(trial.begin_s - (trial.unwatched_s), 0.0)
-        hours, count = hours + clean / 3600.0, count + trial.false
+def _false(
+    what: str, made: Sequence[OnsetTrial], target: TargetRange | None = None, key: str = ''
+) -> MeasuredValue:
+    """False findings per 230 h of what was judged before anything began."""
+    hours = sum(trial.clean_s for trial in made) / 3600.0
+    count = sum(trial.false for trial in made)
     low = 0.5 * chi2.ppf(0.025, 2 * count) if count else 0.0
     high = 0.5 * chi2.ppf(0.975, 2 * count + 2)
     part = ASKED_H / hours if hours else np.nan
-    note = f'{count:.0f} in {hours:.1f} h; 95 % interval of a Poisson rate'
+    note = f'{count} in {hours:.1f} h; 95 % interval of a Poisson rate'
     return MeasuredValue(
-        'false findings in 230 h', count * part, '', at_most(1.0), note,
-        float(low * part), float(high * part), 'false_230_h',
-    )  # fmt: skip
+        what, count * part, '', target, note, float(low * part), float(high * part), key
+    )
 
 
 def _rarest(made: Sequence[OnsetTrial], limit: float) -> list[MeasuredValue]:
@@ -134,14 +139,14 @@ def _rarest(made: Sequence[OnsetTrial], limit: float) -> list[MeasuredValue]:
     return [MeasuredValue(what, max(clean), '', at_most(limit), note, key='rarest_clean')]
 
 
-def _judged(made: Sequence[OnsetTrial]) -> MeasuredValue:
+def _judged(what: str, made: Sequence[OnsetTrial], key: str) -> MeasuredValue:
     """Part of the tows in which innovations were judged."""
     judged = sum(trial.watched_s for trial in made)
     towed = sum(trial.watched_s + trial.unwatched_s for trial in made)
     part = 100.0 * judged / towed if towed else np.nan
     idle = sum(trial.unwatched_s > 0.5 * (trial.watched_s + trial.unwatched_s) for trial in made)
     note = f'of {towed / 3600.0:.1f} h; less than half in {idle} of {len(made)} tows'
-    return MeasuredValue('of the tows that is judged', part, '%', note=note, key='judged')
+    return MeasuredValue(what, part, '%', note=note, key=key)
 
 
 def _core(made: Sequence[OnsetTrial]) -> MeasuredValue:
@@ -156,7 +161,7 @@ def _row(trial: OnsetTrial) -> tuple[str, ...]:
     assert trial.begin_s is not None
     head = (
         str(trial.number), trial.effect, f'{trial.size:.3g}', f'{trial.begin_s / 60.0:.1f}',
-        f'{trial.behind_s / 60.0:.1f}',
+        f'{trial.behind_s / 60.0:.1f}', f'{trial.fallen_s / 60.0:.1f}',
     )  # fmt: skip
     if trial.raised_s is None:
         return *head, 'not detected', '', '', ''

@@ -28,6 +28,7 @@ from trawl_ros.lab.studies.onset.plant import knowledge, random_course, with_boa
 from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
 from trawl_ros.lab.studies.soak.long_tow import coarse_gear
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import fallen_boards
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 from trawl_ros.report.style import DPI
@@ -91,6 +92,10 @@ class OnsetTrial:
         Time that was compared with the model, and that could not be.
     behind_s
         Time that was judged of the `BEHIND_MIN` behind the beginning of the effect.
+    clean_s
+        Time that was judged before anything began.
+    fallen_s
+        Time for which a board of the plant had fallen.
     seconds
         Processor time of the monitor.
     why_not
@@ -110,6 +115,8 @@ class OnsetTrial:
     watched_s: float = 0.0
     unwatched_s: float = 0.0
     behind_s: float = 0.0
+    clean_s: float = 0.0
+    fallen_s: float = 0.0
     seconds: float = 0.0
     why_not: str = ''
 
@@ -154,7 +161,7 @@ def make_trial(
     trial = OnsetTrial(number, effect, size, begin if effect else None)
     raised: list[Finding] = []
     keeper = CourseKeeper()
-    spent = 0.0
+    spent = fallen_s = 0.0
     with TemporaryDirectory() as folder:
         scenario = random_course(Path(folder), record, minutes, chance)
         believed = load_gear(Path(folder) / 'gear.yaml')
@@ -164,9 +171,11 @@ def make_trial(
             # An effect that begins is none of a file: it takes the place of the plant's own.
             vars(scenario)['effect_set'] = acting
             monitor = OnsetMonitor(believed, known, on_stretch=keeper)
-            for sample in _samples(scenario, acting):
+            for samples, fallen in _towed(scenario, acting):
+                fallen_s += fallen / scenario.record.truth_rate_hz
                 begun = time.process_time()
-                raised += monitor.feed(sample)
+                for sample in samples:
+                    raised += monitor.feed(sample)
                 spent += time.process_time() - begun
         except TrawlError as reason:
             return replace(trial, why_not=str(reason))
@@ -179,9 +188,10 @@ def make_trial(
     early = [one for one in first.values() if one.raised_ns / SECOND < from_s]
     later = [one for one in first.values() if one.raised_ns / SECOND >= from_s]
     trial = replace(
-        trial, behind_s=_judged_behind(course, from_s), false=len(early), seconds=spent,
+        trial, behind_s=_judged(course, from_s, from_s + 60.0 * BEHIND_MIN),
+        clean_s=_judged(course, 0.0, from_s), false=len(early), seconds=spent,
         watched_s=LIVE.stretch_s * monitor.watched,
-        unwatched_s=LIVE.stretch_s * monitor.unwatched,
+        unwatched_s=LIVE.stretch_s * monitor.unwatched, fallen_s=fallen_s,
         rarity=float(np.nanmax(course.rarities, initial=0.0)),
     )  # fmt: skip
     if not later:
@@ -214,16 +224,17 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
             knowledge(record, boards, chance),
             on_stretch=keep,
         )
-        for sample in _samples(scenario, NO_EFFECTS):
-            monitor.feed(sample)
+        for samples, _ in _towed(scenario, NO_EFFECTS):
+            for sample in samples:
+                monitor.feed(sample)
     return found
 
 
-def _judged_behind(course: WatchedCourse, from_s: float) -> float:
-    """Time (s) that was judged of the minutes behind a time."""
+def _judged(course: WatchedCourse, from_s: float, until_s: float) -> float:
+    """Time (s) between two times that was judged."""
     ends = course.ends_ns / SECOND
-    behind = (ends > from_s) & (ends <= from_s + 60.0 * BEHIND_MIN)
-    return LIVE.stretch_s * float(np.sum(np.isfinite(course.rarities[behind])))
+    between = (ends > from_s) & (ends <= until_s)
+    return LIVE.stretch_s * float(np.sum(np.isfinite(course.rarities[between])))
 
 
 def _beginning(
@@ -244,11 +255,13 @@ def _beginning(
     return EffectSet((ActiveEffect(beginning, values),)), float(size)
 
 
-def _samples(scenario: Scenario, acting: EffectSet) -> Iterator[Sample]:
+def _towed(scenario: Scenario, acting: EffectSet) -> Iterator[tuple[list[Sample], bool]]:
+    """Samples of each truth of a tow, and whether a board of the plant has fallen there."""
     trial = Trial(scenario)
     suite = InstrumentSuite(
         scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
     )
     seen = SensorEffects(acting, build_water(scenario.plant))
     while (truth := trial.step()) is not None:
-        yield from map(seen, suite.observe(truth))
+        fallen = any(fallen_boards(trial.simulation.now.motion.state))
+        yield [seen(sample) for sample in suite.observe(truth)], fallen
