@@ -6,6 +6,7 @@ from functools import reduce
 import numpy as np
 import pytest
 
+from trawl_ros.diagnosis.onset import towing
 from trawl_ros.diagnosis.onset.candidates import candidate_table
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
@@ -15,6 +16,7 @@ from trawl_ros.diagnosis.onset.watch import CLOSE, LEARNS, REST, Watch, WatchSet
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.towing.towed_stretch import NotTowed
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
@@ -128,6 +130,28 @@ def test_boards_that_were_close_before_a_fall_have_to_be_so_once_more(
     behind = [one for one in found[first + compared :] if one is not None]
     assert behind == [True] * REST + [False] * (len(behind) - REST)
     assert len(behind) > REST
+
+
+def test_boards_with_which_nothing_can_be_compared_for_minutes_are_refused_but_not_once_judged(
+    settings, onset_gear, cut, monkeypatch
+):
+    std = 0.2 * board_prior(onset_gear).std
+    right = Knowledge(onset_gear.board.coefficients.array(), np.diag(std**2))
+    first, judged = (Watch(settings, right, right.values) for _ in range(2))
+    stretches = cut(13)
+    begun = next(number for number, last in enumerate(stretches) if last.tow is not None) + 1
+    seen = [judged.advance(last) for last in stretches[: begun + REST + 1]]
+    assert not seen[-1].why_not
+    surfaced = NotTowed('the gear of the model breaks the surface')
+    monkeypatch.setattr(towing, 'tow_along', lambda *_: surfaced)
+    for last in stretches[begun + REST + 1 :]:
+        assert judged.advance(last).why_not == surfaced.why
+        assert not judged.refused
+    told = []
+    for last in stretches[: begun + REST + 1]:
+        first.advance(last)
+        told.append(first.refused)
+    assert told == [False] * (begun + REST - 1) + [True, True]
 
 
 def test_boards_known_by_the_gear_file_alone_are_learned_for_longer(

@@ -169,6 +169,11 @@ class ModelTow:
         """Warp lengths (m) and speed (m/s) of the equilibrium that the motion began in."""
         return None if self._motion is None else self._began
 
+    @property
+    def under_way(self) -> bool:
+        """True while there is a motion to go on from."""
+        return self._motion is not None
+
     def advance(self, last: LastStretch) -> TowedStretch | str:
         """Tow along a stretch.
 

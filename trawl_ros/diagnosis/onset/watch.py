@@ -109,8 +109,8 @@ class Watch:
     close, compared
         Stretches up to now in which boards were close, up to `REST`; and that were compared.
     refused
-        True if nothing was ever compared, and the newest stretch cannot be: the model has no such
-        tow with these boards.
+        True if nothing was ever judged, and the model has no such tow with these boards: it ends
+        with the newest stretch, or none was compared through `REST` of them.
     """
 
     settings: WatchSettings
@@ -130,6 +130,8 @@ class Watch:
         self._absorbed, self._taken = self.begin.absorbed, self.begin.taken
         self.close, self.compared = self.begin.close, self.begin.compared
         self._moving, self.refused = (False, False), False
+        # Stretches without a prediction, though the model is towed along them.
+        self._judged, self._vain = not self.learns, 0
 
     @property
     def state(self) -> WatchState:
@@ -151,7 +153,9 @@ class Watch:
         """Watch the next stretch."""
         self.number = last.number
         towed = self._model.advance(last)
-        self.refused = self._filter is None and self._model.stopped == last.number
+        self._vain = self._vain + 1 if isinstance(towed, str) and self._model.under_way else 0
+        in_vain = self._vain >= REST and not last.fell
+        self.refused = not self._judged and (in_vain or self._model.stopped == last.number)
         if isinstance(towed, TowedStretch) and self._responses is None:
             try:
                 self._begin()
@@ -180,6 +184,7 @@ class Watch:
             self._bank.forget()
             why_not = LEARNS
         elif white is not None:
+            self._judged = True
             evidence = tuple(self._bank.best())
         if model is not None and white is not None:
             self.compared += 1
