@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.fit import fit_motion
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import USUAL, MotionSearch
+from trawl_ros.estimation.motion.search import USUAL, MotionSearch, without
 from trawl_ros.estimation.motion.towing import towed_stretch
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
@@ -64,6 +66,46 @@ def test_a_search_is_spent_by_its_towings_or_by_what_they_cost(coarse, gear, mon
     search.linearise(search.here, 1)
     assert search.towings == 3
     assert search.is_spent
+
+
+def test_a_step_on_which_boards_fall_is_given_up_as_soon_as_it_is_refused(coarse, gear):
+    far = search_from(coarse, gear, b5=-3.0)
+    whole, _ = far.linearise(far.here, 1)
+    assert list(whole[0].towed) == [True, False, False, False]
+    spent = far.factorisations
+    with pytest.raises(NoSteadyState, match='20 s after the beginning a board of the model falls'):
+        far.linearise(far.here, 1, before=[np.ones(4, bool)])
+    assert 0 < far.factorisations - spent < spent
+    assert far.towings == 2
+    kept, _ = far.linearise(far.here, 1, before=[whole[0].towed])
+    np.testing.assert_array_equal(kept[0].values, whole[0].values)
+
+
+def test_a_tow_is_without_what_another_leaves_out_for_its_reasons(coarse, gear):
+    fallen, usual = search_from(coarse, gear, b5=-3.0), search_from(coarse, gear)
+    there, here = fallen.linearise(fallen.here, 0)[0], usual.linearise(usual.here, 0)[0]
+    (less,) = without(here, there)
+    assert list(less.towed) == [True, False, False, False]
+    assert less.left_out == there[0].left_out
+    np.testing.assert_array_equal(less.values[0], here[0].values[0])
+    assert without(there, here)[0].left_out == there[0].left_out
+    assert without(here, here)[0].towed.all()
+
+
+def test_a_fit_begins_again_where_boards_all_but_fall(coarse, gear):
+    truth = search_from(coarse, gear, a2=-2.0)
+    (towed,), _ = truth.linearise(truth.here, 0)
+    assert list(towed.towed) == [True, True, False, False]
+    tow, begun = replace(truth.tows[0], means=towed.values), []
+    fit = fit_motion(
+        truth.gear, [tow], truth.prior, truth.options, truth.here,
+        lambda iteration, number, stretch: begun.append(iteration),
+    )  # fmt: skip
+    assert fit.converged
+    assert fit.parameters[0][COEFFICIENTS.index('a2')] < -1.5
+    assert 0 < np.sum(fit.linear[0].towed) < 4
+    # From nearer to what is known, where the boards stand, it did not come to rest.
+    assert begun.index(1) < len(begun) - 1 - begun[::-1].index(0)
 
 
 def search_from(coarse, gear, **away):

@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import MotionSearch, OnTow
+from trawl_ros.estimation.motion.search import MotionSearch, OnTow, count, towed_flags
 from trawl_ros.estimation.motion.steps import Place, misfit, shared_std, step
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -20,7 +20,12 @@ COOLER = 0.4
 """Factor from step to step on the errors of the data while these are taken for too large."""
 
 FINDINGS = 3
-"""Towings after which weights and sizes of the errors are found, before they stay."""
+"""Towings after which weights and sizes of the errors are found, before they stay; and so do
+stretches that are lost."""
+
+LEAST = 1.0 / 3.0
+"""Part of the stretches that a fit must be able to tow along where it begins for want of another
+beginning from which it comes to rest."""
 
 
 def fit_motion(
@@ -32,6 +37,9 @@ def fit_motion(
     on_stretch: OnTow = lambda iteration, tow, stretch: None,
 ) -> MotionFit:
     """Fit tows in motion.
+
+    It begins nearer to what is known before where boards of the model fall with the start, and with
+    the start itself where it does not come to rest from there.
 
     Parameters
     ----------
@@ -49,16 +57,31 @@ def fit_motion(
     layouts = tuple(layout_of(tow, gear, options.model) for tow in tows)
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
     search = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
-    search.noise = tuple(tow.noise for tow in tows)
     search.begin()
-    sizes = options.sizes
+    fit = _rested(search)
+    if fit.converged or not search.began_nearer:
+        return fit
+    # Boards that all but fall are learned from what of the tow their model is towed along, rather
+    # than along a way there on which it falls elsewhere.
+    again = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
+    again.begin(nearer=False)
+    if count(towed_flags(again.linear)) < LEAST * sum(len(tow) for tow in tows):
+        return fit
+    other = _rested(again)
+    return other if other.converged else fit
+
+
+def _rested(search: MotionSearch) -> MotionFit:
+    """Fit of a search that has begun, at rest or where it has spent what it may."""
+    options, sizes = search.options, search.options.sizes
     reason = f'still moving after {options.iterations} iterations'
     converged, iteration, temper, found = False, 0, np.inf, 0
     for iteration in range(1, options.iterations + 1):
         data = search.data(search.linear, search.here)
         # Data much sharper than what is known before would lead a full step to where boards fold.
         temper = max(1.0, min(COOLER * temper, misfit(data, search.here, sizes)))
-        # Weights and sizes that are found anew for ever would keep a fit from its rest.
+        # Weights and sizes that are found anew for ever would keep a fit from its rest, as would
+        # stretches that come and go from place to place.
         if temper == 1.0 and found < FINDINGS:
             found += 1
             sizes = search.find(sizes)
@@ -67,7 +90,7 @@ def fit_motion(
             # Far from rest boards may fall where they will not, with hundreds of halved steps.
             search.halved = ()
         now = sizes.tempered(temper)
-        target = step(data, search.here, prior, now, options.largest_step)
+        target = step(data, search.here, search.prior, now, options.largest_step)
         std = shared_std(data, now)[:12]
         size = float(np.max(np.abs(target[0][:12] - search.here[0][:12]) / std))
         if temper == 1.0 and size < options.tolerance:
@@ -80,7 +103,8 @@ def fit_motion(
             reason = f'still moving after {search.towings} towings'
             break
         near = temper == 1.0 and size < NEAR
-        if not search.advance(now, iteration, 1 if near else options.attempts) and temper == 1.0:
+        attempts, regain = 1 if near else options.attempts, found < FINDINGS
+        if not search.advance(now, iteration, attempts, regain=regain) and temper == 1.0:
             converged = near
             reason = f'no step lowers the cost, {size:.2g} std from rest'
             break

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
@@ -22,7 +23,7 @@ from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
 from trawl_ros.estimation.motion.towing.halved import TowHalved, copied
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
-from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
+from trawl_ros.estimation.motion.towing.lineariser import TowLineariser
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.estimation.motion.weights import robust_factors
@@ -34,6 +35,9 @@ was taken."""
 
 LEAST_DAMPING = 0.1
 """Damping below this is none."""
+
+ROUNDED = 1.0 + 1e-9
+"""Factor within which costs are alike."""
 
 LOST = 0.15
 """Part of the stretches beyond which none may be lost, because boards of the model fall there: a
@@ -72,19 +76,48 @@ class MotionSearch:
     towings: int = 0
     factorisations: int = 0
     halved: tuple[TowHalved, ...] = ()
+    began_nearer: bool = False
 
     def linearise(
-        self, at: Place, iteration: int, known: Sequence[TowHalved] = ()
+        self,
+        at: Place,
+        iteration: int,
+        known: Sequence[TowHalved] = (),
+        before: Sequence[BoolArray] | None = None,
     ) -> tuple[tuple[LinearisedTow, ...], tuple[TowHalved, ...]]:
-        """Tow all tows at a place, and linearise; steps are halved there as it is known of them."""
+        """Tow all tows at a place, and linearise.
+
+        Parameters
+        ----------
+        at
+            The place.
+        iteration
+            Its number.
+        known
+            Steps that are halved there as they were elsewhere.
+        before
+            Flags of the stretches that were towed along elsewhere; None if any may be lost.
+
+        Raises
+        ------
+        NoSteadyState
+            As soon as more than `LOST` of those before are lost: the rest need not be towed.
+        """
         found, halved = [], [copied(own) for own in known] or [{} for _ in self.tows]
+        spare = 0 if before is None else most_lost(before)
         self.towings += 1
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
-            then = partial(self.on_stretch, iteration, number)
-            own = halved[number]
-            found.append(linearise_tow(self.gear, tow, point, on_stretch=then, halved=own))
-            self.factorisations += found[-1].factorisations
+            then, own = partial(self.on_stretch, iteration, number), halved[number]
+            towed = TowLineariser(self.gear, tow.channels, point, then, own)
+            required = None if before is None else before[number]
+            try:
+                towed.extend(tow, point.drifts, required=required, spare=spare)
+            finally:
+                self.factorisations += towed.factorisations
+            found.append(towed.linearised(tow))
+            if required is not None:
+                spare -= int(np.sum(required & ~found[-1].towed))
         return tuple(found), tuple(halved)
 
     @property
@@ -93,12 +126,13 @@ class MotionSearch:
         usual = USUAL * sum(len(tow) * tow.steps for tow in self.tows)
         return max(self.towings, self.factorisations / usual) >= self.options.towings
 
-    def begin(self) -> None:
-        """Tow all tows where the search begins, nearer to what is known where boards fall."""
+    def begin(self, *, nearer: bool = True) -> None:
+        """Tow all tows where the search begins, or nearer to what is known where boards fall."""
+        self.noise = tuple(tow.noise for tow in self.tows)
         shared, place = self.layouts[0].shared, self.here
         standing = [tow.standing for tow in self.tows]
         self.linear, self.halved = self.linearise(place, 0)
-        for _ in range(STARTS - 1):
+        for _ in range(STARTS - 1 if nearer else 0):
             if not (
                 is_lost(towed_flags(self.linear), standing)
                 and any(np.any(z[:shared]) for z in place)
@@ -110,6 +144,7 @@ class MotionSearch:
             if known and count(towed_flags(tried)) <= known:
                 break
             self.here, self.linear, self.halved = place, tried, halved
+            self.began_nearer = True
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
         """Rows of linearised tows, by the weights as they are."""
@@ -183,36 +218,50 @@ class MotionSearch:
             found.append(noise)
         self.noise = tuple(found)
 
-    def advance(self, sizes: ErrorSizes, iteration: int, attempts: int) -> bool:
-        """Take a step that lowers the cost, ever shorter; tell whether one was found."""
+    def advance(
+        self, sizes: ErrorSizes, iteration: int, attempts: int, *, regain: bool = True
+    ) -> bool:
+        """Take a step that lowers the cost, ever shorter; tell whether one was found.
+
+        Parameters
+        ----------
+        sizes
+            Of the errors.
+        iteration
+            Number of the step.
+        attempts
+            At most.
+        regain
+            True if stretches that were lost before count again where they can be towed along.
+        """
         data = self.data(self.linear, self.here)
         towed = towed_flags(self.linear)
         for _ in range(attempts):
             there = step(
                 data, self.here, self.prior, sizes, self.options.largest_step, self.damping
             )
-            tried, halved = self.linearise(there, iteration, self.halved)
-            both = [old & new.towed for old, new in zip(towed, tried, strict=True)]
-            if not is_lost(both, towed):
-                # Stretches that can be towed at one place alone belong to neither cost.
-                before, after = (
-                    cost(
-                        self.data([only(*each) for each in zip(tows, both, strict=True)], z),
-                        z,
-                        sizes,
-                    )
-                    for tows, z in ((self.linear, self.here), (tried, there))
-                )
-                if after <= before * (1.0 + 1e-9):
-                    self.here, self.linear, self.halved = there, tried, halved
-                    self.damping *= LOOSER
-                    if self.damping < LEAST_DAMPING:
-                        self.damping = 0.0
-                    return True
+            try:
+                tried, halved = self.linearise(there, iteration, self.halved, towed)
+            except NoSteadyState:
+                lower = False
+            else:
+                lower = self._is_lower(tried, there, sizes)
+            if lower:
+                self.linear = tried if regain else without(tried, self.linear)
+                self.here, self.halved = there, halved
+                self.damping *= LOOSER
+                if self.damping < LEAST_DAMPING:
+                    self.damping = 0.0
+                return True
             self.damping = max(DAMPING, STIFFER * self.damping)
             if self.is_spent:
                 break
         return False
+
+    def _is_lower(self, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes) -> bool:
+        """True if the cost is lower there; stretches that one place lacks belong to neither."""
+        before = cost(self.data(without(self.linear, tried), self.here), self.here, sizes)
+        return cost(self.data(without(tried, self.linear), there), there, sizes) <= before * ROUNDED
 
 
 def towed_flags(linear: Sequence[LinearisedTow]) -> list[BoolArray]:
@@ -225,16 +274,28 @@ def count(towed: Sequence[BoolArray]) -> int:
     return sum(int(np.sum(own)) for own in towed)
 
 
+def most_lost(before: Sequence[BoolArray]) -> int:
+    """Most of the stretches (n,) flagged before that may be lost."""
+    return int(LOST * count(before))
+
+
 def is_lost(towed: Sequence[BoolArray], before: Sequence[BoolArray]) -> bool:
     """True if more than `LOST` of the stretches (n,) flagged before are not towed along."""
-    of = count(before)
-    kept = [own & known for own, known in zip(towed, before, strict=True)]
-    return of - count(kept) > LOST * of
+    lost = [known & ~own for own, known in zip(towed, before, strict=True)]
+    return count(lost) > most_lost(before)
 
 
-def only(tow: LinearisedTow, flags: BoolArray) -> LinearisedTow:
-    """Linearised tow with the flagged (n,) stretches alone."""
-    return replace(tow, values=np.where(flags[:, None], tow.values, np.nan))
+def without(
+    tows: Sequence[LinearisedTow], others: Sequence[LinearisedTow]
+) -> tuple[LinearisedTow, ...]:
+    """Linearised tows without the stretches that others leave out, for the reasons of these."""
+    found = []
+    for tow, other in zip(tows, others, strict=True):
+        values = np.where(other.towed[:, None], tow.values, np.nan)
+        told = {part.begin: part for part in (*other.left_out, *tow.left_out)}
+        left_out = tuple(part for _, part in sorted(told.items()))
+        found.append(replace(tow, values=values, left_out=left_out))
+    return tuple(found)
 
 
 def linear_data(

@@ -24,10 +24,12 @@ from trawl_ros.estimation.motion.search import (
     DAMPING,
     LEAST_DAMPING,
     LOOSER,
+    ROUNDED,
     STIFFER,
     MotionSearch,
     is_lost,
-    only,
+    towed_flags,
+    without,
 )
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.start import starting_point
@@ -249,15 +251,15 @@ class MotionTracker:
         search: MotionSearch, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes
     ) -> bool:
         """True if the cost is lower there, and hardly a stretch is lost."""
-        both = [old.towed & new.towed for old, new in zip(search.linear, tried, strict=True)]
-        if is_lost(both, [old.towed for old in search.linear]):
+        if is_lost(towed_flags(tried), towed_flags(search.linear)):
             return False
         costs = []
-        for linear, place in ((search.linear, search.here), (tried, there)):
-            kept = [only(tow, flags) for tow, flags in zip(linear, both, strict=True)]
-            data = search.data(kept, place)
+        for one, other, place in (
+            (search.linear, tried, search.here), (tried, search.linear, there),
+        ):  # fmt: skip
+            data = search.data(without(one, other), place)
             costs.append(cost(data, _eliminated(search, data, place, sizes), sizes))
-        return costs[1] <= costs[0] * (1.0 + 1e-9)
+        return costs[1] <= costs[0] * ROUNDED
 
 
 def _eliminated(

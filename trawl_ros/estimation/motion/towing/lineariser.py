@@ -89,6 +89,7 @@ class TowLineariser:
         drifts: FloatArray,
         most: int | None = None,
         required: BoolArray | None = None,
+        spare: int = 0,
     ) -> int:
         """Tow on along a tow that has grown.
 
@@ -102,6 +103,8 @@ class TowLineariser:
             Number of stretches that are towed along at most.
         required
             Flags (n,) of stretches that may not be left out, none where None.
+        spare
+            Number of those that may be left out nonetheless.
 
         Returns
         -------
@@ -111,7 +114,7 @@ class TowLineariser:
         Raises
         ------
         NoSteadyState
-            If a stretch that is required must be left out.
+            As soon as more stretches that are required must be left out than may be.
         """
         first = len(self)
         last = len(tow) if most is None else min(len(tow), first + most)
@@ -122,7 +125,8 @@ class TowLineariser:
             found = self._towed(tow, stretch)
             if isinstance(found, NotTowed):
                 begin = stretch * tow.stretch_s
-                if required is not None and required[stretch]:
+                spare -= required is not None and bool(required[stretch])
+                if spare < 0:
                     raise NoSteadyState(f'{begin:.0f} s after the beginning {found.why}')
                 self._left_out.append(LeftOut(begin, begin + tow.stretch_s, found.why))
             self._means.append(None if isinstance(found, NotTowed) else found)
