@@ -98,7 +98,7 @@ def test_a_fit_begins_again_where_boards_all_but_fall(coarse, gear):
     assert list(towed.towed) == [True, True, False, False]
     tow, begun = replace(truth.tows[0], means=towed.values), []
     fit = fit_motion(
-        truth.gear, [tow], truth.prior, truth.options, truth.here,
+        truth.gear, [tow], truth.prior, replace(truth.options, towings=6), truth.here,
         lambda iteration, number, stretch: begun.append(iteration),
     )  # fmt: skip
     assert fit.converged

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.diagnosis.onset.candidates import candidate_table
@@ -11,8 +12,15 @@ from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
+from trawl_ros.lab.studies.onset.known import (
+    BY_TOW,
+    BY_WINDOWS,
+    KNOWN,
+    drawn_knowledge,
+    knowledge_by_tow,
+)
 from trawl_ros.lab.studies.onset.limit import drawn_rarest
-from trawl_ros.lab.studies.onset.plant import KNOWN, knowledge, random_course, with_boards
+from trawl_ros.lab.studies.onset.plant import random_course, with_boards
 from trawl_ros.lab.studies.onset.report import write_onset
 from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
 from trawl_ros.lab.studies.onset.study import OnsetPlan, own_trials, wanted_trials
@@ -116,9 +124,31 @@ def test_plants_have_boards_of_their_own_and_what_is_known_of_them_is_wrong_as_s
     assert first.gear == course.gear
     assert first.commands == course.commands
     chance = np.random.default_rng(6)
-    away = [knowledge(record, boards, chance).values - boards for _ in range(300)]
+    away = [drawn_knowledge(record, boards, chance).values - boards for _ in range(300)]
     inside = np.minimum(boards - prior.low, prior.high - boards) > 3.0 * KNOWN * prior.std
     assert np.std(away, axis=0)[inside] == pytest.approx(KNOWN * prior.std[inside], rel=0.15)
+
+
+@pytest.mark.slow
+def test_boards_are_known_as_a_tow_before_tells_them(coarse_gear, tmp_path):
+    record = load_gear(coarse_gear)
+    course = random_course(tmp_path, record, 12.0, np.random.default_rng(5))
+    known, by = knowledge_by_tow(tmp_path, course, course.gear, np.random.default_rng(1))
+    assert by == BY_TOW
+    prior = board_prior(record)
+    away = known.values - record.board.coefficients.array()
+    assert np.exp(np.mean(np.log(np.sqrt(np.diag(known.covariance)) / prior.std))) < 0.4
+    assert away @ np.linalg.solve(known.covariance, away) < chi2.ppf(0.9999, len(away))
+
+
+def test_what_boards_were_known_by_is_counted(tmp_path):
+    known = [replace(FOUND, known=BY_TOW), replace(CLEAN, known=BY_WINDOWS)]
+    write_onset(tmp_path, OnsetPlan(known='tow'), known)
+    told = (tmp_path / 'onset.md').read_text()
+    assert '--known tow' in told
+    assert 'Boards were known by all of a tow in 1, its steady windows in 1 of 2 tows.' in told
+    write_onset(tmp_path, OnsetPlan(), known)
+    assert 'Boards were known by' not in (tmp_path / 'onset.md').read_text()
 
 
 def test_a_gear_without_boards_is_refused_at_once(pair_file):

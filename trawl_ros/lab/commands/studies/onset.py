@@ -1,6 +1,7 @@
 """``trawl study onset``."""
 
 from pathlib import Path
+from typing import get_args
 
 import click
 
@@ -9,6 +10,7 @@ from trawl_ros.cli.options import (
     REPORT_OPTION,
 )
 from trawl_ros.lab.commands.outcome import print_outcome, stoppable
+from trawl_ros.lab.studies.onset.known import KnownBy
 from trawl_ros.lab.studies.onset.limit import drawn_limit
 from trawl_ros.lab.studies.onset.report import ASKED_H, write_onset
 from trawl_ros.lab.studies.onset.report import REPORT as ONSET_REPORT
@@ -29,6 +31,10 @@ from trawl_ros.lab.studies.onset.study import OnsetPlan, run_onset
               help='Make one part of the trials alone, of how many: 1 2.')  # fmt: skip
 @click.option('--pictures', is_flag=True,
               help='Draw each tow that is made, as it was watched.')  # fmt: skip
+@click.option('--known', default=OnsetPlan.known, show_default=True,
+              type=click.Choice(get_args(KnownBy)),
+              help='How boards are known when a tow begins: drawn around the truth, or as '
+              '`trawl identify` finds them in a tow before.')  # fmt: skip
 @click.option('--limit', 'draws', default=0, type=click.IntRange(0, 5000),
               help='Instead: draw the innovations of one clean tow so often, and print the limit '
               'that they exceed once in 230 h.')  # fmt: skip
@@ -41,6 +47,7 @@ def command(
     seed: int,
     shard: tuple[int, int],
     pictures: bool,
+    known: KnownBy,
     draws: int,
 ) -> None:
     """Let effects begin during tows, and count how soon they are found, and what is found without.
@@ -57,7 +64,7 @@ def command(
             f'{ASKED_H:g} h beyond {drawn.limit:.2f}'
         )
         return
-    plan = OnsetPlan(gear, trials, clean, minutes, seed, *shard, pictures)
+    plan = OnsetPlan(gear, trials, clean, minutes, seed, *shard, pictures, known)
     with stoppable(f'the trials made so far are kept in {out}') as (display, _):
         made = run_onset(plan, out, display)
     print_outcome(write_onset(out, plan, made), out / ONSET_REPORT)

@@ -1,47 +1,34 @@
-"""Plants of the trials: a random course, boards drawn from the gear file's prior, and what is known
-of them.
+"""Plants of the trials: a random course, boards drawn from the gear file's prior, and the samples
+that instruments take of their tow.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import yaml
 
-from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.files import write_text
-from trawl_ros.diagnosis.onset.knowledge import Knowledge
+from trawl_ros.effects.effect_set import EffectSet
+from trawl_ros.effects.sensor_effects import SensorEffects
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.boards import CoefficientsRecord
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.lab.studies.identification.plant import draw_board
+from trawl_ros.model.observables import fallen_boards
+from trawl_ros.model.water import build_water
 from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.samples import Sample
+from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 
-KNOWN = 0.2
-"""Std of the boards as they are known when the tow begins, in that of the gear file's prior: five
-steady states tell as much."""
+COURSE = 'scenario.yaml'
+"""File of the course within its folder."""
 
 LENGTHS_M, SPEEDS_M_S = (320.0, 480.0), (2.1, 2.45)
 LEG_MIN = (3.0, 9.0)
-
-
-def knowledge(gear: GearRecord, truth: FloatArray, chance: np.random.Generator) -> Knowledge:
-    """Boards as they are known: the truth, wrong by as much as is stated, within their bounds.
-
-    Parameters
-    ----------
-    gear
-        Gear whose prior says how large `KNOWN` is.
-    truth
-        Coefficients (12,) of the plant.
-    chance
-        Generator of random numbers.
-    """
-    prior = board_prior(gear)
-    std = KNOWN * prior.std
-    values = truth + std * chance.standard_normal(len(std))
-    return Knowledge(np.clip(values, prior.low, prior.high), np.diag(std**2))
 
 
 def random_course(
@@ -83,7 +70,7 @@ def random_course(
         'truth_rate_hz': 2.0,
         'record': ['instruments'],
     }
-    path = folder / 'scenario.yaml'
+    path = folder / COURSE
     write_text(path, yaml.safe_dump(record))
     return load_scenario(path)
 
@@ -102,3 +89,15 @@ def with_boards(scenario: Scenario, chance: np.random.Generator) -> Scenario:
     plant = scenario.plant
     own = plant.model_copy(update={'board': plant.board.model_copy(update={'coefficients': board})})
     return replace(scenario, plant=own)
+
+
+def towed_samples(scenario: Scenario, acting: EffectSet) -> Iterator[tuple[list[Sample], bool]]:
+    """Samples of each truth of a tow, and whether a board of the plant has fallen there."""
+    trial = Trial(scenario)
+    suite = InstrumentSuite(
+        scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
+    )
+    seen = SensorEffects(acting, build_water(scenario.plant))
+    while (truth := trial.step()) is not None:
+        fallen = any(fallen_boards(trial.simulation.now.motion.state))
+        yield [seen(sample) for sample in suite.observe(truth)], fallen

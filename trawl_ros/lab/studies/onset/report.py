@@ -1,6 +1,7 @@
 """Report of the study of onsets: JSON, Markdown and HTML."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from trawl_ros.diagnosis.onset.monitor import OnsetOptions
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.report.rates import rate
+from trawl_ros.lab.studies.onset.known import KNOWN, STATE_MIN, KnownBy
 from trawl_ros.lab.studies.onset.sizes import TIMES
 from trawl_ros.lab.studies.onset.study import OnsetPlan
 from trawl_ros.lab.studies.onset.trial import BEHIND_MIN, OnsetTrial
@@ -22,6 +24,13 @@ NEAR_S = 180.0
 
 FALLEN_S = 60.0
 """Boards that lie for so much of a tow are none that a ship would tow on with: she would haul."""
+
+KNOWN_BY: Mapping[KnownBy, str] = {
+    'draw': f'each coefficient is known to {KNOWN:g} of its std',
+    'tow': 'known as `trawl identify` finds them in a tow before, by instruments with errors of '
+    f'their own then: of the first states of the course, {STATE_MIN:g} min each',
+}
+"""Sentences on knowledge of the boards when the tow begins."""
 
 ASKED_H = 230.0
 """Hours of clean tows in which one false finding is allowed."""
@@ -37,11 +46,12 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
         name='onset',
         title='Effects that begin during a tow',
         command=f'trawl study onset --trials {plan.trials} --clean {plan.clean} '
-        f'--minutes {plan.minutes:g} --seed {plan.seed}',
+        f'--minutes {plan.minutes:g} --seed {plan.seed}'
+        + (f' --known {plan.known}' if plan.known != OnsetPlan.known else ''),
         method='Tows with random hauling, veering and speed steps. The plant has warps and bridles '
         'twice as fine as the model and no joined meshes, and is read by the default instruments; '
         'the net has 12 meshes around. Boards are drawn from the prior of the gear file until they '
-        'tow the course at rest, and known to 0.2 of its std. An '
+        f'tow the course at rest, and {KNOWN_BY[plan.known]}. An '
         f'effect of {TIMES:g} times what steady windows detect, by a frozen table, begins between '
         'the 10th and the 20th minute. The class that watches in the node is fed with all samples. '
         f'Findings are raised beyond a rarity of {options.limit:g}.',
@@ -84,6 +94,10 @@ def write_onset(folder: Path, plan: OnsetPlan, trials: Sequence[OnsetTrial]) -> 
     refused = [f'{trial.number} ({trial.effect or "clean"}): {trial.why_not}'
                for trial in trials if trial.why_not]  # fmt: skip
     text = f'Not made: {"; ".join(refused)}.' if refused else ''
+    if plan.known == 'tow':
+        by = Counter(trial.known for trial in made).most_common()
+        told = ', '.join(f'{what} in {number}' for what, number in by)
+        text = f'Boards were known by {told} of {len(made)} tows. {text}'.rstrip()
     record = {
         'rows': [row.record() for row in rows],
         'trials': [trial.record() for trial in trials],

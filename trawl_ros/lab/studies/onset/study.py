@@ -6,6 +6,7 @@ from pathlib import Path
 
 from trawl_ros.core.files import made_folder, write_json
 from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.lab.studies.onset.known import KnownBy
 from trawl_ros.lab.studies.onset.trial import OnsetTrial, make_trial
 
 SEED = 2500
@@ -14,8 +15,8 @@ SEED = 2500
 
 @dataclass(frozen=True)
 class OnsetPlan:
-    """Plan: gear, trials with an effect and without, minutes of each, seed, shard, and whether each
-    trial is drawn.
+    """Plan: gear, trials with an effect and without, minutes of each, seed, shard, whether each
+    trial is drawn, and how its boards are known when the tow begins.
     """
 
     gear: str = 'kaifuha'
@@ -26,6 +27,7 @@ class OnsetPlan:
     shard: int = 1
     shards: int = 1
     pictures: bool = False
+    known: KnownBy = 'draw'
 
 
 def wanted_trials(plan: OnsetPlan) -> list[tuple[int, bool]]:
@@ -56,14 +58,14 @@ def run_onset(plan: OnsetPlan, folder: Path, on_progress: OnProgress) -> list[On
             continue
         on_progress(WorkProgress('trials', done, len(own), 'trials'))
         picture = path.with_suffix('.png') if plan.pictures else None
-        trial = make_trial(plan.gear, plan.seed, number, plan.minutes, clean, picture)
+        trial = make_trial(plan.gear, plan.seed, number, plan.minutes, clean, picture, plan.known)
         write_json(path, trial.record(), indent=1)
     paths = (_path(plan, folder, number, clean) for number, clean in wanted_trials(plan))
     return [_read(path) for path in paths if path.exists()]
 
 
 def _path(plan: OnsetPlan, folder: Path, number: int, clean: bool) -> Path:
-    kind = 'clean' if clean else 'effect'
+    kind = ('clean' if clean else 'effect') + ('_known' if plan.known == 'tow' else '')
     return folder / f'trial_{plan.seed}_{kind}_{number:04d}.json'
 
 

@@ -1,7 +1,6 @@
 """Trial: a tow in which an effect begins, or none, towed by a plant and watched by the monitor."""
 
 import time
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,19 +20,13 @@ from trawl_ros.diagnosis.report.onset_figure import onset_figure
 from trawl_ros.effects.base.effect import Effect, Readings, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
-from trawl_ros.effects.sensor_effects import SensorEffects
 from trawl_ros.gear.load import load_gear
-from trawl_ros.instruments.suite import InstrumentSuite
-from trawl_ros.lab.studies.onset.plant import knowledge, random_course, with_boards
+from trawl_ros.lab.studies.onset.known import KnownBy, drawn_knowledge, knowledge_by_tow
+from trawl_ros.lab.studies.onset.plant import random_course, towed_samples, with_boards
 from trawl_ros.lab.studies.onset.sizes import STEADY_SIZES, TIMES
 from trawl_ros.lab.studies.soak.long_tow import coarse_gear
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.observables import fallen_boards
-from trawl_ros.model.water import build_water
-from trawl_ros.records.samples import Sample
 from trawl_ros.report.style import DPI
-from trawl_ros.scenario.run import Trial
-from trawl_ros.scenario.scenario import Scenario
 
 EARLIEST_MIN, LATEST_MIN = 10.0, 20.0
 """Minutes of a tow between which an effect begins."""
@@ -100,6 +93,8 @@ class OnsetTrial:
         Processor time of the monitor.
     why_not
         Reason for which the trial could not be made.
+    known
+        Source of what was known of the boards, where it was a tow before.
     """
 
     number: int
@@ -119,6 +114,7 @@ class OnsetTrial:
     fallen_s: float = 0.0
     seconds: float = 0.0
     why_not: str = ''
+    known: str = ''
 
     def record(self) -> dict[str, object]:
         """Record for JSON."""
@@ -126,7 +122,13 @@ class OnsetTrial:
 
 
 def make_trial(
-    gear: str, seed: int, number: int, minutes: float, clean: bool, picture: Path | None = None
+    gear: str,
+    seed: int,
+    number: int,
+    minutes: float,
+    clean: bool,
+    picture: Path | None = None,
+    known_by: KnownBy = 'draw',
 ) -> OnsetTrial:
     """Tow and watch.
 
@@ -142,6 +144,8 @@ def make_trial(
         Of the tow.
     picture
         PNG file into which the tow is drawn as it was watched; None for none.
+    known_by
+        Source of what is known of the boards when the tow begins.
 
     Raises
     ------
@@ -167,11 +171,15 @@ def make_trial(
         believed = load_gear(Path(folder) / 'gear.yaml')
         try:
             scenario = with_boards(scenario, chance)
-            known = knowledge(record, scenario.plant.board.coefficients.array(), chance)
+            if known_by == 'draw':
+                known = drawn_knowledge(record, scenario.plant.board.coefficients.array(), chance)
+            else:
+                known, by = knowledge_by_tow(Path(folder), scenario, believed, chance)
+                trial = replace(trial, known=by)
             # An effect that begins is none of a file: it takes the place of the plant's own.
             vars(scenario)['effect_set'] = acting
             monitor = OnsetMonitor(believed, known, on_stretch=keeper)
-            for samples, fallen in _towed(scenario, acting):
+            for samples, fallen in towed_samples(scenario, acting):
                 fallen_s += fallen / scenario.record.truth_rate_hz
                 begun = time.process_time()
                 for sample in samples:
@@ -221,10 +229,10 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
         scenario = random_course(Path(folder), record, minutes, chance)
         monitor = OnsetMonitor(
             load_gear(Path(folder) / 'gear.yaml'),
-            knowledge(record, boards, chance),
+            drawn_knowledge(record, boards, chance),
             on_stretch=keep,
         )
-        for samples, _ in _towed(scenario, NO_EFFECTS):
+        for samples, _ in towed_samples(scenario, NO_EFFECTS):
             for sample in samples:
                 monitor.feed(sample)
     return found
@@ -253,15 +261,3 @@ def _beginning(
     same = {key: getattr(effect, key) for key in Effect.__dataclass_fields__}
     beginning = Beginning(**same, of=effect, begin_h=begin_s / 3600.0)
     return EffectSet((ActiveEffect(beginning, values),)), float(size)
-
-
-def _towed(scenario: Scenario, acting: EffectSet) -> Iterator[tuple[list[Sample], bool]]:
-    """Samples of each truth of a tow, and whether a board of the plant has fallen there."""
-    trial = Trial(scenario)
-    suite = InstrumentSuite(
-        scenario.instruments, surroundings=scenario.surroundings, draws=scenario.draws
-    )
-    seen = SensorEffects(acting, build_water(scenario.plant))
-    while (truth := trial.step()) is not None:
-        fallen = any(fallen_boards(trial.simulation.now.motion.state))
-        yield [seen(sample) for sample in suite.observe(truth)], fallen
