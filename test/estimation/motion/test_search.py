@@ -108,6 +108,24 @@ def test_a_fit_begins_again_where_boards_all_but_fall(coarse, gear):
     assert begun.index(1) < len(begun) - 1 - begun[::-1].index(0)
 
 
+def test_stretches_that_are_lost_late_stay_lost(coarse, gear):
+    truth = search_from(coarse, gear, a2=-2.0)
+    (towed,), _ = truth.linearise(truth.here, 0)
+    kept = {}
+    for regain in (True, False):
+        search = search_from(coarse, gear, a2=-2.0)
+        search.tows = [replace(search.tows[0], means=towed.values)]
+        search.begin(nearer=False)
+        sizes = search.find(search.options.sizes)
+        assert search.advance(sizes, 1, 4, regain=regain)
+        assert search.advance(sizes, 2, 4, regain=regain)
+        kept[regain] = search.linear[0]
+    assert list(kept[True].towed) == [True, True, True, False]
+    assert list(kept[False].towed) == [True, True, False, False]
+    # What is lost is told, though it could be towed along there.
+    assert {part.begin for part in kept[False].left_out} == {40.0, 60.0}
+
+
 def search_from(coarse, gear, **away):
     """Search on a short tow from coefficients away, in prior std, from those in the gear file."""
     tow, prior, towed = course_tow(80.0), board_prior(gear), TowedGear(coarse)
