@@ -29,7 +29,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample, WinchSample
 
-WAIT_S, BEHIND_S = 4.0, 2.0
+WAIT_S, BEHIND_S = 3.0, 1.0
 """Time behind the end of a stretch at which it is cut, and to which readings are used then: those
 of all topics, whichever comes first, have arrived."""
 
