@@ -38,6 +38,23 @@ def still_bag(steady_tow, tmp_path_factory):
     return still.bag(tmp_path_factory.mktemp('bags') / 'still', leg_s=661)
 
 
+@pytest.fixture(scope='module')
+def rolling_bag(steady_tow, tmp_path_factory):
+    """The same in a swell, in which the tension swings by 5 % of itself."""
+    still = replace(steady_tow, states=(steady_tow.states[0],))
+    path = tmp_path_factory.mktemp('bags') / 'rolling'
+    return still.write(path, swinging(still.samples(leg_s=661)))
+
+
+def swinging(samples):
+    for sample in samples:
+        if isinstance(sample, WinchSample):
+            wave = np.sin(2.0 * np.pi * sample.stamp / SECOND / 10.0)
+            tensions = np.array(sample.tensions) * (1.0 + 0.05 * np.sqrt(2.0) * wave)
+            sample = replace(sample, tensions=(float(tensions[0]), float(tensions[1])))
+        yield sample
+
+
 def result_in(folder):
     return json.loads((folder / 'identification.json').read_text())
 
@@ -53,12 +70,12 @@ def test_a_still_tow_of_the_model_comes_to_rest(identify, still_bag, tmp_path):
     assert found['misfit'] < 1.5
 
 
-def test_both_estimates_are_shown_beside_one_another(identify, still_bag, tmp_path, monkeypatch):
+def test_both_estimates_are_shown_beside_one_another(identify, rolling_bag, tmp_path, monkeypatch):
     # Any step is taken for rest, with errors as stated: it is enough to be shown.
     quick = partial(MotionOptions, iterations=3, tolerance=np.inf, estimate_sizes=False)
     monkeypatch.setattr(bag_motion, 'MotionOptions', quick)
     out = tmp_path / 'out'
-    done = identify(still_bag, '--out', out)
+    done = identify(rolling_bag, '--out', out)
     assert done.exit_code == 0, done.output
     found = result_in(out)['motion']
     assert list(found['coefficients']) == list(COEFFICIENTS)
@@ -78,6 +95,8 @@ def test_both_estimates_are_shown_beside_one_another(identify, still_bag, tmp_pa
     assert NOTHING_HELD_OUT in ' '.join(done.stdout.split())
     assert NOTHING_HELD_OUT in (out / 'report.html').read_text()
     assert set(found['mnae_held_out'].values()) == {None}
+    assert list(found['swells'].values()) == [pytest.approx(0.05, rel=0.15)]
+    assert 'swings by a part of its mean' in ' '.join(done.stdout.split())
 
 
 def test_a_fit_that_does_not_come_to_rest_leaves_the_windows_and_that_is_told(

@@ -49,6 +49,24 @@ def test_the_start_of_a_haul_is_no_outlier():
     assert series_of(CHANNELS['port_tension'], times, values, 500.0).excluded == 0
 
 
+@pytest.mark.parametrize('period', [6.0, 8.0, 9.3, 10.0, 12.0])
+def test_peaks_of_a_swell_that_are_read_once_a_second_are_no_outliers(period):
+    chance, times = np.random.default_rng(6), np.arange(0.0, 660.0)
+    values = 1.6e5 + 1.1e4 * np.sin(2.0 * np.pi * times / period)
+    values += 300.0 * chance.standard_normal(len(times))
+    assert series_of(CHANNELS['port_tension'], times, values, 500.0).excluded == 0
+
+
+def test_outliers_are_set_aside_where_they_are_many():
+    chance, times = np.random.default_rng(6), np.arange(0.0, 660.0)
+    values = 1.6e5 + 1600.0 * chance.standard_normal(len(times))
+    wrong = np.flatnonzero(chance.random(len(times)) < 0.15)
+    values[wrong] += 4e4
+    series = series_of(CHANNELS['port_tension'], times, values, 500.0)
+    assert series.excluded >= 0.95 * len(wrong)
+    assert set(np.delete(times, wrong)) <= set(series.times)
+
+
 def test_a_counter_that_leaps_while_its_winch_stands_moves_no_warp():
     times, grid = np.arange(0.0, 400.0, 0.5), np.arange(0.0, 400.0)
     speed = np.where((times > 100.0) & (times <= 200.0), -0.4, 0.0)

@@ -106,6 +106,12 @@ class MotionOutcome:
         )
 
     @property
+    def swells(self) -> Mapping[str, float]:
+        """Swing of the tension, in std over its mean, of each tow that feels a swell."""
+        tows = [linear.tow for linear in self.fit.linear]
+        return {tow.name: tow.swell for tow in tows if tow.swell}
+
+    @property
     def left_out(self) -> tuple[tuple[str, LeftOut], ...]:
         """Stretches that do not count, neighbours as one, with the name of their tow."""
         found = []

@@ -26,6 +26,11 @@ ECHO_LIMIT, LIMIT = 4.0, 6.0
 """Robust std from the median at which a reading is an outlier: of acoustic distances, where false
 echoes are many, and of other quantities."""
 
+OUTLIERS, NORMAL = 0.25, 1.15
+"""Part of the readings that are outliers, at most, where there are no false echoes; and normal std
+that all others lie within. Of waves that are read once a second more than half lie at the median of
+their neighbours: by the median distance from it their peaks would be outliers."""
+
 CHANGE_S, MEDIAN_REACH_S, STANDS_M_S = 4.0, 6.0, 0.05
 """Time over which a counter's changes are taken, reach of their median, and speed below which a
 winch stands, where no winch tells its speed."""
@@ -103,11 +108,10 @@ def series_of(channel: Channel, times: FloatArray, values: FloatArray, stated: f
         Std of a reading as its sensor states it.
     """
     kept = np.ones(len(values), dtype=np.bool_)
-    limit = LIMIT
-    if np.isfinite(channel.leap):
+    echoes = bool(np.isfinite(channel.leap))
+    if echoes:
         kept &= np.abs(values - _median(values, WIDE)) <= channel.leap
-        limit = ECHO_LIMIT
-    kept[np.flatnonzero(kept)[~_inliers(values[kept], stated, limit)]] = False
+    kept[np.flatnonzero(kept)[~_inliers(values[kept], stated, echoes=echoes)]] = False
     excluded = int(np.count_nonzero(~kept))
     times, values = times[kept], values[kept]
     second = values[1:-1] - 0.5 * (values[:-2] + values[2:])
@@ -120,12 +124,14 @@ def _median(values: FloatArray, size: int) -> FloatArray:
     return found
 
 
-def _inliers(values: FloatArray, stated: float, limit: float) -> BoolArray:
+def _inliers(values: FloatArray, stated: float, *, echoes: bool) -> BoolArray:
     if not len(values):
         return np.ones(0, dtype=np.bool_)
     away = np.abs(values - _median(values, NARROW))
     spread = max(MAD_TO_STD * float(np.median(away)), 0.5 * stated)
-    return np.asarray(away <= limit * spread, np.bool_)
+    if not echoes:
+        spread = max(spread, float(np.quantile(away, 1.0 - OUTLIERS)) / NORMAL)
+    return np.asarray(away <= (ECHO_LIMIT if echoes else LIMIT) * spread, np.bool_)
 
 
 class TowRecorder:

@@ -10,6 +10,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.motion.fallen import fallen_stretches
 from trawl_ros.estimation.motion.processes import STATE_SHARE, ErrorTimes
 from trawl_ros.estimation.motion.series import Series, TowReadings
+from trawl_ros.estimation.motion.swell import swell_of
 from trawl_ros.estimation.motion.towing.inputs import TowInputs, on_grid, stacked
 from trawl_ros.estimation.motion.towing.knots import knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
@@ -125,6 +126,7 @@ def moving_tow(read: TowReadings, name: str, options: StretchOptions) -> MovingT
         name, read.start_ns, options.step_s, options.stretch_s, channels, means, noise,
         counts.astype(np.int64), weights, inputs,
         left_out, fallen_stretches(read.fallen, options.stretch_s, number),
+        swell_of(read, options.stretch_s),
     )  # fmt: skip
 
 

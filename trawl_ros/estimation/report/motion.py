@@ -1,5 +1,7 @@
 """Rows, sentences and JSON on what all of the tow adds to its steady windows."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from rich.table import Table
 
@@ -87,8 +89,20 @@ def motion_lines(report: Report) -> list[str]:
             f'{each.tow} at {each.begin:.0f} s ({each.size:.1f})' for each in poor[:MOST_NAMED]
         )
         lines.append(f'Stretches that fit badly: {len(poor)}, the worst {places}.')
+    if motion.swells:
+        lines.append(_in_swell(motion.swells))
     lines += [f'Not used: {sentence}' for sentence in motion.refused]
     return lines
+
+
+def _in_swell(swells: Mapping[str, float]) -> str:
+    swings = ', '.join(f'{100.0 * swell:.1f} % in {name}' for name, swell in swells.items())
+    return (
+        f'Within half a minute the tension swings by a part of its mean (std), {swings}: as in a '
+        'swell, or with boards that are tossed about. The ship of the model lies still, so that '
+        'some nine of ten 95 % intervals hold then, and what is learned is of the gear in that '
+        'swell.'
+    )
 
 
 def _held_out(report: Report, motion: MotionOutcome) -> str:
@@ -135,5 +149,6 @@ def motion_result(report: Report) -> dict[str, object]:
         'whitened': dict(motion.spread),
         'poor_stretches': [vars(each) for each in motion.poor],
         'left_out': [{'tow': name, **vars(part)} for name, part in motion.left_out],
+        'swells': dict(motion.swells),
         'not_used': list(motion.refused),
     }

@@ -51,6 +51,8 @@ class MovingTow:
         Stretches without any mean, and why.
     fallen
         Numbers of the stretches in which a board has fallen; they do not count.
+    swell
+        Swing of the tension within stretches, in std over its mean; 0 where no swell is felt.
     """
 
     name: str
@@ -65,6 +67,7 @@ class MovingTow:
     inputs: TowInputs
     left_out: tuple[LeftOut, ...] = ()
     fallen: tuple[int, ...] = ()
+    swell: float = 0.0
 
     def __len__(self) -> int:
         return len(self.means)

@@ -1,0 +1,55 @@
+"""Swell that a tow feels, by how its warps' tension swings within stretches."""
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.estimation.motion.series import Series, TowReadings
+
+TENSIONS = 'port_tension', 'starboard_tension'
+
+FEWEST = 8
+"""Readings of a stretch by which a swing is told, at least."""
+
+LEAST = 0.01
+"""Swing, in std over the mean, below which nothing is said of a swell: in a calm sea that of the
+median stretch is below 0.001, and 2.3 to 4.7 % in a swell of 2.5 m in 10 s
+(docs/studies/history.md)."""
+
+
+def swell_of(read: TowReadings, stretch_s: float) -> float:
+    """Swing of the tension beyond its noise, in std over its mean.
+
+    Parameters
+    ----------
+    read
+        Readings of a tow.
+    stretch_s
+        Length of a stretch.
+
+    Returns
+    -------
+    float
+        Swing of the median stretch, of the warp that swings more; 0 below `LEAST`, and where no
+        tension is read often enough to tell waves from noise, once a second or so.
+    """
+    swings = [_swing(read.series[name], stretch_s) for name in TENSIONS if name in read.series]
+    swell = max(swings, default=0.0)
+    return swell if swell >= LEAST else 0.0
+
+
+def _swing(tension: Series, stretch_s: float) -> float:
+    breaks = np.flatnonzero(np.diff((tension.times / stretch_s).astype(int))) + 1
+    parts = zip(np.split(tension.times, breaks), np.split(tension.values, breaks), strict=True)
+    variances = [_about_line(*part) for part in parts if len(part[0]) >= FEWEST]
+    if not variances:
+        return 0.0
+    # A winch that starts within a stretch bends its line; half of the stretches have none.
+    excess = max(float(np.median(variances)) - tension.noise**2, 0.0)
+    return float(np.sqrt(excess) / np.median(np.abs(tension.values)))
+
+
+def _about_line(times: FloatArray, values: FloatArray) -> float:
+    """Variance of readings (n,) about the line through them."""
+    away = times - times.mean()
+    slope = float(away @ values) / float(away @ away)
+    return float(np.var(values - slope * away))
