@@ -106,10 +106,12 @@ class MotionOutcome:
         )
 
     @property
-    def swells(self) -> Mapping[str, float]:
-        """Swing of the tension, in std over its mean, of each tow that feels a swell."""
+    def swells(self) -> tuple[tuple[str, float], ...]:
+        """Swing of the tension, in std over its mean, with the name of each tow, or part of one,
+        that feels a swell.
+        """
         tows = [linear.tow for linear in self.fit.linear]
-        return {tow.name: tow.swell for tow in tows if tow.swell}
+        return tuple((tow.name, tow.swell) for tow in tows if tow.swell)
 
     @property
     def left_out(self) -> tuple[tuple[str, LeftOut], ...]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter
+from scipy.special import ndtri
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import TrawlError
@@ -26,10 +27,13 @@ ECHO_LIMIT, LIMIT = 4.0, 6.0
 """Robust std from the median at which a reading is an outlier: of acoustic distances, where false
 echoes are many, and of other quantities."""
 
-OUTLIERS, NORMAL = 0.25, 1.15
-"""Part of the readings that are outliers, at most, where there are no false echoes; and normal std
-that all others lie within. Of waves that are read once a second more than half lie at the median of
-their neighbours: by the median distance from it their peaks would be outliers."""
+OUTLIERS = 0.25
+"""Part of the readings that are outliers, at most, where there are no false echoes. Of waves that
+are read once a second more than half lie at the median of their neighbours: by the median distance
+from it their peaks would be outliers."""
+
+OTHERS = float(ndtri(1.0 - 0.5 * OUTLIERS))
+"""Normal std within which all others lie."""
 
 CHANGE_S, MEDIAN_REACH_S, STANDS_M_S = 4.0, 6.0, 0.05
 """Time over which a counter's changes are taken, reach of their median, and speed below which a
@@ -130,7 +134,7 @@ def _inliers(values: FloatArray, stated: float, *, echoes: bool) -> BoolArray:
     away = np.abs(values - _median(values, NARROW))
     spread = max(MAD_TO_STD * float(np.median(away)), 0.5 * stated)
     if not echoes:
-        spread = max(spread, float(np.quantile(away, 1.0 - OUTLIERS)) / NORMAL)
+        spread = max(spread, float(np.quantile(away, 1.0 - OUTLIERS)) / OTHERS)
     return np.asarray(away <= (ECHO_LIMIT if echoes else LIMIT) * spread, np.bool_)
 
 

@@ -1,6 +1,6 @@
 """Rows, sentences and JSON on what all of the tow adds to its steady windows."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 import numpy as np
 from rich.table import Table
@@ -95,13 +95,13 @@ def motion_lines(report: Report) -> list[str]:
     return lines
 
 
-def _in_swell(swells: Mapping[str, float]) -> str:
-    swings = ', '.join(f'{100.0 * swell:.1f} % in {name}' for name, swell in swells.items())
+def _in_swell(swells: Sequence[tuple[str, float]]) -> str:
+    swings = ', '.join(f'{100.0 * swell:.1f} % in {name}' for name, swell in swells)
     return (
         f'Within half a minute the tension swings by a part of its mean (std), {swings}: as in a '
         'swell, or with boards that are tossed about. The ship of the model lies still, so that '
-        'some nine of ten 95 % intervals hold then, and what is learned is of the gear in that '
-        'swell.'
+        'intervals are too narrow there, and what is learned is of the gear in that swell '
+        '(docs/identification/motion.md).'
     )
 
 
@@ -149,6 +149,6 @@ def motion_result(report: Report) -> dict[str, object]:
         'whitened': dict(motion.spread),
         'poor_stretches': [vars(each) for each in motion.poor],
         'left_out': [{'tow': name, **vars(part)} for name, part in motion.left_out],
-        'swells': dict(motion.swells),
+        'swells': [{'tow': name, 'swing': swell} for name, swell in motion.swells],
         'not_used': list(motion.refused),
     }
