@@ -115,22 +115,23 @@ def _printed(trend: TrendRecord) -> str:
 
 
 def ratios_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
-    """Ratios and slopes beside the model: a ratio as the change in percent that it is."""
+    """Compare ratios and slopes with the model; ratios as changes in percent."""
     rows = []
     for trend in trends:
         if trend.counts:
             continue
         model = modelled_trend(trend, hauls)
-        if trend.ratio is not None:
-            sea, found = (f'{100.0 * (ratio - 1.0):+.1f} %' for ratio in (trend.ratio, model))
-        else:
+        if trend.per is not None:
             sea, found = (f'{slope:.3f} per {UNITS[trend.per]}' for slope in (trend.slope, model))
+        else:
+            assert trend.ratio is not None
+            sea, found = (f'{100.0 * (ratio - 1.0):+.1f} %' for ratio in (trend.ratio, model))
         where = f'{trend.first} to {trend.second}'
         found = found if math.isfinite(model) else 'no steady state'
         rows.append((trend.gear, word(trend.quantity), trend.by, where, sea, found, trend.source))
     return TextTable(
-        'Ratios, as changes in percent, and slopes that sources print. They are of another gear '
-        'than the one beside them, so they are shown and do not count.',
+        'Ratios, as changes in percent, and slopes that sources print. They belong to other gears '
+        'than those they are compared with, so they do not count.',
         ('gear', 'what', 'by', 'hauls', 'sea', 'model', 'source'),
         tuple(rows),
     )
