@@ -16,9 +16,9 @@ KITE = Kite(
     mass=50.0,
     volume=0.04,
     setting=np.radians(5.0),
-    lift=1.6,
+    normal_slope=5.2,
+    normal_limit=1.58,
     drag_base=0.1,
-    drag_growth=1.2,
 )
 WATER = Water(density=1025.0)
 
@@ -35,14 +35,16 @@ def load(pitch: float, flow: tuple[float, float, float]) -> np.ndarray:
 def test_lift_acts_against_gravity_and_drag_along_the_flow(pitch: float) -> None:
     found = load(pitch, (-2.0, 0.0, 0.0))
     attack = pitch + np.radians(5.0)
+    straight = 5.2 * np.sin(attack)
+    normal = straight / (1 + (straight / 1.58) ** 4) ** 0.25
     pressure = 0.5 * 1025.0 * 6.75 * 4.0
     weight = (50.0 - 1025.0 * 0.04) * 9.80665
     np.testing.assert_allclose(
         found,
         [
-            -pressure * (0.1 + 1.2 * np.sin(attack) ** 2),
+            -pressure * (0.1 + normal * np.sin(attack)),
             0.0,
-            pressure * 0.8 * np.sin(2 * attack) - weight,
+            pressure * normal * np.cos(attack) - weight,
         ],
         rtol=1e-12,
         atol=1e-9,

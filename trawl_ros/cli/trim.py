@@ -212,6 +212,7 @@ def _trimmed(
         lines.append(f'with {traded.told}')
     elif changes and found.usable < len(found.found):
         lines.append('no change of what is free makes more of the range usable')
+    lines.extend(f'at its bound: {coordinate}' for coordinate in found.at_bounds)
     for line in (*lines, closing_line(found), *_advice_lines(found)):
         click.echo(f'# {line}')
     return found.points, found.usable == len(found.found), traded

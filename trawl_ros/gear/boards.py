@@ -166,9 +166,6 @@ class BoardRecord(Record):
     chord_m: Positive
     law: BoardLawRecord | None = None
     coefficients: CoefficientsRecord
-    force_axes: Literal['flow', 'board']
-    moment_signs: tuple[Literal[-1, 1], Literal[-1, 1], Literal[-1, 1]]
-    slip_sign: Literal[-1, 1]
     rotary_slope: NotNegative
     fastening: FasteningRecord
     installation: InstallationRecord = InstallationRecord()
@@ -180,6 +177,7 @@ class BoardRecord(Record):
         if not isinstance(data, dict):
             return data
         given = dict(data)
+        _refuse_keys_of_0_1(given)
         sizes = [given.get(key) for key in ('mass_kg', 'volume_m3', 'span_m', 'chord_m')]
         known = [float(x) for x in sizes if isinstance(x, int | float) and x > 0]
         if len(known) == len(sizes):
@@ -187,11 +185,19 @@ class BoardRecord(Record):
             given.setdefault('added_mass_kg', (0.0, plate_added_mass(known[2], known[3]), 0.0))
         if given.get('law') is not None:
             given.setdefault('coefficients', dict.fromkeys(COEFFICIENTS, 0.0))
-            given.setdefault('force_axes', 'flow')
-            given.setdefault('moment_signs', (-1, 1, 1))
-            given.setdefault('slip_sign', -1)
             given.setdefault('rotary_slope', 2.5)
         return given
+
+
+def _refuse_keys_of_0_1(given: dict[str, object]) -> None:
+    found = [key for key in ('force_axes', 'moment_signs', 'slip_sign') if key in given]
+    if found:
+        raise ValueError(
+            f'found {", ".join(found)} of a gear file of 0.1, expected none: loads act in one frame '
+            'now, aft, outward and down (docs/from_0_1.md). Delete these keys and run trawl trim; '
+            'or, to keep what force_axes: flow, moment_signs: [-1, 1, 1] and slip_sign: -1 did, '
+            'reverse the signs of c3, b5, a6 and c6'
+        )
 
 
 def plate_inertia(mass: float, volume: float, span: float, chord: float) -> dict[str, float]:

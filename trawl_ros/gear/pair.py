@@ -41,9 +41,6 @@ def towing_plate(pair: PairRecord) -> BoardRecord:
             'span_m': high,
             'chord_m': long,
             'coefficients': CoefficientsRecord(**dict.fromkeys(COEFFICIENTS, 0.0)),
-            'force_axes': 'flow',
-            'moment_signs': (-1, 1, 1),
-            'slip_sign': -1,
             'rotary_slope': 0.0,
             'fastening': FasteningRecord(
                 warp_m=(AHEAD, 0.0, 0.0),

@@ -37,17 +37,18 @@ class WinchRecord(Record):
 class KiteRecord(Record):
     """The canvas kite on the headrope's centre.
 
-    Its rear carrying point lies ``chord_m`` of stretched netting behind the headrope.
+    Its rear carrying point lies ``carrying_length_m`` of stretched netting behind the headrope.
+    Normal force: ``normal_slope`` per radian of attack, at most ``normal_limit``.
     """
 
     area_m2: Positive
     mass_kg: NotNegative
     volume_m3: NotNegative
     setting_deg: Degrees
-    chord_m: Positive
-    lift_slope: NotNegative
+    carrying_length_m: Positive
+    normal_slope: NotNegative
+    normal_limit: Positive
     drag_base: NotNegative
-    drag_growth: NotNegative
 
 
 class ClumpRecord(Record):

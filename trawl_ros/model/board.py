@@ -50,13 +50,6 @@ class Board:
         installation angles.
     installation : tuple of float
         ε, ζ, η (rad): turns of the board about its z, y and x axes against its rigging.
-    moment_signs : tuple of float
-        Signs with which the printed moment coefficients act in the outward frame.
-    slip_sign : float
-        Sign with which β of eq. 2 enters eq. 14.
-    flow_axes : bool
-        True: C_x along the flow in the board's x-y plane and C_y across it; False: along
-        the board's own axes.
     rotary_slope : float
         Slope of lift per radian with which strips of a turning board resist its turning; zero
         as in the paper, or by the gear file.
@@ -79,9 +72,6 @@ class Board:
     chord: float
     points: FloatArray
     installation: Angles
-    moment_signs: tuple[float, float, float]
-    slip_sign: float
-    flow_axes: bool
     rotary_slope: float
     added_mass: FloatArray
     bend: CoefficientModifier | None = None
@@ -117,16 +107,10 @@ class Board:
         areas: FloatArray = np.array([chord * b**3 / 12, 0.0, b * chord**3 / 12])
         return self.rotary_slope * areas
 
-    @property
+    @cached_property
     def levers(self) -> FloatArray:
         """Lever lengths d_x, d_y, d_z of eq. 13, m."""
         return np.array([self.span, np.hypot(self.span, self.chord), self.chord])
-
-    @cached_property
-    def signed_levers(self) -> FloatArray:
-        """Lever lengths with the signs of the moments."""
-        levers: FloatArray = self.levers * np.asarray(self.moment_signs)
-        return levers
 
     @cached_property
     def middles(self) -> FloatArray:
@@ -241,15 +225,14 @@ def hydrodynamics(
 ) -> tuple[FloatArray, FloatArray]:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
     law = coefficients_at if board.law is None else board.law
-    coefficients = law(values, flow.attack, board.slip_sign * flow.slip)
+    coefficients = law(values, flow.attack, flow.slip)
     if board.bend is not None:
         coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
     given = flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
     loads = np.empty((2, *given[1].shape), complex)
     fill_loads(
         float(board.area),
-        board.signed_levers,
-        board.flow_axes,
+        board.levers,
         *as_kind(complex, *given),
         loads[0],
         loads[1],
@@ -319,12 +302,10 @@ def _by_formula(board: Board, given: list[FloatArray], water: Water) -> FloatArr
     """Loads (n, 6) by eq. 14, from coefficients, middle, and motion as `own_load` has them."""
     total = np.empty((len(given[2]), 6), complex)
     fill_own_loads(
-        board.flow_axes,
-        board.slip_sign,
         float(board.mass),
         float(board.volume),
         float(board.area),
-        board.signed_levers,
+        board.levers,
         board.inertia,
         board.rotary_resistance,
         *given,

@@ -139,26 +139,30 @@ def fill_flow(
 def fill_loads(
     area: float,
     levers: FloatArray,
-    flow_axes: bool,
     density: FloatArray,
     flow: FloatArray,
     coefficients: FloatArray,
     force: FloatArray,
     moment: FloatArray,
 ) -> None:
-    """Fill in force and moment (n, 3) in the outward frame (eq. 12); levers have their signs."""
+    """Fill in force and moment (n, 3) in the outward frame (eq. 12).
+
+    The paper's loads act along axes aft (with the flow), outward and down, which are left-handed
+    as the outward frame is for starboard. A half turn about y leads from one to the other, and
+    the vector product of eq. 17 in their components changes the sign of what is about x and z.
+    """
     for n in range(len(flow)):
         across, down = flow[n, 0] ** 2 + flow[n, 1] ** 2, flow[n, 2] ** 2
         pressure = 0.5 * density[n] * area * (across + down) * _across(flow[n])
         c, plane = coefficients[n], np.sqrt(across + 1e-18)
-        force[n, 0], force[n, 1] = pressure * c[0], pressure * c[1]
-        if flow_axes:
-            ahead, aside = flow[n, 0] / plane, flow[n, 1] / plane
-            force[n, 0] = pressure * (c[0] * ahead + c[1] * aside)
-            force[n, 1] = pressure * (c[0] * aside - c[1] * ahead)
-        force[n, 2] = pressure * c[2]
-        for i in range(3):
-            moment[n, i] = pressure * c[3 + i] * levers[i]
+        # Drag along the flow in the board's x-y plane, lift across it.
+        ahead, aside = flow[n, 0] / plane, flow[n, 1] / plane
+        force[n, 0] = pressure * (c[0] * ahead + c[1] * aside)
+        force[n, 1] = pressure * (c[0] * aside - c[1] * ahead)
+        force[n, 2] = -pressure * c[2]
+        moment[n, 0] = -pressure * c[3] * levers[0]
+        moment[n, 1] = pressure * c[4] * levers[1]
+        moment[n, 2] = -pressure * c[5] * levers[2]
 
 
 @compiled
@@ -210,8 +214,6 @@ def fill_total(
 
 @compiled
 def fill_own_loads(
-    flow_axes: bool,
-    slip_sign: float,
     mass: float,
     volume: float,
     area: float,
@@ -242,10 +244,8 @@ def fill_own_loads(
         for i in range(3):
             relative[n, i] -= velocity[n, i]
     fill_flow(middle, outward, rotation, relative, rate, flow, attack, slip)
-    for n in range(len(total)):
-        slip[n] *= slip_sign
     fill_coefficients(values, attack, slip, coefficients)
-    fill_loads(area, levers, flow_axes, density, flow, coefficients, force, moment)
+    fill_loads(area, levers, density, flow, coefficients, force, moment)
     fill_total(
         inertia, slowing, heavy, outward, rotation, rate, density, flow, force, moment, total
     )

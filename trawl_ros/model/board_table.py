@@ -19,12 +19,9 @@ from trawl_ros.model.compiled import alike, compiled, inner
 
 @dataclass(frozen=True, eq=False)
 class TableLaw:
-    """Law of a board that follows a polar; ``signs`` (3,) are those of the moments, which the table
-    does not need and therefore undoes.
-    """
+    """Law of a board that follows a polar."""
 
     polar: Polar
-    signs: tuple[float, float, float]
 
     @property
     def range(self) -> tuple[float, float]:
@@ -52,7 +49,7 @@ class TableLaw:
             values, *(np.broadcast_to(given, shape).ravel() for given in (attack, slip))
         )
         coefficients = np.empty((*angles[0].shape, 6), values.dtype)
-        _fill(self.polar.attack, self.cubics, np.array(self.signs), values, *angles, coefficients)
+        _fill(self.polar.attack, self.cubics, values, *angles, coefficients)
         return coefficients.reshape(*shape, 6)
 
 
@@ -72,7 +69,6 @@ def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> f
 def _fill(
     knots: FloatArray,
     cubics: FloatArray,
-    signs: FloatArray,
     values: FloatArray,
     attack: FloatArray,
     slip: FloatArray,
@@ -94,5 +90,6 @@ def _fill(
         coefficients[n, 2] = values[4] * beta * fade + values[5]
         coefficients[n, 3] = (values[6] * alpha + values[7]) * fade
         coefficients[n, 4] = values[8] * beta * fade + values[9]
-        turning = signs[2] * ahead * across + values[10] * alpha + values[11]
+        # C_z^M of eq. 12 turns the other way than a force ahead of the centre of gravity does.
+        turning = -ahead * across + values[10] * alpha + values[11]
         coefficients[n, 5] = turning * fade

@@ -232,12 +232,9 @@ def build_board(gear: GearRecord) -> Board:
             ]
         ),
         installation=tuple(np.radians([angles.epsilon_deg, angles.zeta_deg, angles.eta_deg])),
-        moment_signs=record.moment_signs,
-        slip_sign=float(record.slip_sign),
         rotary_slope=record.rotary_slope,
-        flow_axes=record.force_axes == 'flow',
         added_mass=np.array(record.added_mass_kg),
-        law=None if polar is None else TableLaw(polar, record.moment_signs),
+        law=None if polar is None else TableLaw(polar),
     )
 
 
@@ -292,7 +289,7 @@ def build_model(gear: GearRecord) -> GearModel:
     (142, True)
     """
     water, board = build_water(gear), build_board(gear)
-    mesh = build_net(gear.netting, None if gear.kite is None else gear.kite.chord_m)
+    mesh = build_net(gear.netting, None if gear.kite is None else gear.kite.carrying_length_m)
     build = GearBuilder()
     warp_row = rope_row(gear.warp, water)
     segments = gear.warp.segments
@@ -407,13 +404,13 @@ def build_model(gear: GearRecord) -> GearModel:
 def _build_kite(gear: GearRecord) -> Kite:
     kite = gear.kite
     if kite is None:
-        return Kite(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Kite(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     return Kite(
         area=kite.area_m2,
         mass=kite.mass_kg,
         volume=kite.volume_m3,
         setting=float(np.radians(kite.setting_deg)),
-        lift=kite.lift_slope,
+        normal_slope=kite.normal_slope,
+        normal_limit=kite.normal_limit,
         drag_base=kite.drag_base,
-        drag_growth=kite.drag_growth,
     )

@@ -22,16 +22,16 @@ STILL = 1e-6
 @dataclass(frozen=True)
 class Kite:
     """Properties of a kite: area (m²), mass (kg), volume (m³), setting angle against its two
-    carrying nodes (rad), and the constants of its lift and drag law.
+    carrying nodes (rad), and slope (1/rad) and limit of its normal force and its base drag.
     """
 
     area: float
     mass: float
     volume: float
     setting: float
-    lift: float
+    normal_slope: float
+    normal_limit: float
     drag_base: float
-    drag_growth: float
 
 
 def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArray) -> FloatArray:
@@ -70,15 +70,16 @@ def load(
     """Force (..., 3) N on the kite: lift against gravity, drag along the flow, weight and
     buoyancy (eq. 30, 33). Its carrying nodes share it equally.
 
-    C_L = ``lift`` sin 2a / 2 and C_D = ``drag_base`` + ``drag_growth`` sin² a: a flat canvas,
-    whose constants the gear file states.
+    The force is normal to the canvas: with s = ``normal_slope`` sin a and the limit N,
+    C_N = s / (1 + (s / N)⁴)^¼, C_L = C_N cos a and C_D = ``drag_base`` + C_N sin a.
     """
     given = front, rear, front_velocity, rear_velocity
     rows = [row.reshape(-1, 3) for row in as_kind(complex, *given)]
     force = np.empty_like(rows[0])
-    constants = kite.setting, kite.area, kite.mass, kite.volume, kite.lift
+    constants = kite.setting, kite.area, kite.mass, kite.volume
+    law = kite.normal_slope, kite.normal_limit, kite.drag_base
     fill_loads(
-        (*map(float, (*constants, kite.drag_base, kite.drag_growth)),),
+        (*map(float, (*constants, *law)),),
         *rows,
         water_of(water),
         force,
@@ -98,7 +99,7 @@ def fill_loads(
     force: FloatArray,
 ) -> None:
     """Fill in the forces (n, 3) on kites."""
-    setting, area, mass, volume, lift, drag_base, drag_growth = constants
+    setting, area, mass, volume, normal_slope, normal_limit, drag_base = constants
     density, gradient, gravity, knots, cubics = water
     flow, attack = np.empty_like(force), np.empty_like(force[:, 0])
     shear = np.empty(3)
@@ -111,10 +112,12 @@ def fill_loads(
         here = density - gradient * 0.5 * (front[n, 2] + rear[n, 2])
         square = flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2
         pressure = 0.5 * here * area
-        drag = drag_base + drag_growth * np.sin(attack[n]) ** 2
+        straight = normal_slope * np.sin(attack[n])
+        normal = straight / (1.0 + (straight / normal_limit) ** 4) ** 0.25
+        drag = drag_base + normal * np.sin(attack[n])
         for i in range(3):
             force[n, i] = pressure * drag * np.sqrt(square + 1e-18) * flow[n, i]
-        raised = pressure * 0.5 * lift * np.sin(2 * attack[n]) * square
+        raised = pressure * normal * np.cos(attack[n]) * square
         force[n, 2] += raised - (mass - here * volume) * gravity
 
 

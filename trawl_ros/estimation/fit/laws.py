@@ -46,7 +46,7 @@ LAWS = (
 
 @dataclass(frozen=True)
 class WorkingAngles:
-    """Mean attack and slip angle (rad) of the boards, slip with the sign that enters eq. 14."""
+    """Mean attack and slip angle (rad) of the boards."""
 
     attack: float
     slip: float
@@ -86,16 +86,8 @@ QUANTITIES = tuple(f'{law.symbol} {what}' for what in ('value', 'slope') for law
 """Names of the twelve quantities, in order."""
 
 
-def working_angles(observables: Iterable[Observables], slip_sign: int) -> WorkingAngles:
-    """Average the angles of both boards over steady states.
-
-    Parameters
-    ----------
-    observables
-        Observables of the states.
-    slip_sign
-        Sign with which β of eq. 2 enters eq. 14, from the gear file.
-    """
+def working_angles(observables: Iterable[Observables]) -> WorkingAngles:
+    """Average the angles of both boards over steady states."""
     angles = np.array(
         [
             (
@@ -106,7 +98,7 @@ def working_angles(observables: Iterable[Observables], slip_sign: int) -> Workin
         ]
     )
     attack, slip = 0.5 * angles.mean(axis=0)
-    return WorkingAngles(float(attack), float(slip_sign * slip))
+    return WorkingAngles(float(attack), float(slip))
 
 
 def law_rows(angles: WorkingAngles) -> FloatArray:

@@ -11,7 +11,6 @@ from trawl_ros.estimation.fit.laws import (
     law_spans,
     working_angles,
 )
-from trawl_ros.gear.records import GearRecord
 
 
 @dataclass(frozen=True)
@@ -27,12 +26,12 @@ class LawQuestion:
     span: FloatArray
 
     @classmethod
-    def of(cls, fit: Fit, gear: GearRecord) -> 'LawQuestion':
+    def of(cls, fit: Fit) -> 'LawQuestion':
         """Question of a fit with one window at least."""
         observables = [linear.state.observables for linear in fit.windows]
         return cls(
             fit.coefficients,
-            working_angles(observables, gear.board.slip_sign),
+            working_angles(observables),
             law_spans(fit.prior.start, fit.prior.std),
         )
 

@@ -207,7 +207,7 @@ class Adviser:
     def _rank(self, fit: Fit, known: _Known) -> tuple[RankedManoeuvre, ...]:
         if not fit.windows or not known:
             return ()
-        question = LawQuestion.of(fit, self._gear)
+        question = LawQuestion.of(fit)
         now = covariance_from(informed := information_in(fit), fit.prior)
         before, log_before = shortfall(question.quantities(now)), np.linalg.slogdet(now)[1]
         timetable, here = self._timetable(known), manoeuvre_of(fit)
@@ -252,7 +252,7 @@ class Adviser:
         return self._promise(fit, manoeuvre, self._serving())
 
     def _promise(self, fit: Fit, manoeuvre: Manoeuvre, known: _Known) -> Advice:
-        question = LawQuestion.of(fit, self._gear)
+        question = LawQuestion.of(fit)
         windows = expected_windows(fit, known[manoeuvre], self._windows.max_windows_per_state)
         now = fit.posterior.covariance
         then = replace(fit, windows=(*fit.windows, *windows)).posterior.covariance

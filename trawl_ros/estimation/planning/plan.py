@@ -195,7 +195,7 @@ def question_for(
     return Question(
         coefficients=np.array(coefficients),
         prior=prior,
-        angles=_angles(choice.candidates, gear),
+        angles=_angles(choice.candidates),
         span=law_spans(prior.start, prior.std),
         estimator=estimator or EstimatorOptions(),
         windows=windows or WindowOptions(),
@@ -204,10 +204,8 @@ def question_for(
     )
 
 
-def _angles(candidates: Sequence[TowableManoeuvre], gear: GearRecord) -> WorkingAngles:
-    return working_angles(
-        [candidate.part.state.observables for candidate in candidates], gear.board.slip_sign
-    )
+def _angles(candidates: Sequence[TowableManoeuvre]) -> WorkingAngles:
+    return working_angles([candidate.part.state.observables for candidate in candidates])
 
 
 def _look_up(
@@ -260,6 +258,6 @@ def _as_filed(
     return replace(
         question,
         coefficients=coefficients,
-        angles=_angles(candidates, gear),
+        angles=_angles(candidates),
         span=law_spans(coefficients),
     )

@@ -241,19 +241,17 @@ def report(
         course=tuple(identification.course),
         history=tuple(estimator.history),
         spectrum=spectrum(estimate.covariance, estimator.prior, weight),
-        laws=None if gear is None or gear.pair is not None else _laws(at_end, estimate, gear),
+        laws=None if gear is None or gear.pair is not None else _laws(at_end, estimate),
         paired=gear is not None and gear.pair is not None,
     )
 
 
-def _laws(
-    linearised: Sequence[Linearised | None], estimate: Estimate, gear: GearRecord
-) -> KnownLaws | None:
+def _laws(linearised: Sequence[Linearised | None], estimate: Estimate) -> KnownLaws | None:
     observables = [linear.state.observables for linear in linearised if linear is not None]
     if not observables:
         return None
     attack = [0.5 * (observed.port_attack + observed.starboard_attack) for observed in observables]
-    angles = working_angles(observables, gear.board.slip_sign)
+    angles = working_angles(observables)
     span = law_spans(estimate.values, estimate.std)
     return KnownLaws(
         attack=(min(attack), max(attack)),

@@ -16,6 +16,7 @@ from scipy.optimize import minimize
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.model.board import Board
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.trimming.held_boards import HeldBoard
@@ -34,8 +35,12 @@ NEAR = 3.0
 REACH = 0.3, 0.01
 """Largest change of a coordinate at once, and the one at which the search ends, m."""
 
-ON_BOARD = 0.55, 0.2, 0.5
-"""Room for points: along the chord, off the face (in chords) and along the span."""
+HOLES = 0.47, 0.2, 0.46
+"""Largest distance of a hole from the centre of gravity: along the chord and off the face, where a
+bracket carries it (both in chords), and along the span (in spans)."""
+
+AT_BOUND = 1e-3
+"""Distance (m) from its bound at which a coordinate rests on it."""
 
 ITERATIONS = 40
 SOFTEST = 1e-3
@@ -75,6 +80,19 @@ class RangeTrim:
     found: tuple[RangePoint, ...]
 
     @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Coordinates that rest on the edge of the room for holes, each with its value (m)."""
+        names = product(('warp', 'upper bridle', 'lower bridle'), 'xyz')
+        rests = np.abs(self.points) > hole_limits(self.model.board) - AT_BOUND
+        return tuple(
+            f'{point} {axis} {value:.3f} m'
+            for (point, axis), value, bound in zip(
+                names, self.points.flat, rests.flat, strict=True
+            )
+            if bound
+        )
+
+    @property
     def usable(self) -> int:
         """Number of operating points with a usable steady state."""
         return sum(point.steady is not None for point in self.found)
@@ -104,6 +122,11 @@ class RangeTrim:
         spans = [np.ptp(np.array(group), axis=0) for group in groups.values()]
         attack, inclination = np.max(spans, axis=0) if spans else (np.nan, np.nan)
         return float(attack), float(inclination)
+
+
+def hole_limits(board: Board) -> FloatArray:
+    """Largest distance (3,) of a hole from the centre of gravity, in the outward frame, m."""
+    return np.multiply(HOLES, (board.chord, board.chord, board.span))
 
 
 def trim_over_range(
@@ -210,16 +233,18 @@ def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
     """Points (3, 3) of least merit, from those given; steps are kept small enough for the
     shape to follow.
     """
-    points, reach = start, REACH[0]
+    limits = hole_limits(held.model.board)
+    points, reach = np.clip(start, -limits, limits), REACH[0]
     boards, states = held.boards(points), held.states
     value = _merit(held, boards, points, unknown)
-    room = np.multiply(ON_BOARD, (held.model.board.chord,) * 2 + (held.model.board.span,))
-    low, high = np.minimum(start, -room), np.maximum(start, room)
     for _ in range(ITERATIONS):
         if reach < REACH[1]:
             break
         bounds = np.stack(
-            [np.maximum(low, points - reach).ravel(), np.minimum(high, points + reach).ravel()],
+            [
+                np.maximum(-limits, points - reach).ravel(),
+                np.minimum(limits, points + reach).ravel(),
+            ],
             axis=1,
         )
         step = minimize(

@@ -26,7 +26,7 @@ def _numbers(value: object, key: str) -> Iterator[str]:
     if isinstance(value, dict):
         for name, part in value.items():
             yield from _numbers(part, f'{key}.{name}' if key else name)
-    elif isinstance(value, tuple) and key != 'board.moment_signs':
+    elif isinstance(value, tuple):
         for place, part in enumerate(value):
             yield from _numbers(part, f'{key}.{place}')
     elif isinstance(value, float) and value:

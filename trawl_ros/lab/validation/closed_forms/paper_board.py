@@ -100,30 +100,21 @@ class PaperBoard:
         record, n = self.record, self.axes()
         ux, uy, uz = self.relative_flow()
         u = sqrt(ux * ux + uy * uy + uz * uz)
-        cx, cy, cz, cmx, cmy, cmz = coefficients(
-            record, attack(ux, uy), record.slip_sign * attack(ux, uz)
-        )
+        cx, cy, cz, cmx, cmy, cmz = coefficients(record, attack(ux, uy), attack(ux, uz))
         part = (ux * ux + uy * uy) / (u * u) / cos(FULL) ** 2
         spanwise = 1.0 if part >= 1.0 else part * (2.0 - part)
         pressure = 0.5 * self.density * record.area_m2 * u * u * spanwise
-        if record.force_axes == 'flow':
-            plane = hypot(ux, uy)
-            along = (ux * n[0] + uy * n[1]) / plane
-            outside = (uy * n[0] - ux * n[1]) / plane
-            force = pressure * (cx * along + cy * outside + cz * n[2])
-        else:
-            force = pressure * (cx * n[0] + cy * n[1] + cz * n[2])
+        plane = hypot(ux, uy)
+        along = (ux * n[0] + uy * n[1]) / plane
+        outside = (uy * n[0] - ux * n[1]) / plane
+        force = pressure * (cx * along + cy * outside - cz * n[2])
         force = force - (record.mass_kg - record.volume_m3 * self.density) * np.array(
             [0.0, 0.0, self.gravity]
         )
         b, chord = record.span_m, record.chord_m
-        turns = (
-            record.moment_signs[0] * cmx * b,
-            record.moment_signs[1] * cmy * hypot(b, chord),
-            record.moment_signs[2] * cmz * chord,
-        )
-        # About left-handed axes a positive turn is a left-hand screw.
-        screw = turns[0] * n[0] + turns[1] * n[1] + turns[2] * n[2]
+        # Loads have axes aft, outward, down: the half turn about y of n. A positive turn about
+        # left-handed axes is a left-hand screw.
+        screw = -cmx * b * n[0] + cmy * hypot(b, chord) * n[1] - cmz * chord * n[2]
         strips = self._strips(u)
         slowing = [strips[i] * float(self.rate @ n[i]) * n[i] for i in range(3)]
         return force, -self.k_d * pressure * screw - slowing[0] - slowing[1] - slowing[2]

@@ -95,14 +95,14 @@ def sighting(model: GearModel, steady: SteadyState) -> Sighting:
     coefficients = coefficients_at(
         model.coefficients,
         np.float64(seen.port_attack),
-        np.float64(model.board.slip_sign * seen.port_slip),
+        np.float64(seen.port_slip),
     )
     load = board_loads(model, state)[0]
     return Sighting(
         seen,
         BoardReading(
             lift=float(coefficients[1]),
-            rolling=float(coefficients[3] * model.board.moment_signs[0]),
+            rolling=float(-coefficients[3]),
             outward=float(load[1]),
             upward=float(load[2]),
             normal=float(outward_normal_lift(state)[0]),
