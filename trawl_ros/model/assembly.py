@@ -97,7 +97,12 @@ def _motion(
 def lump_forces(model: GearModel, state: State) -> FloatArray:
     """Drag (eq. 22), weight and buoyancy (eq. 28) of knots, floats and weights, (n, 3) N."""
     x, v, *lumps = alike(
-        state.nodes, state.node_velocities, model.lump_mass, model.lump_volume, model.lump_drag_area
+        state.nodes,
+        state.node_velocities,
+        model.lump_mass,
+        model.lump_volume,
+        model.lump_drag_area,
+        model.lump_viscous_area,
     )
     force = np.empty_like(x)
     fill_lump_forces(x, v, *lumps, water_of(model.water), force)
@@ -306,7 +311,13 @@ def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray
 def _lump_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray]:
     stiffness, damping = np.empty((2, model.nodes, 3, 3))
     fill_lump_slopes(
-        *alike(state.nodes, state.node_velocities, model.lump_volume, model.lump_drag_area),
+        *alike(
+            state.nodes,
+            state.node_velocities,
+            model.lump_volume,
+            model.lump_drag_area,
+            model.lump_viscous_area,
+        ),
         water_of(model.water),
         stiffness,
         damping,

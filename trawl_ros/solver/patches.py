@@ -195,6 +195,7 @@ class _PatchForces:
         here = self.x[patch], self.v[patch]
         force, (own, slowed) = np.empty_like(new), np.empty((2, len(patch), 3, 3))
         shape = model.lump_volume[patch], model.lump_drag_area[patch]
+        shape += (model.lump_viscous_area[patch],)
         fill_lump_forces(*here, model.lump_mass[patch], *shape, water, force)
         fill_lump_slopes(*here, *shape, water, own, slowed)
         faster = step.by_velocity / step.by_position

@@ -86,6 +86,7 @@ def lone_line(
         lump_mass=nothing,
         lump_volume=nothing,
         lump_drag_area=nothing,
+        lump_viscous_area=nothing,
         lump_added=nothing,
         layout=replace(whole.layout, kite=NO_KITE, top_warp_bars=np.array(top, int)),
         pattern=build_pattern(nodes, ends, NO_KITE.nodes),
