@@ -49,7 +49,8 @@ class NettingRecord(Record):
     ``normal_drag`` (eq. 23) and ``friction`` (eq. 24) are the coefficients at high Reynolds numbers.
     Both grow as these fall, ``viscous`` times as Choo and Casarella (1971) have it. ``knot_drag`` is
     that of bare knots, and ``wake_exchange`` that of the water along a sheet with the water outside
-    (`trawl_ros.model.net.wake`). Panels in config/panels bear out what is not given.
+    (`trawl_ros.model.net.wake`). ``lift`` is the coefficient of lift that sheets have, by the square of
+    their solidity. Panels in config/panels bear out what is not given.
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
@@ -67,6 +68,7 @@ class NettingRecord(Record):
     knot_diameters: NotNegative
     knot_drag: NotNegative = 1.2
     wake_exchange: NotNegative = 0.03
+    lift: NotNegative = 3.0
     knot_added_mass: NotNegative
     wing_end_m: Positive | None = None
     wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)] | None = None

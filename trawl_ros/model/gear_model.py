@@ -21,6 +21,7 @@ from trawl_ros.model.line import BarProperties
 from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
+from trawl_ros.model.net.sheets import NetSheets, sheets_of
 from trawl_ros.model.net.twine_drag import viscous
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
@@ -96,7 +97,7 @@ class GearModel:
     Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m²,
     ``lump_viscous_area`` m² √(m/s), for ``drag_area`` |u| + ``viscous_area`` √|u|, ``lump_added``
     kg per kg/m³ of water; ``floats`` (4, n) are those of the floats among them, in this order.
-    ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
+    ``sheets`` are those of the netting at the nodes. ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
     codend.
 
     Examples
@@ -123,6 +124,7 @@ class GearModel:
     lump_added: FloatArray
     floats: FloatArray
     layout: NodeLayout
+    sheets: NetSheets
     first_guess: FloatArray
     net_mesh: NetMesh
     pattern: SparsityPattern
@@ -159,6 +161,11 @@ class GearModel:
         """Bars of the warps, and the others at boards."""
         rigged = self.pattern.rigged
         return self._group(np.concatenate([*self.warp_bars, rigged[self.warp_side[rigged] < 0]]))
+
+    @cached_property
+    def sheet_slots(self) -> IntArray:
+        """Slots (n, 5, 3, 3) of the sheets' blocks in the pattern."""
+        return self.pattern.blocks(self.sheets.around[:, :1], self.sheets.around)
 
     @cached_property
     def warps(self) -> 'BarGroup':
@@ -376,6 +383,7 @@ def build_model(gear: GearRecord) -> GearModel:
         for number, bar in enumerate(mesh.bars, first)
     ]
     kite = replace(mesh.kite, nodes=net[mesh.kite.nodes])
+    sheets = sheets_of(mesh.bars, mesh.positions)
     return GearModel(
         gear=gear,
         water=water,
@@ -404,6 +412,7 @@ def build_model(gear: GearRecord) -> GearModel:
             top_warp_bars=np.array(top_bars),
             lines=(*ropes[:before], *netting, *ropes[before:]),
         ),
+        sheets=replace(sheets, around=net[sheets.around]),
         first_guess=guess,
         net_mesh=mesh,
         pattern=build_pattern(build.count, ends, kite.nodes),

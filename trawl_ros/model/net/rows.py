@@ -86,7 +86,7 @@ class Profile:
         """
         sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
         # Of the area what is left of the drag of single twines across them, and along.
-        total = dict.fromkeys((*sums, 'normal', 'sliding'), 0.0)
+        total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift'), 0.0)
         dx = (back - front) / SLICES
         for section, parallel in self._slices(front, back, around):
             left, d = exposure(section, self.net), section.twine_diameter_m
@@ -94,6 +94,7 @@ class Profile:
             total['area'] += area
             total['normal'] += area * left.normal
             total['sliding'] += area * left.friction
+            total['lift'] += area * left.lift
             total['width'] += d * dx
             total['volume'] += parallel * twine * dx
             total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx

@@ -11,7 +11,7 @@ where C_t and C_n are the loads along and across the sheet per area of twine. Ac
 Taylor's screen (1944); e is what panels that lie along the flow have (config/panels).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi, radians
 
@@ -23,6 +23,9 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 ROUNDS, SHARE = 200, 0.2
 """Rounds in which water and loads agree, and the share of the way that each of them goes."""
 
+SMALL = 0.1
+"""Slope (rad) at which the lift of bars is looked up."""
+
 DENSEST = 0.9
 """Solidity that denser netting is taken to have."""
 
@@ -30,12 +33,13 @@ DENSEST = 0.9
 @dataclass(frozen=True)
 class Exposure:
     """Parts of the drag of single twines, across them and by friction, and of single knots that are
-    left in a sheet; of twine without what its knots hide.
+    left in a sheet, of twine without what its knots hide; and the coefficient κ of the sheet itself.
     """
 
     normal: float = 1.0
     friction: float = 1.0
     knots: float = 1.0
+    lift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -117,14 +121,27 @@ def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
 
 
 def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
-    """Exposure of a sheet of netting: the drag of each kind over that of single twines and knots."""
+    """Exposure of a sheet of netting: the drag of each kind over that of single twines and knots.
+
+    Lift of panels goes with the square of their solidity, as `NettingRecord.lift` has it; of it the
+    bars have their own.
+    """
     flow = sheet.flow
     single, left = (loads(net, sheet, motion) @ flow for motion in (flow, slowed(net, sheet)))
     # A knot hides as much of the twine as it is thick.
     hidden = 8.0 / pi / max(net.knot_diameters, 1e-12) * sheet.knots
     parts = [float(b / a) if a > 0.0 else 1.0 for a, b in zip(single, left, strict=True)]
     clear = max(1.0 - hidden, 0.0)
-    return Exposure(clear * parts[0], clear * parts[1], parts[2])
+    shares = clear * parts[0], clear * parts[1], parts[2]
+    square = sheet.solidity**2 / (1.0 + sheet.solidity**2)
+    return Exposure(*shares, max(net.lift - bars_lift(net, sheet, shares) / square, 0.0))
+
+
+def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, float]) -> float:
+    """Lift of the bars of a sheet at a small slope, per outline area and that slope."""
+    tilted = replace(sheet, slope=SMALL)
+    force = np.array(shares) @ loads(net, tilted, tilted.flow)
+    return float(sheet.solidity * force @ [-np.sin(SMALL), 0.0, np.cos(SMALL)] / np.sin(SMALL))
 
 
 @lru_cache(1000)

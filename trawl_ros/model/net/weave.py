@@ -16,7 +16,7 @@ from trawl_ros.model.net.rows import NettingRow, Profile
 class NetBar:
     """A numerical bar between two net nodes, with the properties of `line.BarProperties`; ``normal``
     and ``sliding`` are the parts of its area that single twines with as much drag have, across them
-    and along, and ``diameter`` (m) is that of its twine.
+    and along, ``diameter`` (m) is that of its twine, and ``lift`` the κ of its sheet.
     """
 
     start: int
@@ -31,6 +31,7 @@ class NetBar:
     normal: float
     sliding: float
     diameter: float
+    lift: float
 
 
 @dataclass
@@ -165,6 +166,7 @@ def _bar(
         sums['normal'] / area,
         sums['sliding'] / area,
         4.0 / np.pi * sums['volume'] / area,
+        sums['lift'] / area,
     )
 
 
