@@ -61,13 +61,13 @@ class NettingRecord(Record):
     codend_segments: Annotated[int, Field(ge=2, le=100)]
     codend_mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)]
     damping_time_s: NotNegative
-    normal_drag: NotNegative = 1.1
+    normal_drag: NotNegative = 0.9
     friction: NotNegative = 0.02
     viscous: NotNegative = 1.0
     added_mass_normal: NotNegative
     knot_diameters: NotNegative
-    knot_drag: NotNegative = 1.2
-    wake_exchange: NotNegative = 0.03
+    knot_drag: NotNegative = 1.5
+    wake_exchange: NotNegative = 0.02
     lift: NotNegative = 3.0
     knot_added_mass: NotNegative
     wing_end_m: Positive | None = None
