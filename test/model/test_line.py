@@ -25,6 +25,8 @@ BAR = BarProperties(
     added_normal=np.array([1.0]),
     added_tangential=np.array([0.1]),
     bow=np.array([0.0]),
+    normal_viscous=np.array([0.0]),
+    friction_viscous=np.array([0.0]),
 )
 AHEAD = np.array([1.0, 0.0, 0.0])
 

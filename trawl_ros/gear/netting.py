@@ -12,8 +12,8 @@ from trawl_ros.gear.numbers import NotNegative, Positive
 class SectionRecord(Record):
     """A section of netting, from front to back; its stretched circumference tapers linearly.
 
-    ``shielding`` is the part of the drag of single twines that is left in this netting, ``twines``
-    the number of them side by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of
+    ``shielding`` is the part of the drag of single twines that is left in this netting, that of
+    `trawl_ros.model.net.wake` where the file does not give it; ``twines`` the number of them side by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of
     their own, or lie along and across (``square``). ``ropes`` of a plan have no meshes:
     ``mesh_m`` is what one of them takes of the circumference at the mouth.
     """
@@ -28,7 +28,7 @@ class SectionRecord(Record):
     twine_modulus_pa: Positive
     twines: Literal[1, 2] = 1
     knotless: bool = False
-    shielding: Annotated[float, Field(gt=0, le=1)] = 1.0
+    shielding: Annotated[float, Field(gt=0, le=1)] | None = None
     mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)] | None = None
     square: bool = False
     ropes: bool = False
@@ -45,6 +45,12 @@ class NettingRecord(Record):
     stretched circumference of ``halved_at_circumference_m`` half as many numerical meshes go
     around as before it. ``bowing_pressure_pa`` is the load of the water across twine, per
     projected area, under which it bows between its knots; without it bars are straight.
+
+    ``normal_drag`` (eq. 23) and ``friction`` (eq. 24) are the coefficients at high Reynolds numbers.
+    Both grow as these fall, ``viscous`` times as Choo and Casarella (1971) have it. ``knot_drag`` is
+    that of bare knots, and ``wake_exchange`` that of the water along a sheet with the water outside
+    (`trawl_ros.model.net.wake`). ``lift`` is the coefficient of lift that sheets have, by the square of
+    their solidity. Panels in config/panels bear out what is not given.
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
@@ -55,11 +61,14 @@ class NettingRecord(Record):
     codend_segments: Annotated[int, Field(ge=2, le=100)]
     codend_mesh_angle_deg: Annotated[float, Field(gt=0, lt=90)]
     damping_time_s: NotNegative
-    normal_drag: NotNegative
-    friction: NotNegative
+    normal_drag: NotNegative = 0.9
+    friction: NotNegative = 0.02
+    viscous: NotNegative = 1.0
     added_mass_normal: NotNegative
     knot_diameters: NotNegative
-    knot_drag: NotNegative
+    knot_drag: NotNegative = 1.5
+    wake_exchange: NotNegative = 0.02
+    lift: NotNegative = 3.0
     knot_added_mass: NotNegative
     wing_end_m: Positive | None = None
     wing_edge_hanging: Annotated[float, Field(gt=0.3, lt=1)] | None = None

@@ -25,6 +25,7 @@ from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
 from trawl_ros.model.numerics import STEP, skew, stepped
 from trawl_ros.model.point_pass import fill_board_masses, fill_masses, fill_points, gather_loads
 from trawl_ros.model.rotations import rotation
+from trawl_ros.model.sheet_pass import add_sheet_forces, add_sheet_slopes
 from trawl_ros.model.state import State, Tow
 
 
@@ -94,10 +95,21 @@ def _motion(
         height[n] = between(x, v, ends[n, 0], ends[n, 1], vector[n], stretching[n], velocity[n])
 
 
+def sheets_of(model: GearModel) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """Sheets of netting as compiled loops take them."""
+    sheets = model.sheets
+    return sheets.around, sheets.weights, sheets.lift, sheets.twine
+
+
 def lump_forces(model: GearModel, state: State) -> FloatArray:
     """Drag (eq. 22), weight and buoyancy (eq. 28) of knots, floats and weights, (n, 3) N."""
     x, v, *lumps = alike(
-        state.nodes, state.node_velocities, model.lump_mass, model.lump_volume, model.lump_drag_area
+        state.nodes,
+        state.node_velocities,
+        model.lump_mass,
+        model.lump_volume,
+        model.lump_drag_area,
+        model.lump_viscous_area,
     )
     force = np.empty_like(x)
     fill_lump_forces(x, v, *lumps, water_of(model.water), force)
@@ -137,6 +149,7 @@ def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     x, v, rest, rate = alike(points.positions, points.velocities, *rest_lengths(model, tow))
     total = np.zeros_like(x)
     add_bar_forces(model.ends, x, v, rest, rate, model.bars.columns, water_of(model.water), total)
+    add_sheet_forces(x, v, *sheets_of(model), water_of(model.water), total)
     total[: model.nodes] += lump_forces(model, state)
     boards, kite = board_loads(model, state), kite_load(model, state)
     return gathered(model, total, points.arms, boards, kite)
@@ -214,6 +227,9 @@ def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
         c,
         start_force,
     )
+    moving = points.positions, points.velocities, *sheets_of(model), water_of(model.water)
+    add_sheet_slopes(*moving, model.sheet_slots, stiffness, damping)
+    add_sheet_forces(*moving, total)
     rig_k, rig_c = _rigged_blocks(model, state, points, start_force[hung:], k[hung:], c[hung:])
     body_k, body_c, body_force = _board_blocks(model, state)
     kite_k, kite_c, kite_force = _kite_blocks(model, state)
@@ -306,7 +322,13 @@ def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray
 def _lump_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray]:
     stiffness, damping = np.empty((2, model.nodes, 3, 3))
     fill_lump_slopes(
-        *alike(state.nodes, state.node_velocities, model.lump_volume, model.lump_drag_area),
+        *alike(
+            state.nodes,
+            state.node_velocities,
+            model.lump_volume,
+            model.lump_drag_area,
+            model.lump_viscous_area,
+        ),
         water_of(model.water),
         stiffness,
         damping,

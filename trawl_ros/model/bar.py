@@ -106,13 +106,19 @@ def tension_at(
 def drag_at(
     normal_area: float,
     sliding_area: float,
+    normal_viscous: float,
+    friction_viscous: float,
     rest: float,
     density: float,
     flow: FloatArray,
     along: FloatArray,
     force: FloatArray,
 ) -> None:
-    """Fill in the drag on a bar (eq. 23, 24); the areas include their coefficients."""
+    """Fill in the drag on a bar (eq. 23, 24); the areas include their coefficients.
+
+    Both coefficients grow with the root of the flow's part across as it falls: |u| becomes
+    |u| + viscous √|u across| (docs/model.md, Netting).
+    """
     tangential = 0 * rest
     for i in range(3):
         tangential += flow[i] * along[i]
@@ -120,8 +126,10 @@ def drag_at(
     for i in range(3):
         square += (flow[i] - tangential * along[i]) ** 2
     half = 0.5 * density * rest
-    across = half * normal_area * np.sqrt(square)
-    sliding = np.sqrt(tangential**2 + STILL**2)
+    speed = np.sqrt(square)
+    root = np.sqrt(speed)
+    across = half * normal_area * (speed + normal_viscous * root)
+    sliding = np.sqrt(tangential**2 + STILL**2) + friction_viscous * root
     lengthwise = half * sliding_area * sliding * tangential
     for i in range(3):
         normal = flow[i] - tangential * along[i]
@@ -172,6 +180,8 @@ def pull_slopes_at(
 def load_slopes_at(
     normal_area: float,
     sliding_area: float,
+    normal_viscous: float,
+    friction_viscous: float,
     rest: float,
     density: float,
     flow: FloatArray,
@@ -191,23 +201,31 @@ def load_slopes_at(
     for i in range(3):
         square += (flow[i] - tangential * along[i]) ** 2
     speed = np.sqrt(square)
+    root = np.sqrt(speed)
     sliding = np.sqrt(tangential**2 + STILL**2)
     across = 0.5 * density * rest * normal_area
     lengthwise = 0.5 * density * rest * sliding_area
-    by_sliding = lengthwise * (sliding + tangential**2 / sliding)
+    # Across the bar a factor of the flow's part n there, and n times the slope of this factor.
+    factor = speed + normal_viscous * root
+    growth = (1.0 + 0.5 * normal_viscous / root) / speed
+    viscous = friction_viscous * root
+    by_sliding = lengthwise * (sliding + tangential**2 / sliding + viscous)
+    # Slope of the pull along by n, over n.
+    by_normal = 0.5 * lengthwise * tangential * viscous / square
     for i in range(3):
         normal_i = flow[i] - tangential * along[i]
         turned = 0.0
         for j in range(3):
             normal_j = flow[j] - tangential * along[j]
-            bent = speed * (i == j) + normal_i * normal_j / speed
+            bent = factor * (i == j) + normal_i * normal_j * growth
             # normal · (I - t tᵀ) is normal itself, for it has no part along the bar.
-            by_flow = across * (bent - speed * along[i] * along[j])
-            by_velocity[i, j] = -by_flow - by_sliding * along[i] * along[j]
+            by_flow = across * (bent - factor * along[i] * along[j])
+            by_flow += along[i] * (by_sliding * along[j] + by_normal * normal_j)
+            by_velocity[i, j] = -by_flow
             # δ normal = -(along · flow + t · flow along) as the bar turns.
-            by_along = -across * (speed * along[i] * flow[j] + tangential * bent)
-            by_along += by_sliding * along[i] * flow[j]
-            by_along += lengthwise * sliding * tangential * (i == j)
+            by_along = -across * (factor * along[i] * flow[j] + tangential * bent)
+            by_along += along[i] * (by_sliding * flow[j] - by_normal * tangential * normal_j)
+            by_along += lengthwise * (sliding + viscous) * tangential * (i == j)
             by_vector[i, j] = by_along / span
             turned += by_along * along[j]
         for j in range(3):

@@ -52,7 +52,7 @@ def add_bar_forces(
 ) -> None:
     """Add to the points (p, 3) at both ends of the bars their pull and half of their load each."""
     stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
-    bow = bars[10]
+    bow, normal_viscous, friction_viscous = bars[10:]
     density, gradient, gravity, knots, cubics = water
     vector, stretching, velocity = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
     along, flow, load = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
@@ -68,7 +68,8 @@ def add_bar_forces(
         for i in range(3):
             flow[i] -= velocity[i]
         areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
-        drag_at(areas[0], areas[1], rest[n], here, flow, along, load)
+        viscous = normal_viscous[n], friction_viscous[n]
+        drag_at(areas[0], areas[1], viscous[0], viscous[1], rest[n], here, flow, along, load)
         load[2] += weight_at(mass[n], volume[n], rest[n], here, gravity)
         for i in range(3):
             total[start, i] += force * along[i] + 0.5 * load[i]
@@ -99,7 +100,7 @@ def add_bar_blocks(
     the others come the blocks (r, 6, 6), and the forces (r, 3) at their starts.
     """
     stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
-    bow = bars[10]
+    bow, normal_viscous, friction_viscous = bars[10:]
     density, gradient, gravity, knots, cubics = water
     plain = len(order) - len(k_others)
     vector, stretching, velocity = np.empty(3), np.empty(3), np.empty(3)
@@ -120,7 +121,8 @@ def add_bar_blocks(
         for i in range(3):
             flow[i] -= velocity[i]
         areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
-        drag_at(areas[0], areas[1], rest[n], here, flow, along, load)
+        viscous = normal_viscous[n], friction_viscous[n]
+        drag_at(areas[0], areas[1], viscous[0], viscous[1], rest[n], here, flow, along, load)
         pull_slopes_at(
             stiffness[n],
             damping_time[n],
@@ -137,6 +139,8 @@ def add_bar_blocks(
         load_slopes_at(
             areas[0],
             areas[1],
+            viscous[0],
+            viscous[1],
             rest[n],
             here,
             flow,
@@ -196,7 +200,7 @@ def add_bar_masses(
     """Add half of the mass of the bars at either end, as `add_bar_blocks` does; of those that are
     not plain comes one half (r, 3, 3).
     """
-    _, _, mass, volume, _, _, _, _, added_normal, added_tangential, _ = bars
+    mass, volume, added_normal, added_tangential = bars[2], bars[3], bars[8], bars[9]
     plain = len(order) - len(others)
     vector, matrix = np.empty(3), np.empty((3, 3))
     for number in range(len(order)):

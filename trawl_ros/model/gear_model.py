@@ -21,6 +21,8 @@ from trawl_ros.model.line import BarProperties
 from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
+from trawl_ros.model.net.sheets import NetSheets, sheets_of
+from trawl_ros.model.net.twine_drag import viscous
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
 from trawl_ros.model.rigging import (
@@ -92,9 +94,10 @@ class GearModel:
 
     ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
-    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m², ``lump_added``
+    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m²,
+    ``lump_viscous_area`` m² √(m/s), for ``drag_area`` |u| + ``viscous_area`` √|u|, ``lump_added``
     kg per kg/m³ of water; ``floats`` (4, n) are those of the floats among them, in this order.
-    ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
+    ``sheets`` are those of the netting at the nodes. ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
     codend.
 
     Examples
@@ -117,9 +120,11 @@ class GearModel:
     lump_mass: FloatArray
     lump_volume: FloatArray
     lump_drag_area: FloatArray
+    lump_viscous_area: FloatArray
     lump_added: FloatArray
     floats: FloatArray
     layout: NodeLayout
+    sheets: NetSheets
     first_guess: FloatArray
     net_mesh: NetMesh
     pattern: SparsityPattern
@@ -156,6 +161,11 @@ class GearModel:
         """Bars of the warps, and the others at boards."""
         rigged = self.pattern.rigged
         return self._group(np.concatenate([*self.warp_bars, rigged[self.warp_side[rigged] < 0]]))
+
+    @cached_property
+    def sheet_slots(self) -> IntArray:
+        """Slots (n, 5, 3, 3) of the sheets' blocks in the pattern."""
+        return self.pattern.blocks(self.sheets.around[:, :1], self.sheets.around)
 
     @cached_property
     def warps(self) -> 'BarGroup':
@@ -306,14 +316,15 @@ def build_model(gear: GearRecord) -> GearModel:
     net = build.nodes(len(mesh.positions))
 
     record = gear.netting
-    added = (record.added_mass_normal, 0.0)
+    added, drag = (record.added_mass_normal, 0.0), (record.normal_drag, record.friction)
     first, before, nodes = len(build.ends), len(build.lines), net.tolist()
     for bar in mesh.bars:
         # The codend's drag is on its nodes, its volume and stiffness in its bars.
         area = 0.0 if bar.group == 'codend' else bar.area
-        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
-        drag = (record.normal_drag * bar.shielding, record.friction * bar.shielding)
-        build.bar(nodes[bar.start], nodes[bar.end], bar.rest, (*row, *drag, *added, bar.bow))
+        areas = (area * bar.normal, np.pi * area * bar.sliding)
+        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, *areas, *drag, *added)
+        growth = viscous(record, bar.diameter)
+        build.bar(nodes[bar.start], nodes[bar.end], bar.rest, (*row, bar.bow, *growth))
     rests_of, sides = _frame_rests(gear, mesh), mesh.wing_ends
     for name, rope, rim, rests in (
         ('headrope', gear.headrope, mesh.headrope, rests_of[0]),
@@ -327,10 +338,13 @@ def build_model(gear: GearRecord) -> GearModel:
     lumps[1, net] += mesh.knot_volume
     lumps[2, net] += mesh.knot_area * record.knot_drag + mesh.line_drag_area
     lumps[3, net] += mesh.knot_volume * record.knot_added_mass
+    viscous_area = np.zeros(build.count)
+    viscous_area[net] = mesh.line_viscous_area
     catch = None if gear.catch is None else place_catch(gear.catch, record, mesh)
     if gear.catch is not None and catch is not None:
         # Where the codend is full the water goes around it, which the drag of the catch counts.
         lumps[2, net] *= 1.0 - catch.covered
+        viscous_area[net] *= 1.0 - catch.covered
         lumps[:, net] += catch.lumps(gear.catch, water.density)
     # Knots are made of the twine they join: their mass is the first body section's density.
     lumps[0, net] += mesh.knot_volume * mesh.knot_density
@@ -366,6 +380,7 @@ def build_model(gear: GearRecord) -> GearModel:
         for number, bar in enumerate(mesh.bars, first)
     ]
     kite = replace(mesh.kite, nodes=net[mesh.kite.nodes])
+    sheets = sheets_of(mesh.bars, mesh.positions)
     return GearModel(
         gear=gear,
         water=water,
@@ -379,6 +394,7 @@ def build_model(gear: GearRecord) -> GearModel:
         lump_mass=lumps[0],
         lump_volume=lumps[1],
         lump_drag_area=lumps[2],
+        lump_viscous_area=viscous_area,
         lump_added=lumps[3],
         floats=buoyant,
         layout=NodeLayout(
@@ -393,6 +409,7 @@ def build_model(gear: GearRecord) -> GearModel:
             top_warp_bars=np.array(top_bars),
             lines=(*ropes[:before], *netting, *ropes[before:]),
         ),
+        sheets=replace(sheets, around=net[sheets.around]),
         first_guess=guess,
         net_mesh=mesh,
         pattern=build_pattern(build.count, ends, kite.nodes),

@@ -22,7 +22,8 @@ class BarProperties:
     ``stiffness`` EA (N); ``damping_time`` c_l l0 / EA (s); ``mass`` (kg/m); ``volume`` (m²,
     that is m³/m); ``normal_area`` S_N and ``wet_area`` S_f (m²/m); ``normal_drag`` C_N90 and
     ``friction`` C_f; ``added_normal`` C_mn = C_mb and ``added_tangential`` C_mt of eq. 26;
-    ``bow`` of `bar.bowed_at` (dimensionless), 0 for bars that stay straight.
+    ``bow`` of `bar.bowed_at` (dimensionless), 0 for bars that stay straight; ``normal_viscous`` and
+    ``friction_viscous`` (√(m/s)) of `bar.drag_at`, 0 for coefficients that are constant.
     """
 
     stiffness: FloatArray
@@ -36,6 +37,8 @@ class BarProperties:
     added_normal: FloatArray
     added_tangential: FloatArray
     bow: FloatArray
+    normal_viscous: FloatArray
+    friction_viscous: FloatArray
 
     def __post_init__(self) -> None:
         for name, values in zip(vars(self), alike(*self.columns), strict=True):
@@ -133,6 +136,8 @@ def drag(bars: BarProperties, motion: BarMotion, along: FloatArray, water: Water
     given = alike(
         bars.normal_drag * bars.normal_area,
         bars.friction * bars.wet_area,
+        bars.normal_viscous,
+        bars.friction_viscous,
         motion.rest,
         water.density_at(motion.height),
         water.current(motion.height) - motion.velocity,
@@ -147,6 +152,8 @@ def drag(bars: BarProperties, motion: BarMotion, along: FloatArray, water: Water
 def _drag(
     normal_area: FloatArray,
     sliding_area: FloatArray,
+    normal_viscous: FloatArray,
+    friction_viscous: FloatArray,
     rest: FloatArray,
     density: FloatArray,
     flow: FloatArray,
@@ -154,4 +161,14 @@ def _drag(
     force: FloatArray,
 ) -> None:
     for n in range(len(rest)):
-        drag_at(normal_area[n], sliding_area[n], rest[n], density[n], flow[n], along[n], force[n])
+        drag_at(
+            normal_area[n],
+            sliding_area[n],
+            normal_viscous[n],
+            friction_viscous[n],
+            rest[n],
+            density[n],
+            flow[n],
+            along[n],
+            force[n],
+        )

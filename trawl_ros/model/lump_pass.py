@@ -16,6 +16,7 @@ def fill_lump_forces(
     mass: FloatArray,
     volume: FloatArray,
     drag_area: FloatArray,
+    viscous_area: FloatArray,
     water: WaterTable,
     force: FloatArray,
 ) -> None:
@@ -29,7 +30,8 @@ def fill_lump_forces(
         for i in range(3):
             flow[i] -= v[n, i]
             square += flow[i] ** 2
-        factor = 0.5 * here * drag_area[n] * np.sqrt(square)
+        speed = np.sqrt(square)
+        factor = 0.5 * here * (drag_area[n] * speed + viscous_area[n] * np.sqrt(speed))
         for i in range(3):
             force[n, i] = factor * flow[i]
         force[n, 2] -= (mass[n] - here * volume[n]) * gravity
@@ -41,6 +43,7 @@ def fill_lump_slopes(
     v: FloatArray,
     volume: FloatArray,
     drag_area: FloatArray,
+    viscous_area: FloatArray,
     water: WaterTable,
     stiffness: FloatArray,
     damping: FloatArray,
@@ -56,11 +59,15 @@ def fill_lump_slopes(
         for i in range(3):
             flow[i] -= v[n, i]
             square += flow[i] ** 2
-        factor, speed = 0.5 * here * drag_area[n], np.sqrt(square)
+        speed = np.sqrt(square)
+        viscous = viscous_area[n] * np.sqrt(speed)
+        factor = 0.5 * here * (drag_area[n] * speed + viscous)
+        # Slope of this factor by the flow, over the flow.
+        growth = 0.5 * here * (drag_area[n] * speed + 0.5 * viscous) / square
         for i in range(3):
-            by_height = -gradient / here * factor * speed * flow[i]
+            by_height = -gradient / here * factor * flow[i]
             for j in range(3):
-                by_flow = factor * (speed * (i == j) + flow[i] * flow[j] / speed)
+                by_flow = factor * (i == j) + growth * flow[i] * flow[j]
                 damping[n, i, j] = by_flow
                 by_height += by_flow * shear[j]
             stiffness[n, i, 2] = -by_height

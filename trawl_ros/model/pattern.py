@@ -54,6 +54,15 @@ class SparsityPattern:
         before = 36 * len(self.plain) + 9 * len(self.hung) + 81 * len(self.rigged) + 2 * 36
         return self.slot[before : before + 9 * nodes].reshape(nodes, 3, 3)
 
+    def blocks(self, rows: IntArray, columns: IntArray) -> IntArray:
+        """Slots (..., 3, 3) of the blocks of nodes in these rows and columns."""
+        three = np.arange(3)
+        down = 3 * rows[..., None, None] + three[:, None]
+        across = 3 * columns[..., None, None] + three
+        wanted = across.astype(np.int64) * self.dof + down
+        column = np.repeat(np.arange(self.dof, dtype=np.int64), np.diff(self.indptr))
+        return np.searchsorted(column * self.dof + self.indices, wanted)
+
     def times(self, data: FloatArray, vector: FloatArray) -> FloatArray:
         """Product of the matrix of ``data`` with a vector (dof,)."""
         product = np.zeros(self.dof, np.result_type(data, vector))

@@ -85,6 +85,8 @@ def rope_row(rope: RopeRecord, water: Water) -> tuple[float, ...]:
         rope.added_mass_normal,
         rope.added_mass_tangential,
         0.0,
+        0.0,
+        0.0,
     )
 
 

@@ -17,6 +17,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.net.kite_nodes import NO_KITE
+from trawl_ros.model.net.sheets import NetSheets
 from trawl_ros.model.pattern import build_pattern
 from trawl_ros.model.state import State, Tow
 from trawl_ros.model.water import Water
@@ -86,7 +87,9 @@ def lone_line(
         lump_mass=nothing,
         lump_volume=nothing,
         lump_drag_area=nothing,
+        lump_viscous_area=nothing,
         lump_added=nothing,
+        sheets=NetSheets(np.empty((0, 5), int), np.empty((0, 2, 5)), nothing[:0], nothing[:0]),
         layout=replace(whole.layout, kite=NO_KITE, top_warp_bars=np.array(top, int)),
         pattern=build_pattern(nodes, ends, NO_KITE.nodes),
     )

@@ -61,10 +61,9 @@ def place_catch(catch: CatchRecord, net: NettingRecord, mesh: NetMesh) -> Codend
     GearError
         If it is longer than the codend.
     """
-    codend = net.codend
+    profile = Profile(net.codend, net)
     if net.plan is not None:
-        codend = sections_of(net, net.plan, 'codend', 'upper').sections
-    profile = Profile(codend)
+        profile = sections_of(net, net.plan, 'codend', 'upper')
     behind = 0.0
     for _ in range(ROUNDS):
         section, circumference = profile.at(profile.length - behind)

@@ -49,7 +49,7 @@ def build_net(net: NettingRecord, carrying_length: float | None) -> NetMesh:
     if net.plan is not None:
         return _planned_net(net, net.plan, carrying_length)
     n = net.around
-    body = Profile(net.body)
+    body = Profile(net.body, net)
     rows = rows_of(body, n, net.halved_at_circumference_m)
     wing_rows = n // 12
     wing_row = net.body[0].front_circumference_m / (2 * n)
@@ -72,7 +72,7 @@ def build_net(net: NettingRecord, carrying_length: float | None) -> NetMesh:
     made = weave(net, body, wings, rows, lambda k, j: _in_wing(k, j, n, wing_rows), sums)
     index, last = made.index, rows[-1]
     ring = [index[len(rows), j] for j in range(last.columns)]
-    add_codend(net, Profile((*body.behind(last.back), *net.codend)), ring, made)
+    add_codend(net, Profile((*body.behind(last.back), *net.codend), net), ring, made)
     top, bottom = 0, n // 2
     rim_top = _rim(index, n, wing_rows, top)
     rim_bottom = _rim(index, n, wing_rows, bottom)
@@ -82,6 +82,7 @@ def build_net(net: NettingRecord, carrying_length: float | None) -> NetMesh:
         knot_area=made.knot_area,
         knot_volume=made.knot_volume,
         line_drag_area=made.line_drag,
+        line_viscous_area=made.line_viscous,
         headrope=rim_top,
         footrope=rim_bottom,
         edge_rest=wing_row,
@@ -101,7 +102,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, carrying_length: float
     cloth = PlannedCloth(net, mouth)
     sections = cloth.bodies['upper'].sections
     drawn = next((n for n, section in enumerate(sections) if section.square), len(sections))
-    body = Profile(sections[:drawn])
+    body = Profile(sections[:drawn], net)
     halved = net.halved_at_circumference_m or (plan.circumference / 2, plan.circumference / 4)
     rows = rows_of(body, net.around, halved)
     wings = [
@@ -123,7 +124,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, carrying_length: float
     last, codend = rows[-1], sections_of(net, plan, 'codend', 'upper')
     ring = [made.index[len(rows), j] for j in range(last.columns)]
     line = *body.behind(last.back), *sections[drawn:], *codend.sections
-    add_codend(net, Profile(line), ring, made)
+    add_codend(net, Profile(line, net), ring, made)
 
     def nodes(places: tuple[Place, ...], *, mirrored: bool = False) -> list[int]:
         around = 2 * net.around
@@ -145,6 +146,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, carrying_length: float
         knot_area=made.knot_area,
         knot_volume=made.knot_volume,
         line_drag_area=made.line_drag,
+        line_viscous_area=made.line_viscous,
         headrope=headrope,
         footrope=footrope,
         edge_rest=mouth.row,

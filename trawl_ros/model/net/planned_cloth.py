@@ -40,27 +40,6 @@ def mesh_angle(piece: PieceRecord, net: NettingRecord) -> float:
     return float(min(np.arcsin(sine), WIDEST))
 
 
-def shielding(piece: PieceRecord, net: NettingRecord) -> float:
-    """Part of the drag of single twines that is left in a piece of netting.
-
-    As for a porous screen (Taylor 1944): with a resistance K per sheet area the water goes through
-    it at 1 / (1 + K / 4) of its speed. K is that of the twines and knots on the area of the meshes
-    at the opening of the gear file, or that their orientation gives them. It acts on water along
-    the sheet as well: the wakes of twines lie along it, and what goes through a slanting sheet
-    leaves the momentum of that motion too (docs/model.md, Netting).
-    """
-    if piece.orientation == 'ropes' or (net.plan is not None and not net.plan.shielded):
-        return 1.0
-    bar, diameter = 0.5 * piece.mesh, piece.twine.diameter * piece.twines
-    angle = np.pi / 4 if piece.orientation == 'square' else mesh_angle(piece, net)
-    open_area = bar**2 * np.sin(2 * angle)
-    blocked = net.normal_drag * 2 * bar * diameter
-    if piece.knots == 'knotted':
-        knot = net.knot_diameters * piece.twine.diameter
-        blocked += net.knot_drag * np.pi / 4 * knot**2
-    return float(1 / (1 + blocked / open_area / 4) ** 2)
-
-
 def section_of(
     piece: PieceRecord, net: NettingRecord, length: float, front: float, back: float
 ) -> SectionRecord:
@@ -77,7 +56,7 @@ def section_of(
         twine_modulus_pa=twine.fibre.modulus,
         twines=piece.twines,
         knotless=piece.knots == 'knotless' or piece.orientation == 'ropes',
-        shielding=shielding(piece, net),
+        shielding=None if net.plan is None or net.plan.shielded else 1.0,
         mesh_angle_deg=(
             float(np.degrees(mesh_angle(piece, net))) if piece.orientation == 'T90' else None
         ),
@@ -95,7 +74,7 @@ def sections_of(net: NettingRecord, plan: NetPlanRecord, part: Part, panel: str)
         names = panel, 'side' if panel.startswith('side') else 'all', 'all'
         own = next((p for p in pieces if p.panel in names), pieces[0])
         sections.append(section_of(own, net, length, front, back))
-    return Profile(tuple(sections))
+    return Profile(tuple(sections), net)
 
 
 @dataclass(frozen=True)
@@ -128,7 +107,7 @@ class PlannedCloth:
                 names = 'side_upper', 'side_lower', 'side', 'upper'
             pieces = next(pieces for name in names if (pieces := self.plan.wing(name)))
             sections = [section_of(p, self.net, p.length, around, around) for p in pieces]
-            found[panel] = Profile(tuple(sections))
+            found[panel] = Profile(tuple(sections), self.net)
         return found
 
     def bounds(self, x: float) -> tuple[float, float, float]:

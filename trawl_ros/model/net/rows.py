@@ -1,6 +1,7 @@
 """Netting along its length: the profile of the real one, and the rows of bars grouped from it."""
 
 from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -8,7 +9,9 @@ import numpy as np
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.limits import GEAR_NODES
-from trawl_ros.gear.netting import SectionRecord
+from trawl_ros.gear.netting import NettingRecord, SectionRecord
+from trawl_ros.model.net.twine_drag import viscous
+from trawl_ros.model.net.wake import bar_angle, exposure
 
 SLICES = 64
 """Slices along a row over which the sections' properties are summed."""
@@ -47,8 +50,8 @@ class NettingRow:
 class Profile:
     """Real netting as functions of the stretched distance from the mouth."""
 
-    def __init__(self, sections: tuple[SectionRecord, ...]) -> None:
-        self.sections = sections
+    def __init__(self, sections: tuple[SectionRecord, ...], net: NettingRecord) -> None:
+        self.sections, self.net = sections, net
         self.edges: list[float] = np.cumsum([0.0, *(s.length_m for s in sections)]).tolist()
 
     @property
@@ -81,27 +84,17 @@ class Profile:
 
         Netting ahead of the mouth is taken to be like that at the mouth.
         """
-        sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume', 'felt'
-        # Of what is felt: that of bars with an angle of their own, and its sine³ and cosine³.
-        total = dict.fromkeys((*sums, 'turned', 'across', 'along'), 0.0)
+        sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
+        # Of the area what is left of the drag of single twines across them, and along.
+        total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift'), 0.0)
         dx = (back - front) / SLICES
-        for x in front + (np.arange(SLICES) + 0.5) * dx:
-            section, circumference = self.at(float(x))
-            parallel = circumference / section.mesh_m / around * section.twines
-            if section.square:
-                # A bar along and one across for each bar's length.
-                parallel *= 2.0
-            d = section.twine_diameter_m
-            twine = np.pi / 4 * d**2
-            total['area'] += parallel * d * dx
-            # The part of that area which the drag is as large as that of.
-            total['felt'] += parallel * d * dx * section.shielding
-            if section.square or section.mesh_angle_deg is not None:
-                felt = parallel * d * dx * section.shielding
-                total['turned'] += felt
-                across, along = _cubes(section)
-                total['across'] += felt * across
-                total['along'] += felt * along
+        for section, parallel in self._slices(front, back, around):
+            left, d = exposure(section, self.net), section.twine_diameter_m
+            twine, area = np.pi / 4 * d**2, parallel * d * dx
+            total['area'] += area
+            total['normal'] += area * left.normal
+            total['sliding'] += area * left.friction
+            total['lift'] += area * left.lift
             total['width'] += d * dx
             total['volume'] += parallel * twine * dx
             total['mass'] += parallel * twine * section.twine_density_kg_m3 * dx
@@ -109,17 +102,41 @@ class Profile:
             total['stiffness'] += bearing * twine * section.twine_modulus_pa * dx
             # Two knots per mesh and mesh length, shared by the two bars of a column.
             knots = 0.0 if section.knotless else parallel / (section.mesh_m / 2) * dx / 2
-            total['knots'] += knots * np.pi / 4 * d**2 * section.shielding
+            total['knots'] += knots * np.pi / 4 * d**2 * left.knots
             total['knot_volume'] += knots * np.pi / 6 * d**3
         return total
 
+    def _slices(
+        self, front: float, back: float, around: int
+    ) -> Iterator[tuple[SectionRecord, float]]:
+        """Sections in the middles of slices of [front, back], and bars side by side there."""
+        dx = (back - front) / SLICES
+        for x in front + (np.arange(SLICES) + 0.5) * dx:
+            section, circumference = self.at(float(x))
+            # Square meshes have a bar along and one across for each bar's length.
+            bars = section.twines * (2.0 if section.square else 1.0)
+            yield section, circumference / section.mesh_m / around * bars
 
-def _cubes(section: SectionRecord) -> tuple[float, float]:
-    """Means of sine³ and cosine³ of the angle of bars that have one of their own."""
-    if section.square or section.mesh_angle_deg is None:
-        return 0.5, 0.5
-    angle = np.radians(section.mesh_angle_deg)
-    return float(np.sin(angle) ** 3), float(np.cos(angle) ** 3)
+    def line_drag(self, front: float, back: float) -> tuple[float, float]:
+        """Drag area C_D S (m²) of the twines over [front, back] as they lie in the flow, and its
+        viscous part (m² √(m/s)), both as `lump_pass` has them.
+        """
+        net, area, viscous_area = self.net, 0.0, 0.0
+        for section, parallel in self._slices(front, back, 1):
+            left, d = exposure(section, net), section.twine_diameter_m
+            # Two bars make a mesh.
+            twine = 2.0 * parallel * d * (back - front) / SLICES
+            angle = bar_angle(section, net)
+            angles = np.array([0.0, 0.5 * np.pi] if section.square else [angle])
+            sine, cosine = np.sin(angles), np.abs(np.cos(angles))
+            normal = net.normal_drag * left.normal
+            friction = np.pi * net.friction * left.friction
+            growth = viscous(net, d)
+            area += twine * np.mean(normal * sine**3 + friction * cosine**3)
+            viscous_area += twine * np.mean(
+                growth[0] * normal * sine**2.5 + growth[1] * friction * np.sqrt(sine) * cosine**2
+            )
+        return float(area), float(viscous_area)
 
 
 def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tuple[NettingRow, ...]:

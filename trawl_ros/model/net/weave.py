@@ -14,8 +14,9 @@ from trawl_ros.model.net.rows import NettingRow, Profile
 
 @dataclass(frozen=True)
 class NetBar:
-    """A numerical bar between two net nodes, with the properties of `line.BarProperties`;
-    ``shielding`` is the part of single twines' drag that is left in its netting.
+    """A numerical bar between two net nodes, with the properties of `line.BarProperties`; ``normal``
+    and ``sliding`` are the parts of its area that single twines with as much drag have, across them
+    and along, ``diameter`` (m) is that of its twine, and ``lift`` the κ of its sheet.
     """
 
     start: int
@@ -27,7 +28,10 @@ class NetBar:
     mass: float
     bow: float
     group: str
-    shielding: float
+    normal: float
+    sliding: float
+    diameter: float
+    lift: float
 
 
 @dataclass
@@ -36,7 +40,7 @@ class NetMesh:
 
     ``positions`` (n, 3) is a first guess, x forward from the wing tips, y to port, z up; ``bars``
     its netting; ``knot_area`` (m²) and ``knot_volume`` (m³) per node; ``line_drag_area`` C_D S
-    (m²) of the codend's nodes; ``headrope`` and ``footrope`` the nodes from port to starboard
+    (m²) of the codend's nodes and ``line_viscous_area`` its viscous part (m² √(m/s)); ``headrope`` and ``footrope`` the nodes from port to starboard
     wing tip, ``edge_rest`` the length of a bar of a wing's edge; ``wing_ends`` the nodes joined
     by the wing-end lines or side ropes, from the top down; ``kite`` what carries the kite;
     ``tips`` the nodes that bridles are shackled to: port upper and lower, starboard upper and
@@ -49,6 +53,7 @@ class NetMesh:
     knot_area: FloatArray
     knot_volume: FloatArray
     line_drag_area: FloatArray
+    line_viscous_area: FloatArray
     headrope: list[int]
     footrope: list[int]
     edge_rest: float
@@ -71,6 +76,7 @@ class Weave:
     knot_area: FloatArray = field(default_factory=lambda: np.zeros(0))
     knot_volume: FloatArray = field(default_factory=lambda: np.zeros(0))
     line_drag: FloatArray = field(default_factory=lambda: np.zeros(0))
+    line_viscous: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 def weave(
@@ -125,6 +131,7 @@ def weave(
     made.knot_area = np.zeros(len(made.positions) + net.codend_segments)
     made.knot_volume = np.zeros_like(made.knot_area)
     made.line_drag = np.zeros_like(made.knot_area)
+    made.line_viscous = np.zeros_like(made.knot_area)
     for k, row in enumerate([*wings, *rows], -len(wings)):
         for j in range(row.around):
             for other in _behind(row, j):
@@ -144,6 +151,7 @@ def _bar(
     a: int, b: int, rest: float, sums: dict[str, float], pressure: float, group: str
 ) -> NetBar:
     # Netting of hardly any circumference has no twine.
+    area = max(sums['area'], 1e-12)
     sag = pressure * sums['width'] * rest / sums['stiffness'] if sums['stiffness'] else 0.0
     return NetBar(
         a,
@@ -155,7 +163,10 @@ def _bar(
         sums['mass'] / rest,
         sag**2 / 24.0,
         group,
-        sums['felt'] / sums['area'] if sums['area'] else 1.0,
+        sums['normal'] / area,
+        sums['sliding'] / area,
+        4.0 / np.pi * sums['volume'] / area,
+        sums['lift'] / area,
     )
 
 
@@ -173,11 +184,6 @@ def add_codend(net: NettingRecord, codend: Profile, ring: list[int], made: Weave
     m = net.codend_segments
     step = codend.length / m
     tail = made.positions[ring[0]][0]
-    mesh_angle = np.radians(net.codend_mesh_angle_deg)
-    # Eq. 23 and 24 along the flow for a bar at the stated angle, as C_D S per twine area.
-    per_area = (
-        net.normal_drag * np.sin(mesh_angle) ** 3 + net.friction * np.pi * np.cos(mesh_angle) ** 3
-    )
     previous: list[int] = ring
     for k in range(m):
         made.positions.append((tail - (k + 1) * step, 0.0, 0.0))
@@ -186,8 +192,9 @@ def add_codend(net: NettingRecord, codend: Profile, ring: list[int], made: Weave
         # Two bars make a mesh: all bars of the cross-section lie in the line.
         sums = {key: 2 * value for key, value in sums.items()}
         knots = sums['knots'] * net.knot_diameters**2 * net.knot_drag
-        turned = net.normal_drag * sums['across'] + net.friction * np.pi * sums['along']
-        made.line_drag[node] += (sums['felt'] - sums['turned']) * per_area + turned + knots
+        area, viscous_area = codend.line_drag(k * step, (k + 1) * step)
+        made.line_drag[node] += area + knots
+        made.line_viscous[node] += viscous_area
         share = {key: value / len(previous) for key, value in sums.items()}
         for start in previous:
             made.bars.append(_bar(start, node, step, share, 0.0, 'codend'))

@@ -1,0 +1,25 @@
+"""Growth of a twine's drag as its Reynolds number falls, after Choo and Casarella (1971).
+
+Hydrodynamic resistance of towed cables, Journal of Hydronautics 5(4): with Re of the motion across
+the cylinder the coefficient of the drag is 1.1 + 4 Re^-1/2 for 30 to 100 000, and the laminar part of
+the pull per length along it π μ 0.55 Re^1/2 U_t. Both go with the root of the motion across, so that
+the bars' loops need one more root and no Reynolds number.
+"""
+
+from math import sqrt
+
+from trawl_ros.gear.netting import NettingRecord
+
+VISCOSITY = 1.36e-6
+"""Kinematic viscosity of sea water of 35 g/kg at 10 °C, m²/s (ITTC 7.5-02-01-03)."""
+
+ACROSS, ALONG = 4.0, 1.1
+"""Factors of Re^-1/2 in the coefficient across, and of Re^1/2 over the Reynolds number of the motion
+along in that of friction on the wetted surface."""
+
+
+def viscous(net: NettingRecord, diameter: float) -> tuple[float, float]:
+    """Viscous parts (√(m/s)) of a twine's drag across and along, of `model.bar.drag_at`."""
+    scale = net.viscous * sqrt(VISCOSITY / diameter) if diameter > 0.0 else 0.0
+    across = ACROSS * scale / net.normal_drag if net.normal_drag else 0.0
+    return across, ALONG * scale / net.friction if net.friction else 0.0

@@ -1,0 +1,154 @@
+"""Sheets of netting in flowing water: how much of the load of single twines and knots is left.
+
+Twines of a sheet lie in each other's wakes, and the water squeezes through between them. Along the
+sheet it has 1 - a of its speed, through it 1 - b, which the twines speed up by 1 / (1 - S) with the
+solidity S. What the sheet takes is what the water loses that comes by: with the slope θ of the sheet
+to the flow, by its own motion through the sheet and by turbulent exchange,
+
+    S C_t = 4 a cos θ ((1 - b) sin θ + e),   S C_n = 4 b sin θ ((1 - b) sin θ + e)
+
+where C_t and C_n are the loads along and across the sheet per area of twine. Across the flow this is
+Taylor's screen (1944); e is what panels that lie along the flow have (config/panels).
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import pi, radians
+
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.gear.netting import NettingRecord, SectionRecord
+
+ROUNDS, SHARE = 200, 0.2
+"""Rounds in which water and loads agree, and the share of the way that each of them goes."""
+
+SMALL = 0.1
+"""Slope (rad) at which the lift of bars is looked up."""
+
+DENSEST = 0.9
+"""Solidity that denser netting is taken to have."""
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """Parts of the drag of single twines, across them and by friction, and of single knots that are
+    left in a sheet, of twine without what its knots hide; and the coefficient κ of the sheet itself.
+    """
+
+    normal: float = 1.0
+    friction: float = 1.0
+    knots: float = 1.0
+    lift: float = 0.0
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Sheet of netting: unit vectors (n, 3) along its bars, in its own axes along, around and across
+    it; its ``slope`` to the flow (rad), its ``solidity``, and the ``knots``' area per area of twine.
+    """
+
+    bars: FloatArray
+    slope: float
+    solidity: float
+    knots: float
+
+    @property
+    def flow(self) -> FloatArray:
+        """Direction (3,) of the flow far away."""
+        return np.array([np.cos(self.slope), 0.0, np.sin(self.slope)])
+
+
+def bar_angle(section: SectionRecord, net: NettingRecord) -> float:
+    """Angle (rad) of the bars of a section of diamond meshes against its length."""
+    angle = section.mesh_angle_deg
+    return radians(net.codend_mesh_angle_deg if angle is None else angle)
+
+
+def sheet_of(section: SectionRecord, net: NettingRecord) -> Sheet:
+    """Sheet of a section as it is drawn, a cone whose meshes are open by the angle of its bars."""
+    angle = 0.25 * pi if section.square else bar_angle(section, net)
+    opening = 1.0 if section.square else np.tan(angle)
+    narrowing = section.front_circumference_m - section.back_circumference_m
+    slope = np.arctan(max(narrowing, 0.0) * opening / (2.0 * pi * section.length_m))
+    return sheet(section, net, angle, float(slope))
+
+
+def sheet(section: SectionRecord, net: NettingRecord, angle: float, slope: float) -> Sheet:
+    """Sheet of a section's netting with its bars at an angle (rad) and itself at a slope (rad)."""
+    bar, diameter = 0.5 * section.mesh_m, section.twine_diameter_m
+    solidity = 2.0 * section.twines * diameter / (bar * np.sin(2.0 * angle))
+    bars = [(np.cos(angle), sign * np.sin(angle), 0.0) for sign in (1.0, -1.0)]
+    knot = 0.0 if section.knotless else net.knot_diameters
+    return Sheet(
+        bars=np.eye(3)[:2] if section.square else np.array(bars),
+        slope=slope,
+        solidity=min(float(solidity), DENSEST),
+        knots=pi / 8.0 * knot**2 * diameter / bar,
+    )
+
+
+def loads(net: NettingRecord, sheet: Sheet, flow: FloatArray) -> FloatArray:
+    """Loads (3, 3) across twines, along them, and on knots, per ½ ρ and area of twine.
+
+    ``flow`` (3,) is the water's motion at the twines, of the speed far away.
+    """
+    along = sheet.bars @ flow
+    across = flow - along[:, None] * sheet.bars
+    speeds = np.linalg.norm(across, axis=1)
+    share = 1.0 / len(sheet.bars)
+    return np.array(
+        [
+            share * net.normal_drag * (speeds[:, None] * across).sum(axis=0),
+            share * net.friction * pi * (np.abs(along) * along) @ sheet.bars,
+            net.knot_drag * sheet.knots * np.linalg.norm(flow) * flow,
+        ]
+    )
+
+
+def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
+    """Motion (3,) of the water at the twines of a sheet, of its speed far away."""
+    cosine, _, sine = sheet.flow
+    lost = np.zeros(2)
+    for _ in range(ROUNDS):
+        left = 1.0 - lost
+        flow = np.array([left[0] * cosine, 0.0, left[1] * sine / (1.0 - sheet.solidity)])
+        load = sheet.solidity * loads(net, sheet, flow).sum(axis=0)[[0, 2]]
+        passing = 4.0 * (left[1] * sine + net.wake_exchange)
+        taken = load / np.maximum(passing * np.array([cosine, sine]), 1e-12)
+        lost += SHARE * (np.minimum(taken, 0.95) - lost)
+    return flow
+
+
+def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
+    """Exposure of a sheet of netting: the drag of each kind over that of single twines and knots.
+
+    Lift of panels goes with the square of their solidity, as `NettingRecord.lift` has it; of it the
+    bars have their own.
+    """
+    flow = sheet.flow
+    single, left = (loads(net, sheet, motion) @ flow for motion in (flow, slowed(net, sheet)))
+    # A knot hides as much of the twine as it is thick.
+    hidden = 8.0 / pi / max(net.knot_diameters, 1e-12) * sheet.knots
+    parts = [float(b / a) if a > 0.0 else 1.0 for a, b in zip(single, left, strict=True)]
+    clear = max(1.0 - hidden, 0.0)
+    shares = clear * parts[0], clear * parts[1], parts[2]
+    square = sheet.solidity**2 / (1.0 + sheet.solidity**2)
+    return Exposure(*shares, max(net.lift - bars_lift(net, sheet, shares) / square, 0.0))
+
+
+def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, float]) -> float:
+    """Lift of the bars of a sheet at a small slope, per outline area and that slope."""
+    tilted = replace(sheet, slope=SMALL)
+    force = np.array(shares) @ loads(net, tilted, tilted.flow)
+    return float(sheet.solidity * force @ [-np.sin(SMALL), 0.0, np.cos(SMALL)] / np.sin(SMALL))
+
+
+@lru_cache(1000)
+def exposure(section: SectionRecord, net: NettingRecord) -> Exposure:
+    """Exposure of the netting of a section; that of single twines where the file switches it off."""
+    if section.ropes:
+        return Exposure()
+    if section.shielding is not None:
+        return Exposure(section.shielding, section.shielding, section.shielding)
+    return exposure_of(sheet_of(section, net), net)
