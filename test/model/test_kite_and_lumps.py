@@ -16,6 +16,7 @@ KITE = Kite(
     mass=50.0,
     volume=0.04,
     setting=np.radians(5.0),
+    pitched=True,
     normal_slope=5.2,
     normal_limit=1.58,
     drag_base=0.1,

@@ -260,7 +260,7 @@ def test_the_kite_hangs_on_a_planned_headrope(tmp_path: Path) -> None:
         'mass_kg': 10.0,
         'volume_m3': 0.01,
         'setting_deg': 5.0,
-        'carrying_length_m': 4.0,
+        'chord_m': 4.0,
         'normal_slope': 5.2,
         'normal_limit': 1.58,
         'drag_base': 0.1,

@@ -174,8 +174,12 @@ class Wish:
     @property
     def places(self) -> tuple[list[float], list[float]]:
         """Warps and speeds of the range."""
-        low, high = self.speeds
-        return sorted(set(self.warps)), sorted({low, float(np.sqrt(low * high)), high})
+        return _with_middle(self.warps), _with_middle(self.speeds)
+
+
+def _with_middle(ends: tuple[float, float]) -> list[float]:
+    """Ends of a range and their geometric mean."""
+    return sorted({ends[0], float(np.sqrt(ends[0] * ends[1])), ends[1]})
 
 
 def _trimmed(

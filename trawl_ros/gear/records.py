@@ -37,7 +37,8 @@ class WinchRecord(Record):
 class KiteRecord(Record):
     """The canvas kite on the headrope's centre.
 
-    Its rear carrying point lies ``carrying_length_m`` of stretched netting behind the headrope.
+    Legs of its own hold it at ``setting_deg`` to the flow; or, with ``chord_m``, it hangs between
+    the headrope and a point that lies as much stretched netting behind, and pitches with these.
     Normal force: ``normal_slope`` per radian of attack, at most ``normal_limit``.
     """
 
@@ -45,7 +46,7 @@ class KiteRecord(Record):
     mass_kg: NotNegative
     volume_m3: NotNegative
     setting_deg: Degrees
-    carrying_length_m: Positive
+    chord_m: Positive | None = None
     normal_slope: NotNegative
     normal_limit: Positive
     drag_base: NotNegative

@@ -299,7 +299,9 @@ def build_model(gear: GearRecord) -> GearModel:
     (142, True)
     """
     water, board = build_water(gear), build_board(gear)
-    mesh = build_net(gear.netting, None if gear.kite is None else gear.kite.carrying_length_m)
+    # Without a chord both points of the kite are the headrope's centre.
+    chord = None if gear.kite is None else gear.kite.chord_m or 0.0
+    mesh = build_net(gear.netting, chord)
     build = GearBuilder()
     warp_row = rope_row(gear.warp, water)
     segments = gear.warp.segments
@@ -421,12 +423,13 @@ def build_model(gear: GearRecord) -> GearModel:
 def _build_kite(gear: GearRecord) -> Kite:
     kite = gear.kite
     if kite is None:
-        return Kite(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+        return Kite(0.0, 0.0, 0.0, 0.0, False, 0.0, 1.0, 0.0)
     return Kite(
         area=kite.area_m2,
         mass=kite.mass_kg,
         volume=kite.volume_m3,
         setting=float(np.radians(kite.setting_deg)),
+        pitched=kite.chord_m is not None,
         normal_slope=kite.normal_slope,
         normal_limit=kite.normal_limit,
         drag_base=kite.drag_base,

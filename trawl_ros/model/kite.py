@@ -21,14 +21,15 @@ STILL = 1e-6
 
 @dataclass(frozen=True)
 class Kite:
-    """Properties of a kite: area (m²), mass (kg), volume (m³), setting angle against its two
-    carrying nodes (rad), and slope (1/rad) and limit of its normal force and its base drag.
+    """Properties of a kite: area (m²), mass (kg), volume (m³), setting angle (rad), whether it
+    pitches with the line through its two carrying nodes, and slope (1/rad) and limit of its normal force and its base drag.
     """
 
     area: float
     mass: float
     volume: float
     setting: float
+    pitched: bool
     normal_slope: float
     normal_limit: float
     drag_base: float
@@ -36,18 +37,24 @@ class Kite:
 
 def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArray) -> FloatArray:
     """Attack angle a_c (rad): pitch of the line through both carrying nodes in the vertical
-    plane (eq. 31), plus the rise of the flow (eq. 32), plus the setting angle.
+    plane (eq. 31) where the kite is pitched, plus the rise of the flow (eq. 32), plus the setting
+    angle.
     """
     given = front, rear, flow
     attack = np.empty(front.shape[:-1], complex)
     rows = [row.reshape(-1, 3) for row in as_kind(complex, *given)]
-    fill_attack_angles(float(kite.setting), *rows, attack.reshape(-1))
+    fill_attack_angles(float(kite.setting), kite.pitched, *rows, attack.reshape(-1))
     return attack if stepped_among(*given) else attack.real
 
 
 @compiled
 def fill_attack_angles(
-    setting: float, front: FloatArray, rear: FloatArray, flow: FloatArray, attack: FloatArray
+    setting: float,
+    pitched: bool,
+    front: FloatArray,
+    rear: FloatArray,
+    flow: FloatArray,
+    attack: FloatArray,
 ) -> None:
     """Fill in the attack angles (n,)."""
     for n in range(len(attack)):
@@ -55,8 +62,9 @@ def fill_attack_angles(
         for i in range(2):
             chord += (front[n, i] - rear[n, i]) ** 2
             level += flow[n, i] ** 2
-        pitch = angle_at(front[n, 2] - rear[n, 2], np.sqrt(chord))
-        attack[n] = pitch + angle_at(flow[n, 2], np.sqrt(level)) + setting
+        attack[n] = angle_at(flow[n, 2], np.sqrt(level)) + setting
+        if pitched:
+            attack[n] += angle_at(front[n, 2] - rear[n, 2], np.sqrt(chord))
 
 
 def load(
@@ -80,6 +88,7 @@ def load(
     law = kite.normal_slope, kite.normal_limit, kite.drag_base
     fill_loads(
         (*map(float, (*constants, *law)),),
+        kite.pitched,
         *rows,
         water_of(water),
         force,
@@ -91,6 +100,7 @@ def load(
 @compiled
 def fill_loads(
     constants: tuple[float, ...],
+    pitched: bool,
     front: FloatArray,
     rear: FloatArray,
     front_velocity: FloatArray,
@@ -107,7 +117,7 @@ def fill_loads(
         current_at(knots, cubics, 0.5 * (front[n, 2] + rear[n, 2]), flow[n], shear)
         for i in range(3):
             flow[n, i] -= 0.5 * (front_velocity[n, i] + rear_velocity[n, i])
-    fill_attack_angles(setting, front, rear, flow, attack)
+    fill_attack_angles(setting, pitched, front, rear, flow, attack)
     for n in range(len(force)):
         here = density - gradient * 0.5 * (front[n, 2] + rear[n, 2])
         square = flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2

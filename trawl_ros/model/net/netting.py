@@ -31,14 +31,14 @@ NETS = 4
 
 
 @lru_cache(NETS)
-def build_net(net: NettingRecord, carrying_length: float | None) -> NetMesh:
+def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
     """Group the netting of a gear into nodes and bars.
 
     Parameters
     ----------
     net
         Sections with wings of the usual cut, or a plan.
-    carrying_length
+    kite_chord
         See `KiteRecord`; None without a kite.
 
     Raises
@@ -47,7 +47,7 @@ def build_net(net: NettingRecord, carrying_length: float | None) -> NetMesh:
         If the net cannot be cut as the file says.
     """
     if net.plan is not None:
-        return _planned_net(net, net.plan, carrying_length)
+        return _planned_net(net, net.plan, kite_chord)
     n = net.around
     body = Profile(net.body, net)
     rows = rows_of(body, n, net.halved_at_circumference_m)
@@ -87,13 +87,13 @@ def build_net(net: NettingRecord, carrying_length: float | None) -> NetMesh:
         footrope=rim_bottom,
         edge_rest=wing_row,
         wing_ends=_wing_ends(index, n, wing_rows),
-        kite=NO_KITE if carrying_length is None else _kite_nodes(rows, index, carrying_length),
+        kite=NO_KITE if kite_chord is None else _kite_nodes(rows, index, kite_chord),
         tips=(rim_top[0], rim_bottom[0], rim_top[-1], rim_bottom[-1]),
         knot_density=net.body[0].twine_density_kg_m3,
     )
 
 
-def _planned_net(net: NettingRecord, plan: NetPlanRecord, carrying_length: float | None) -> NetMesh:
+def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | None) -> NetMesh:
     """Group the netting of a plan; see `PlannedMouth` and `PlannedCloth`.
 
     Square meshes keep their width: from the first section of them on the net is one line.
@@ -134,8 +134,8 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, carrying_length: float
     frame = mouth.headrope(), mouth.footrope(), mouth.side_rope()
     headrope, footrope = (nodes(rope.places) for rope in frame[:2])
     kite = NO_KITE
-    if carrying_length is not None:
-        kite = _kite_nodes(rows, made.index, carrying_length)
+    if kite_chord is not None:
+        kite = _kite_nodes(rows, made.index, kite_chord)
         if headrope[len(headrope) // 2] != kite.nodes[0]:
             raise GearError(
                 'kite: found beside an upper panel that reaches ahead of the mouth, expected one'

@@ -19,8 +19,10 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.model.board import Board
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
+from trawl_ros.solver.trim import roll_for
 from trawl_ros.solver.trimming.held_boards import HeldBoard
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at, coarsest_model
+from trawl_ros.solver.trimming.released import released_points
 
 TURNS = np.radians([5.0, 5.0, 2.0])
 """Roll, pitch and yaw of a board that count alike: lift changes with yaw."""
@@ -195,10 +197,10 @@ def trim_over_range(
             best = found
     on_progress(WorkProgress('riggings', len(UNKNOWN), len(UNKNOWN)))
     assert best is not None
-    if coarse is model:
-        return best
-    whole = HeldGear(model.with_board(points=best.points), rotations, places)
-    return _released(whole, best.points)
+    wanted = attack, roll_for(inclination, pitch), pitch
+    points = released_points(coarse, best.points, hole_limits(model.board), wanted, places)
+    whole = held if coarse is model else HeldGear(model, rotations, places)
+    return max((_released(whole, found) for found in (points, best.points)), key=_worth)
 
 
 def _worth(found: RangeTrim) -> tuple[int, float]:
