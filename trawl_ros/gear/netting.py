@@ -67,7 +67,7 @@ class NettingRecord(Record):
     added_mass_normal: NotNegative
     knot_diameters: NotNegative
     knot_drag: NotNegative = 1.5
-    wake_exchange: NotNegative = 0.02
+    wake_exchange: NotNegative = 0.03
     lift: NotNegative = 3.0
     knot_added_mass: NotNegative
     wing_end_m: Positive | None = None

@@ -48,11 +48,16 @@ class NettingRow:
 
 
 class Profile:
-    """Real netting as functions of the stretched distance from the mouth."""
+    """Real netting as functions of the stretched distance from the mouth, or that of a codend, which
+    is ``closed`` behind.
+    """
 
-    def __init__(self, sections: tuple[SectionRecord, ...], net: NettingRecord) -> None:
+    def __init__(
+        self, sections: tuple[SectionRecord, ...], net: NettingRecord, *, closed: bool = False
+    ) -> None:
         self.sections, self.net = sections, net
         self.edges: list[float] = np.cumsum([0.0, *(s.length_m for s in sections)]).tolist()
+        self._closing = sections[-1].back_circumference_m / self.length if closed else 0.0
 
     @property
     def length(self) -> float:
@@ -89,7 +94,7 @@ class Profile:
         total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift'), 0.0)
         dx = (back - front) / SLICES
         for section, parallel in self._slices(front, back, around):
-            left, d = exposure(section, self.net), section.twine_diameter_m
+            left, d = exposure(section, self.net, self._closing), section.twine_diameter_m
             twine, area = np.pi / 4 * d**2, parallel * d * dx
             total['area'] += area
             total['normal'] += area * left.normal
@@ -123,7 +128,7 @@ class Profile:
         """
         net, area, viscous_area = self.net, 0.0, 0.0
         for section, parallel in self._slices(front, back, 1):
-            left, d = exposure(section, net), section.twine_diameter_m
+            left, d = exposure(section, net, self._closing), section.twine_diameter_m
             # Two bars make a mesh.
             twine = 2.0 * parallel * d * (back - front) / SLICES
             angle = bar_angle(section, net)

@@ -65,12 +65,17 @@ def bar_angle(section: SectionRecord, net: NettingRecord) -> float:
     return radians(net.codend_mesh_angle_deg if angle is None else angle)
 
 
-def sheet_of(section: SectionRecord, net: NettingRecord) -> Sheet:
-    """Sheet of a section as it is drawn, a cone whose meshes are open by the angle of its bars."""
+def sheet_of(section: SectionRecord, net: NettingRecord, closing: float) -> Sheet:
+    """Sheet of a section as it is drawn, a cone whose meshes are open by the angle of its bars.
+
+    A net that is closed behind gives off the water at its end through the netting too, as a cone
+    does whose circumference shrinks by ``closing`` more per length.
+    """
     angle = 0.25 * pi if section.square else bar_angle(section, net)
     opening = 1.0 if section.square else np.tan(angle)
     narrowing = section.front_circumference_m - section.back_circumference_m
-    slope = np.arctan(max(narrowing, 0.0) * opening / (2.0 * pi * section.length_m))
+    narrowing = max(narrowing / section.length_m + closing, 0.0)
+    slope = np.arctan(narrowing * opening / (2.0 * pi))
     return sheet(section, net, angle, float(slope))
 
 
@@ -145,10 +150,10 @@ def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, floa
 
 
 @lru_cache(1000)
-def exposure(section: SectionRecord, net: NettingRecord) -> Exposure:
+def exposure(section: SectionRecord, net: NettingRecord, closing: float = 0.0) -> Exposure:
     """Exposure of the netting of a section; that of single twines where the file switches it off."""
     if section.ropes:
         return Exposure()
     if section.shielding is not None:
         return Exposure(section.shielding, section.shielding, section.shielding)
-    return exposure_of(sheet_of(section, net), net)
+    return exposure_of(sheet_of(section, net, closing), net)
