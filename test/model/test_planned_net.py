@@ -256,7 +256,7 @@ def test_knotless_netting_has_no_knots_and_dense_netting_less_drag(tmp_path: Pat
     pieces = plan_of(gear).pieces
     left = {p.mesh_mm: exposed(p, gear.netting).friction for p in pieces}
     assert all(0.3 < part < 1.0 for part in left.values())
-    assert left[800] > 0.98
+    assert left[800] > 0.95
     assert left[800] > left[80] > left[22]
 
 

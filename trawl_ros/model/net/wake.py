@@ -26,6 +26,9 @@ ROUNDS, SHARE = 200, 0.2
 SMALL = 0.1
 """Slope (rad) at which the lift of bars is looked up."""
 
+LEAST_LIFT = 0.01
+"""Lift of a sheet per outline area and slope, over ½ ρ U², below which it is left out."""
+
 DENSEST = 0.9
 """Solidity that denser netting is taken to have."""
 
@@ -139,6 +142,8 @@ def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
     clear = max(1.0 - hidden, 0.0)
     shares = clear * parts[0], clear * parts[1], parts[2]
     square = sheet.solidity**2 / (1.0 + sheet.solidity**2)
+    if net.lift * square < LEAST_LIFT:
+        return Exposure(*shares)
     return Exposure(*shares, max(net.lift - bars_lift(net, sheet, shares) / square, 0.0))
 
 
