@@ -91,7 +91,7 @@ class Profile:
         """
         sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
         # Of the area what is left of the drag of single twines across them, and along.
-        total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift'), 0.0)
+        total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift', 'knot_root'), 0.0)
         dx = (back - front) / SLICES
         for section, parallel in self._slices(front, back, around):
             left, d = exposure(section, self.net, self._closing), section.twine_diameter_m
@@ -108,6 +108,7 @@ class Profile:
             # Two knots per mesh and mesh length, shared by the two bars of a column.
             knots = 0.0 if section.knotless else parallel / (section.mesh_m / 2) * dx / 2
             total['knots'] += knots * np.pi / 4 * d**2 * left.knots
+            total['knot_root'] += knots * np.pi / 4 * d**1.5 * left.knots
             total['knot_volume'] += knots * np.pi / 6 * d**3
         return total
 
