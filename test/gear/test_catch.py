@@ -99,7 +99,7 @@ def test_a_catch_adds_its_drag_less_that_of_the_netting_that_it_fills(gear: Gear
     assert 0.0 < area < 1.4 * full.catch.body.cross_section
     head = 0.5 * full.water.density * 1.08**2
     # The mouth closes a little, so that the rest of the net has less.
-    assert 0.8 * head * area < drags[1] - drags[0] < head * area
+    assert 0.75 * head * area < drags[1] - drags[0] < head * area
     assert heavy.observables.net_depth < light.observables.net_depth
 
 

@@ -152,7 +152,7 @@ def test_the_net_is_symmetric_with_a_node_at_the_middle_of_both_ropes(
 @pytest.mark.parametrize('around', [36, 48])
 def test_joining_meshes_keeps_the_load_bearing_twine(gear: GearRecord, around: int) -> None:
     """Every cross-section is as stiff as its twine, ahead of a join, in it and behind it."""
-    profile = Profile(gear.netting.body)
+    profile = Profile(gear.netting.body, gear.netting)
     rows = rows_of(profile, around, (800.0, 400.0))
     assert [row.joins for row in rows].count(True) == 2
     assert rows[-1].around == around // 4

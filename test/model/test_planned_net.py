@@ -12,10 +12,12 @@ from trawl_ros.core.errors import GearError
 from trawl_ros.core.resources import share_path
 from trawl_ros.gear.findings import findings
 from trawl_ros.gear.load import load_gear
-from trawl_ros.gear.net_plan import NetPlanRecord, cut_slope
+from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
+from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.net.planned_cloth import PlannedCloth, mesh_angle, shielding
+from trawl_ros.model.net.planned_cloth import PlannedCloth, mesh_angle, section_of
+from trawl_ros.model.net.wake import Exposure, exposure
 from trawl_ros.model.net.planned_mouth import PlannedMouth
 from trawl_ros.solver.equilibrium import steady_state
 
@@ -240,6 +242,11 @@ def test_three_bridles_of_different_length_end_where_the_file_says(tmp_path: Pat
     assert model.bars.normal_area[lines['port_lower_bridle'][1]].max() == 0.02
 
 
+def exposed(piece: PieceRecord, net: NettingRecord) -> Exposure:
+    """Exposure of the netting of a piece without taper."""
+    return exposure(section_of(piece, net, piece.length, 1.0, 1.0), net)
+
+
 def test_knotless_netting_has_no_knots_and_dense_netting_less_drag(tmp_path: Path) -> None:
     data = plan_data()
     for row in data['netting']['plan']['pieces']:
@@ -247,9 +254,9 @@ def test_knotless_netting_has_no_knots_and_dense_netting_less_drag(tmp_path: Pat
     gear = loaded(tmp_path, data)
     assert build_model(gear).net_mesh.knot_area.max() == 0.0
     pieces = plan_of(gear).pieces
-    left = {p.mesh_mm: shielding(p, gear.netting) for p in pieces}
-    assert all(0.4 < part < 1.0 for part in left.values())
-    assert left[800] > 0.98
+    left = {p.mesh_mm: exposed(p, gear.netting).friction for p in pieces}
+    assert all(0.3 < part < 1.0 for part in left.values())
+    assert left[800] > 0.95
     assert left[800] > left[80] > left[22]
 
 
@@ -462,11 +469,14 @@ def test_half_of_the_bars_of_square_meshes_lie_across() -> None:
     net = gear.netting
     angle = np.radians(net.codend_mesh_angle_deg)
 
-    def drag(across: float, along: float) -> float:
-        return net.normal_drag * across + net.friction * np.pi * along
+    def drag(across: float, along: float, piece: PieceRecord) -> float:
+        left = exposed(piece, net)
+        return piece.twine_area * (
+            net.normal_drag * across * left.normal + net.friction * np.pi * along * left.friction
+        )
 
-    before = drag(np.sin(angle) ** 3, np.cos(angle) ** 3) * shielding(last, net) * last.twine_area
-    after = drag(0.5, 0.5) * shielding(square, net) * square.twine_area
+    before = drag(np.sin(angle) ** 3, np.cos(angle) ** 3, last)
+    after = drag(0.5, 0.5, square)
     assert codend_drag(changed) - codend_drag(gear) == pytest.approx(after - before, rel=0.05)
 
 
@@ -522,7 +532,7 @@ def test_ropes_run_straight_from_the_mouth_to_the_netting(tmp_path: Path) -> Non
     # 340 ropes of 12 m and 12 mm, in 24 lines.
     assert sum(bar.rest for bar in straight) == pytest.approx(24 * 12.0)
     assert sum(bar.area * bar.rest for bar in straight) == pytest.approx(340 * 12.0 * 0.012)
-    assert {bar.shielding for bar in straight} == {1.0}
+    assert {(bar.normal, bar.sliding) for bar in straight} == {(1.0, 1.0)}
     first = {bar.start for bar in straight} - {bar.end for bar in straight}
     assert len(first) == 24
     assert mesh.headrope[len(mesh.headrope) // 2] in first

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.rigging import ropes_of
+
+if TYPE_CHECKING:
+    from trawl_ros.model.state import State, Tow
 
 BETWEEN = '_bridle', '_sweep', '_backstrop'
 """Ends of the names of ropes between boards and net."""
@@ -146,14 +150,19 @@ def drag_of_model(model: GearModel, knots: float) -> float:
     """Drag (N) of netting, ropes and what hangs on them, without boards, bridles and warps, in the
     shape in which the net is built, at a speed (knots).
     """
-    from trawl_ros.model.assembly import lump_forces, motion_of, points_of
-    from trawl_ros.model.line import drag, tension
     from trawl_ros.solver.first_guess import first_guess
     from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 
     warp = max(500.0, model.gear.block_distance)
     tow = steady_tow(model, OperatingPoint(warp, warp, knots * KNOT))
-    state = first_guess(model, tow, 0.0)
+    return drag_of_net(model, first_guess(model, tow, 0.0), tow)
+
+
+def drag_of_net(model: GearModel, state: 'State', tow: 'Tow') -> float:
+    """The same drag (N) in a state of a gear towed along x."""
+    from trawl_ros.model.assembly import lump_forces, motion_of, points_of
+    from trawl_ros.model.line import drag, tension
+
     motion = motion_of(model, points_of(model, state, tow), tow)
     loads = drag(model.bars, motion, tension(model.bars, motion)[1], model.water)
     of_net = np.isin(model.ends, model.layout.net).all(axis=1)

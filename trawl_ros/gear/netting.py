@@ -47,8 +47,8 @@ class NettingRecord(Record):
     projected area, under which it bows between its knots; without it bars are straight.
 
     ``normal_drag`` (eq. 23) and ``friction`` (eq. 24) are the coefficients at high Reynolds numbers.
-    Both grow as these fall, ``viscous`` times as Choo and Casarella (1971) have it. ``knot_drag`` is
-    that of bare knots, and ``wake_exchange`` that of the water along a sheet with the water outside
+    Both grow as these fall, ``viscous`` times as Choo and Casarella (1971) have it, and so does
+    ``knot_drag`` of bare knots; ``wake_exchange`` is that of the water along a sheet with the water outside
     (`trawl_ros.model.net.wake`). ``lift`` is the coefficient of lift that sheets have, by the square of
     their solidity. Panels in config/panels bear out what is not given.
     """
@@ -66,8 +66,8 @@ class NettingRecord(Record):
     viscous: NotNegative = 1.0
     added_mass_normal: NotNegative
     knot_diameters: NotNegative
-    knot_drag: NotNegative = 1.5
-    wake_exchange: NotNegative = 0.02
+    knot_drag: NotNegative = 1.2
+    wake_exchange: NotNegative = 0.03
     lift: NotNegative = 3.0
     knot_added_mass: NotNegative
     wing_end_m: Positive | None = None

@@ -228,8 +228,7 @@ def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
         start_force,
     )
     moving = points.positions, points.velocities, *sheets_of(model), water_of(model.water)
-    add_sheet_slopes(*moving, model.sheet_slots, stiffness, damping)
-    add_sheet_forces(*moving, total)
+    add_sheet_slopes(*moving, model.sheet_slots, total, stiffness, damping)
     rig_k, rig_c = _rigged_blocks(model, state, points, start_force[hung:], k[hung:], c[hung:])
     body_k, body_c, body_force = _board_blocks(model, state)
     kite_k, kite_c, kite_force = _kite_blocks(model, state)

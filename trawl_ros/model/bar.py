@@ -203,33 +203,27 @@ def load_slopes_at(
     speed = np.sqrt(square)
     root = np.sqrt(speed)
     sliding = np.sqrt(tangential**2 + STILL**2)
-    across = 0.5 * density * rest * normal_area
-    lengthwise = 0.5 * density * rest * sliding_area
-    # Across the bar a factor of the flow's part n there, and n times the slope of this factor.
-    factor = speed + normal_viscous * root
-    growth = (1.0 + 0.5 * normal_viscous / root) / speed
-    viscous = friction_viscous * root
-    by_sliding = lengthwise * (sliding + tangential**2 / sliding + viscous)
-    # Slope of the pull along by n, over n.
-    by_normal = 0.5 * lengthwise * tangential * viscous / square
+    half = 0.5 * density * rest
+    across, lengthwise = half * normal_area, half * sliding_area
+    # F = factor n + pull t, with the flow's part n across the bar, and t along it.
+    factor = across * (speed + normal_viscous * root)
+    growth = across * (1.0 + 0.5 * normal_viscous / root) / speed
+    viscous = lengthwise * friction_viscous * root
+    by_tangential = lengthwise * (sliding + tangential**2 / sliding) + viscous
+    by_normal = 0.5 * tangential * viscous / square
+    # As the bar turns by δt, n changes by -(δt · u) t - (u · t) δt, and δt has no part along t.
+    turning = (by_tangential - factor - by_normal * tangential) / span
+    swinging = tangential * (lengthwise * sliding + viscous - factor) / span
+    bending = -tangential * growth / span
     for i in range(3):
         normal_i = flow[i] - tangential * along[i]
-        turned = 0.0
         for j in range(3):
             normal_j = flow[j] - tangential * along[j]
-            bent = factor * (i == j) + normal_i * normal_j * growth
-            # normal · (I - t tᵀ) is normal itself, for it has no part along the bar.
-            by_flow = across * (bent - factor * along[i] * along[j])
-            by_flow += along[i] * (by_sliding * along[j] + by_normal * normal_j)
-            by_velocity[i, j] = -by_flow
-            # δ normal = -(along · flow + t · flow along) as the bar turns.
-            by_along = -across * (factor * along[i] * flow[j] + tangential * bent)
-            by_along += along[i] * (by_sliding * flow[j] - by_normal * tangential * normal_j)
-            by_along += lengthwise * (sliding + viscous) * tangential * (i == j)
-            by_vector[i, j] = by_along / span
-            turned += by_along * along[j]
-        for j in range(3):
-            by_vector[i, j] -= turned * along[j] / span
+            plane = (i == j) - along[i] * along[j]
+            both = normal_i * normal_j
+            by_velocity[i, j] = -factor * plane - growth * both
+            by_velocity[i, j] -= along[i] * (by_tangential * along[j] + by_normal * normal_j)
+            by_vector[i, j] = turning * along[i] * normal_j + swinging * plane + bending * both
 
 
 @compiled

@@ -22,7 +22,7 @@ from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
 from trawl_ros.model.net.sheets import NetSheets, sheets_of
-from trawl_ros.model.net.twine_drag import viscous
+from trawl_ros.model.net.twine_drag import viscous, viscous_knots
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
 from trawl_ros.model.rigging import (
@@ -341,7 +341,7 @@ def build_model(gear: GearRecord) -> GearModel:
     lumps[2, net] += mesh.knot_area * record.knot_drag + mesh.line_drag_area
     lumps[3, net] += mesh.knot_volume * record.knot_added_mass
     viscous_area = np.zeros(build.count)
-    viscous_area[net] = mesh.line_viscous_area
+    viscous_area[net] = mesh.line_viscous_area + viscous_knots(record, 1.0) * mesh.knot_root
     catch = None if gear.catch is None else place_catch(gear.catch, record, mesh)
     if gear.catch is not None and catch is not None:
         # Where the codend is full the water goes around it, which the drag of the catch counts.

@@ -84,16 +84,17 @@ def add_sheet_slopes(
     twine: FloatArray,
     water: WaterTable,
     slots: IntArray,
+    total: FloatArray,
     stiffness_data: FloatArray,
     damping_data: FloatArray,
 ) -> None:
-    """Add K = -∂F/∂x and C = -∂F/∂v of the sheets; ``slots`` (n, m, 3, 3) are those of the blocks of
-    their own node's force by the places of all nodes around it.
+    """The same, with K = -∂F/∂x and C = -∂F/∂v of the sheets; ``slots`` (n, m, 3, 3) are those of the
+    blocks of their own node's force by the places of all nodes around it.
     """
     density, gradient, _, knots, cubics = water
     flow, shear, force = np.empty(3), np.empty(3), np.empty(3)
     long, wide, area = np.empty(3), np.empty(3), np.empty(3)
-    by_area, by_flow, turned = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    by_area, by_flow, turned = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
     for n in range(len(around)):
         node = around[n, 0]
         area_at(x, around[n], weights[n], long, wide, area)
@@ -112,6 +113,7 @@ def add_sheet_slopes(
         p, q = through * speed / size, through**2 / (size * speed)
         for i in range(3):
             force[i] = scale * (p * area[i] - q * flow[i])
+            total[node, i] += force[i]
             for j in range(3):
                 p_area = speed / size * flow[j] - p / size**2 * area[j]
                 q_area = 2.0 * through / (size * speed) * flow[j] - q / size**2 * area[j]
@@ -124,18 +126,14 @@ def add_sheet_slopes(
             first, second = weights[n, 0, m], weights[n, 1, m]
             if first == 0.0 and second == 0.0:
                 continue
+            # The area changes by turned × dx.
             for i in range(3):
-                j, k = (i + 1) % 3, (i + 2) % 3
-                # ∂a by the place: first · dx × wide + second · long × dx.
-                turned[i, i] = 0.0
-                turned[i, j] = first * wide[k] - second * long[k]
-                turned[i, k] = second * long[j] - first * wide[j]
+                turned[i] = second * long[i] - first * wide[i]
             for i in range(3):
-                for j in range(3):
-                    slope = 0.0
-                    for k in range(3):
-                        slope += by_area[i, k] * turned[k, j]
-                    stiffness_data[slots[n, m, i, j]] -= slope
+                a, b, c = by_area[i, 0], by_area[i, 1], by_area[i, 2]
+                stiffness_data[slots[n, m, i, 0]] -= b * turned[2] - c * turned[1]
+                stiffness_data[slots[n, m, i, 1]] -= c * turned[0] - a * turned[2]
+                stiffness_data[slots[n, m, i, 2]] -= a * turned[1] - b * turned[0]
         for i in range(3):
             by_height = -gradient / here * force[i]
             for j in range(3):

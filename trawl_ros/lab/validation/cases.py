@@ -29,6 +29,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         'peers': ('moordyn_wire', 'moorpy_wire'),
         'branches': ('steady_states', 'fastening_points'),
+        'panels': ('netting',),
         'sea': ('hauls',),
     }
 )
@@ -41,6 +42,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'paper': 'The paper, section IV',
         'peers': 'Peers',
         'branches': 'Branches',
+        'panels': 'Netting panels',
         'sea': 'Hauls at sea',
     }
 )

@@ -72,7 +72,7 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
     made = weave(net, body, wings, rows, lambda k, j: _in_wing(k, j, n, wing_rows), sums)
     index, last = made.index, rows[-1]
     ring = [index[len(rows), j] for j in range(last.columns)]
-    add_codend(net, Profile((*body.behind(last.back), *net.codend), net), ring, made)
+    add_codend(net, Profile((*body.behind(last.back), *net.codend), net, closed=True), ring, made)
     top, bottom = 0, n // 2
     rim_top = _rim(index, n, wing_rows, top)
     rim_bottom = _rim(index, n, wing_rows, bottom)
@@ -80,6 +80,7 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
         positions=np.array(made.positions),
         bars=made.bars,
         knot_area=made.knot_area,
+        knot_root=made.knot_root,
         knot_volume=made.knot_volume,
         line_drag_area=made.line_drag,
         line_viscous_area=made.line_viscous,
@@ -124,7 +125,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
     last, codend = rows[-1], sections_of(net, plan, 'codend', 'upper')
     ring = [made.index[len(rows), j] for j in range(last.columns)]
     line = *body.behind(last.back), *sections[drawn:], *codend.sections
-    add_codend(net, Profile(line, net), ring, made)
+    add_codend(net, Profile(line, net, closed=True), ring, made)
 
     def nodes(places: tuple[Place, ...], *, mirrored: bool = False) -> list[int]:
         around = 2 * net.around
@@ -144,6 +145,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
         positions=np.array(made.positions),
         bars=made.bars,
         knot_area=made.knot_area,
+        knot_root=made.knot_root,
         knot_volume=made.knot_volume,
         line_drag_area=made.line_drag,
         line_viscous_area=made.line_viscous,

@@ -6,7 +6,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.bar_pass import water_of
 from trawl_ros.model.line import BarMotion, BarProperties, drag
-from trawl_ros.model.net.twine_drag import viscous
+from trawl_ros.model.net.twine_drag import viscous, viscous_knots
 from trawl_ros.model.net.wake import exposure_of, sheet
 from trawl_ros.model.sheet_pass import add_sheet_forces
 from trawl_ros.model.water import Water
@@ -57,7 +57,8 @@ def panel_loads(
     motion = BarMotion(flat.bars, 0.0 * velocity, velocity, still, count * one, still)
     force = drag(bars, motion, flat.bars, water).sum(axis=0)
     pressure = 0.5 * water.density * speed**2
-    knots = left.knots * flat.knots * net.knot_drag
+    growing = viscous_knots(net, max(net.knot_diameters, 1e-3) * diameter) / np.sqrt(speed)
+    knots = left.knots * flat.knots * (net.knot_drag + growing)
     around, area = np.arange(3)[None], 1.0 / flat.solidity
     total = np.zeros((3, 3))
     add_sheet_forces(

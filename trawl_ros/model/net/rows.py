@@ -48,11 +48,16 @@ class NettingRow:
 
 
 class Profile:
-    """Real netting as functions of the stretched distance from the mouth."""
+    """Real netting as functions of the stretched distance from the mouth, or that of a codend, which
+    is ``closed`` behind.
+    """
 
-    def __init__(self, sections: tuple[SectionRecord, ...], net: NettingRecord) -> None:
+    def __init__(
+        self, sections: tuple[SectionRecord, ...], net: NettingRecord, *, closed: bool = False
+    ) -> None:
         self.sections, self.net = sections, net
         self.edges: list[float] = np.cumsum([0.0, *(s.length_m for s in sections)]).tolist()
+        self._closing = sections[-1].back_circumference_m / self.length if closed else 0.0
 
     @property
     def length(self) -> float:
@@ -86,10 +91,10 @@ class Profile:
         """
         sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
         # Of the area what is left of the drag of single twines across them, and along.
-        total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift'), 0.0)
+        total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift', 'knot_root'), 0.0)
         dx = (back - front) / SLICES
         for section, parallel in self._slices(front, back, around):
-            left, d = exposure(section, self.net), section.twine_diameter_m
+            left, d = exposure(section, self.net, self._closing), section.twine_diameter_m
             twine, area = np.pi / 4 * d**2, parallel * d * dx
             total['area'] += area
             total['normal'] += area * left.normal
@@ -103,6 +108,7 @@ class Profile:
             # Two knots per mesh and mesh length, shared by the two bars of a column.
             knots = 0.0 if section.knotless else parallel / (section.mesh_m / 2) * dx / 2
             total['knots'] += knots * np.pi / 4 * d**2 * left.knots
+            total['knot_root'] += knots * np.pi / 4 * d**1.5 * left.knots
             total['knot_volume'] += knots * np.pi / 6 * d**3
         return total
 
@@ -123,7 +129,7 @@ class Profile:
         """
         net, area, viscous_area = self.net, 0.0, 0.0
         for section, parallel in self._slices(front, back, 1):
-            left, d = exposure(section, net), section.twine_diameter_m
+            left, d = exposure(section, net, self._closing), section.twine_diameter_m
             # Two bars make a mesh.
             twine = 2.0 * parallel * d * (back - front) / SLICES
             angle = bar_angle(section, net)

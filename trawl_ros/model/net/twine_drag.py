@@ -3,7 +3,8 @@
 Hydrodynamic resistance of towed cables, Journal of Hydronautics 5(4): with Re of the motion across
 the cylinder the coefficient of the drag is 1.1 + 4 Re^-1/2 for 30 to 100 000, and the laminar part of
 the pull per length along it π μ 0.55 Re^1/2 U_t. Both go with the root of the motion across, so that
-the bars' loops need one more root and no Reynolds number.
+the bars' loops need one more root and no Reynolds number. Knots are spheres, whose coefficient goes with
+0.4 + 6 / (1 + Re^1/2), about 0.4 (1 + 15 Re^-1/2), as Balash and others (2009) take it for knots.
 """
 
 from math import sqrt
@@ -13,9 +14,9 @@ from trawl_ros.gear.netting import NettingRecord
 VISCOSITY = 1.36e-6
 """Kinematic viscosity of sea water of 35 g/kg at 10 °C, m²/s (ITTC 7.5-02-01-03)."""
 
-ACROSS, ALONG = 4.0, 1.1
-"""Factors of Re^-1/2 in the coefficient across, and of Re^1/2 over the Reynolds number of the motion
-along in that of friction on the wetted surface."""
+ACROSS, ALONG, KNOTS = 4.0, 1.1, 15.0
+"""Factors of Re^-1/2 in the coefficient across, of Re^1/2 over the Reynolds number of the motion along
+in that of friction on the wetted surface, and of Re^-1/2 in that of knots, over what this is without."""
 
 
 def viscous(net: NettingRecord, diameter: float) -> tuple[float, float]:
@@ -23,3 +24,8 @@ def viscous(net: NettingRecord, diameter: float) -> tuple[float, float]:
     scale = net.viscous * sqrt(VISCOSITY / diameter) if diameter > 0.0 else 0.0
     across = ACROSS * scale / net.normal_drag if net.normal_drag else 0.0
     return across, ALONG * scale / net.friction if net.friction else 0.0
+
+
+def viscous_knots(net: NettingRecord, diameter: float) -> float:
+    """Viscous drag coefficient (√(m/s)) of knots of a diameter (m), for `model.lump_pass`."""
+    return net.knot_drag * KNOTS * net.viscous * sqrt(VISCOSITY / diameter)

@@ -26,6 +26,9 @@ ROUNDS, SHARE = 200, 0.2
 SMALL = 0.1
 """Slope (rad) at which the lift of bars is looked up."""
 
+LEAST_LIFT = 0.01
+"""Lift of a sheet per outline area and slope, over ½ ρ U², below which it is left out."""
+
 DENSEST = 0.9
 """Solidity that denser netting is taken to have."""
 
@@ -65,12 +68,17 @@ def bar_angle(section: SectionRecord, net: NettingRecord) -> float:
     return radians(net.codend_mesh_angle_deg if angle is None else angle)
 
 
-def sheet_of(section: SectionRecord, net: NettingRecord) -> Sheet:
-    """Sheet of a section as it is drawn, a cone whose meshes are open by the angle of its bars."""
+def sheet_of(section: SectionRecord, net: NettingRecord, closing: float) -> Sheet:
+    """Sheet of a section as it is drawn, a cone whose meshes are open by the angle of its bars.
+
+    A net that is closed behind gives off the water at its end through the netting too, as a cone
+    does whose circumference shrinks by ``closing`` more per length.
+    """
     angle = 0.25 * pi if section.square else bar_angle(section, net)
     opening = 1.0 if section.square else np.tan(angle)
     narrowing = section.front_circumference_m - section.back_circumference_m
-    slope = np.arctan(max(narrowing, 0.0) * opening / (2.0 * pi * section.length_m))
+    narrowing = max(narrowing / section.length_m + closing, 0.0)
+    slope = np.arctan(narrowing * opening / (2.0 * pi))
     return sheet(section, net, angle, float(slope))
 
 
@@ -134,6 +142,8 @@ def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
     clear = max(1.0 - hidden, 0.0)
     shares = clear * parts[0], clear * parts[1], parts[2]
     square = sheet.solidity**2 / (1.0 + sheet.solidity**2)
+    if net.lift * square < LEAST_LIFT:
+        return Exposure(*shares)
     return Exposure(*shares, max(net.lift - bars_lift(net, sheet, shares) / square, 0.0))
 
 
@@ -145,10 +155,10 @@ def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, floa
 
 
 @lru_cache(1000)
-def exposure(section: SectionRecord, net: NettingRecord) -> Exposure:
+def exposure(section: SectionRecord, net: NettingRecord, closing: float = 0.0) -> Exposure:
     """Exposure of the netting of a section; that of single twines where the file switches it off."""
     if section.ropes:
         return Exposure()
     if section.shielding is not None:
         return Exposure(section.shielding, section.shielding, section.shielding)
-    return exposure_of(sheet_of(section, net), net)
+    return exposure_of(sheet_of(section, net, closing), net)

@@ -39,7 +39,8 @@ class NetMesh:
     """Nodes and bars of the net.
 
     ``positions`` (n, 3) is a first guess, x forward from the wing tips, y to port, z up; ``bars``
-    its netting; ``knot_area`` (m²) and ``knot_volume`` (m³) per node; ``line_drag_area`` C_D S
+    its netting; ``knot_area`` (m²), ``knot_root`` (m^1.5, the area over
+    the root of the diameter) and ``knot_volume`` (m³) per node; ``line_drag_area`` C_D S
     (m²) of the codend's nodes and ``line_viscous_area`` its viscous part (m² √(m/s)); ``headrope`` and ``footrope`` the nodes from port to starboard
     wing tip, ``edge_rest`` the length of a bar of a wing's edge; ``wing_ends`` the nodes joined
     by the wing-end lines or side ropes, from the top down; ``kite`` what carries the kite;
@@ -51,6 +52,7 @@ class NetMesh:
     positions: FloatArray
     bars: list[NetBar]
     knot_area: FloatArray
+    knot_root: FloatArray
     knot_volume: FloatArray
     line_drag_area: FloatArray
     line_viscous_area: FloatArray
@@ -74,6 +76,7 @@ class Weave:
     positions: list[tuple[float, float, float]] = field(default_factory=list)
     bars: list[NetBar] = field(default_factory=list)
     knot_area: FloatArray = field(default_factory=lambda: np.zeros(0))
+    knot_root: FloatArray = field(default_factory=lambda: np.zeros(0))
     knot_volume: FloatArray = field(default_factory=lambda: np.zeros(0))
     line_drag: FloatArray = field(default_factory=lambda: np.zeros(0))
     line_viscous: FloatArray = field(default_factory=lambda: np.zeros(0))
@@ -129,6 +132,7 @@ def weave(
     last = rows[-1]
     add(len(rows), last.back, last.columns, not last.joins and not last.odd)
     made.knot_area = np.zeros(len(made.positions) + net.codend_segments)
+    made.knot_root = np.zeros_like(made.knot_area)
     made.knot_volume = np.zeros_like(made.knot_area)
     made.line_drag = np.zeros_like(made.knot_area)
     made.line_viscous = np.zeros_like(made.knot_area)
@@ -143,6 +147,7 @@ def weave(
                     _bar(a, b, rest(k, row, j), own, net.bowing_pressure_pa, 'netting')
                 )
                 made.knot_area[[a, b]] += 0.5 * own['knots'] * net.knot_diameters**2
+                made.knot_root[[a, b]] += 0.5 * own['knot_root'] * net.knot_diameters**1.5
                 made.knot_volume[[a, b]] += 0.5 * own['knot_volume'] * net.knot_diameters**3
     return made
 
@@ -195,6 +200,7 @@ def add_codend(net: NettingRecord, codend: Profile, ring: list[int], made: Weave
         area, viscous_area = codend.line_drag(k * step, (k + 1) * step)
         made.line_drag[node] += area + knots
         made.line_viscous[node] += viscous_area
+        made.knot_root[node] += sums['knot_root'] * net.knot_diameters**1.5
         share = {key: value / len(previous) for key, value in sums.items()}
         for start in previous:
             made.bars.append(_bar(start, node, step, share, 0.0, 'codend'))

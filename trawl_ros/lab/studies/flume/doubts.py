@@ -13,11 +13,8 @@ from trawl_ros.gear.net_plan import PieceRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.doubts import need_in_words
 from trawl_ros.lab.report.page import TextTable
-from trawl_ros.lab.studies.flume.held import HeldNet, held, in_the_tank
+from trawl_ros.lab.studies.flume.held import HeldNet, held
 from trawl_ros.lab.studies.flume.states import FlumeState
-from trawl_ros.model.gear_model import GearModel
-from trawl_ros.solver.equilibrium import Equilibrium
-from trawl_ros.solver.twine_drag import with_twine_drag
 
 SHOWN, SLOW = '64.0', '67.0'
 """Trials that are solved for each doubt: that by which twine was tuned, and the slowest of its
@@ -33,20 +30,20 @@ COARSE = 0.5
 
 @dataclass(frozen=True)
 class Doubt:
-    """Assumed number: its change by a factor, and the ends of the factors that are tried; or a law
-    that takes the place of another one.
+    """Assumed number: its change by a factor, and the ends of the factors that are tried; or twine
+    that is not ``small`` as in the tank.
     """
 
     what: str
     change: Callable[[GearRecord, float], GearRecord] = lambda gear, factor: gear
     low: float = 1.0
     high: float = 1.0
-    law: Callable[[GearModel, Equilibrium], GearModel] | None = in_the_tank
+    small: bool = True
 
     @property
     def factors(self) -> tuple[float, ...]:
-        """Factors that are tried; NaN for a law."""
-        if self.law is not in_the_tank:
+        """Factors that are tried; NaN for twine that is not small."""
+        if not self.small:
             return (math.nan,)
         return tuple(factor for factor in (self.low, self.high) if factor != 1.0)
 
@@ -119,8 +116,8 @@ DOUBTS = (
     Doubt('headrope, weight', _rope('headrope', 'weight_in_water_n_m'), 0.0, 2.0),
     Doubt('upper bridles, weight', _rope('bridle', 'weight_in_water_n_m'), 0.0, 1.5),
     Doubt('floats (printed), buoyancy', _floats, 1.0, 2.0),
-    Doubt('twine by its Reynolds number, as large as at sea', law=with_twine_drag),
-    Doubt('coefficients of the gear file at all speeds', law=None),
+    Doubt('growth of drag at low Reynolds numbers', _netting('viscous'), 0.0, 1.0),
+    Doubt('twine as large as at sea', small=False),
 )
 
 
@@ -146,7 +143,7 @@ def doubted(
     def solved(doubt: Doubt | None, factor: float, trial: str) -> HeldNet | None:
         changed = gear if doubt is None else doubt.change(gear, factor)
         try:
-            return held(changed, by_trial[trial], doubt.law if doubt else in_the_tank)
+            return held(changed, by_trial[trial], small=doubt is None or doubt.small)
         except NoSteadyState:
             return None
 
@@ -194,7 +191,7 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
         powers = {f: _exponent(net, one.slow[f]) for f, net in one.shown.items()}
         needs = (
             ('', '')
-            if one.doubt.law is not in_the_tank
+            if not one.doubt.small
             else (
                 need_in_words(heights, tank.height, NEAR),
                 need_in_words(powers, power, POWER / power),

@@ -1,6 +1,5 @@
 """Steady states of the tank's net on its floor."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +10,9 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.flume.states import BRIDLE, SHACKLE, SWEEP, TRUNCATED, FlumeState
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.net.twine_drag import VISCOSITY
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.twine_drag import VISCOSITY, with_twine_drag
 
 STUB = 0.5
 """Length (m) of the rope without weight and drag between a mast and what follows."""
@@ -28,10 +27,8 @@ SCALE = 8
 """The tank's net was this many times smaller: readings are multiples of 0.08 m, a centimetre in the
 tank. Speeds went with the root of it, so Reynolds numbers with its power of 3/2."""
 
-ROUNDS = 2
-"""Rounds in which the first equilibrium and a model that depends on it settle together; each later
-one has the drag of the one before, which is centimetres away."""
-
+TANK_VISCOSITY = 1.05e-6
+"""Kinematic viscosity of the tank's water, taken as at 20 °C, m²/s."""
 
 STEPS = 4
 """Steps in which a net is led from one state to another."""
@@ -98,23 +95,34 @@ class HeldNet:
         return np.real(self.found.state.nodes)
 
 
-def in_the_tank(model: GearModel, found: Equilibrium) -> GearModel:
+def in_the_tank(model: GearModel) -> GearModel:
     """Copy of a gear whose netting has the drag of the tank's small twine and slow water."""
-    return with_twine_drag(model, found, VISCOSITY * SCALE**1.5)
+    factor = np.sqrt(TANK_VISCOSITY * SCALE**1.5 / VISCOSITY)
+    bars = model.bars
+    return replace(
+        model,
+        bars=replace(
+            bars,
+            normal_viscous=factor * bars.normal_viscous,
+            friction_viscous=factor * bars.friction_viscous,
+        ),
+        lump_viscous_area=factor * model.lump_viscous_area,
+    )
 
 
 def held(
     gear: GearRecord,
     state: FlumeState,
-    settled: Callable[[GearModel, Equilibrium], GearModel] | None = in_the_tank,
     near: HeldNet | None = None,
+    *,
+    small: bool = True,
 ) -> HeldNet:
     """Find the net of a state, with its footrope on the floor.
 
     The floor carries sweeps and lower bridles, and of the footrope as much as lets its middle lie
     where the floor is: what is left on the net is sought, spread evenly. There is no friction.
-    ``settled`` changes the model by the equilibrium that it is in; None leaves the coefficients of
-    the gear file. The search begins at ``near``, or cold.
+    Its twine is ``small`` as in the tank, or as large as at sea. The search begins at ``near``, or
+    cold.
 
     Raises
     ------
@@ -126,14 +134,9 @@ def held(
     point = OperatingPoint(length, length, state.speed)
 
     def below(share: float, start: Equilibrium | None) -> tuple[float, GearModel, Equilibrium]:
-        model = rigged = build_model(_rigged(gear, state, share))
-        if settled is not None and start is not None:
-            model = settled(rigged, start)
+        model = build_model(_rigged(gear, state, share))
+        model = in_the_tank(model) if small else model
         found = find_equilibrium(model, point, start)
-        for _ in range(ROUNDS if settled is not None and start is None else 0):
-            assert settled is not None
-            model = settled(rigged, found)
-            found = find_equilibrium(model, point, found)
         seen = found.observables
         return seen.net_depth + seen.vertical_opening - state.elevation, model, found
 

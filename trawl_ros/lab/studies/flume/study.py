@@ -211,17 +211,15 @@ def write_flume(
             'the floor as they were. The legs of the doors were not in the tank, as the report of '
             'the test says; it worked the spread of doors out from the bridle angle, and from both '
             'the pulling points are found again. Counts of its meshes and its twines were '
-            'published nowhere and are assumed; twine is as thick as the tension of trial '
-            f'{", ".join(TUNED)} asks, which does not count. '
+            'published nowhere and are assumed; nothing is tuned. Trial '
+            f'{", ".join(TUNED)}, by which twine was once set, does not count. '
             'In no state at hand is the footrope known to be off the ground: the floor carries '
             'legs and lower bridles, and so much of the footrope that its middle lies on it, '
             'without friction. What counts was chosen before anything was solved with the gear '
             'as it ships: states with standard bridles, normal legs and an empty codend. '
             f'The tank has a net 1:{SCALE} in slow water, where thin twine has more drag, and the '
             'more the slower it is (Choo and Casarella 1971): so has the model, but for knots and '
-            'ropes. Their errors with legs before the bridles and one coefficient for all speeds, '
-            'with which this was first made, were known when that was changed and twine was set '
-            'anew, by the same trial.'
+            'ropes.'
         ),
     )
     drawing = Drawing('flume', 'Model over tank; open marks do not count.', _figure(every))

@@ -9,10 +9,9 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import EffectRecord, GearRecord
 from trawl_ros.lab.validation.sea.published import HaulRecord
 from trawl_ros.lab.validation.sea.quantities import quantities
-from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import Observables
-from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, steady_state
-from trawl_ros.solver.twine_drag import with_twine_drag
+from trawl_ros.solver.equilibrium import steady_state
 
 STRUMMING = 2.35
 """Normal drag coefficient of a tow cable that vibrates at sea, the middle of 2.2 to 2.5."""
@@ -27,14 +26,11 @@ FASTER = 2.9 / 2.7
 
 @dataclass(frozen=True)
 class Change:
-    """Change of a gear, factor on the speed at which it is towed, and change of its model by the
-    steady state that it is in.
-    """
+    """Change of a gear, and factor on the speed at which it is towed."""
 
     what: str
     gear: Callable[[GearRecord], GearRecord] = lambda gear: gear
     speed: float = 1.0
-    settled: Callable[[GearModel, Equilibrium], GearModel] | None = None
 
 
 def _strumming(gear: GearRecord) -> GearRecord:
@@ -58,19 +54,23 @@ def _unshielded(gear: GearRecord) -> GearRecord:
     return gear.model_copy(update={'netting': netting})
 
 
+def _netting(name: str) -> Callable[[GearRecord], GearRecord]:
+    def changed(gear: GearRecord) -> GearRecord:
+        return gear.model_copy(update={'netting': gear.netting.model_copy(update={name: 0.0})})
+
+    return changed
+
+
 CHANGES = (
     Change('no shielding', _unshielded),
     Change(f'warps that strum, C_N {STRUMMING:g}', _strumming),
     Change(f'net drag × {NET_DRAG:g}', _net_drag),
     Change(f'{100 * (FASTER - 1):.0f} % faster', speed=FASTER),
     Change('the last three', lambda gear: _strumming(_net_drag(gear)), FASTER),
-    Change('twine by its Reynolds number', settled=with_twine_drag),
+    Change('no growth of twine\'s drag at low Reynolds numbers', _netting('viscous')),
+    Change('no lift of sheets', _netting('lift')),
     Change('no floats', _no_floats),
 )
-
-ROUNDS = 3
-"""Rounds in which a state and a model that depends on it settle together."""
-
 
 def changed_hauls(
     gear: GearRecord, haul: HaulRecord, changes: Sequence[Change] = CHANGES
@@ -82,23 +82,12 @@ def changed_hauls(
     for change in changes:
         model = build_model(change.gear(haul.rigged(gear)))
         try:
-            model, steady = _settled(model, change, haul)
+            steady = steady_state(model, haul.warp_m, change.speed * haul.speed)
         except NoSteadyState:
             found.append((None, {}))
         else:
             found.append((steady.observables, quantities(model, steady)))
     return found
-
-
-def _settled(model: GearModel, change: Change, haul: HaulRecord) -> tuple[GearModel, SteadyState]:
-    """Model with a change, and its steady state in a haul."""
-    speed = change.speed * haul.speed
-    steady, settled = steady_state(model, haul.warp_m, speed), model
-    for _ in range(ROUNDS if change.settled is not None else 0):
-        assert change.settled is not None
-        settled = change.settled(model, steady.equilibrium)
-        steady = steady_state(settled, haul.warp_m, speed, start=steady.equilibrium)
-    return settled, steady
 
 
 def value_of(observables: Observables | None, derived: Mapping[str, float], quantity: str) -> float:

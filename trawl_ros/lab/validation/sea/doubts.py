@@ -65,7 +65,7 @@ def _strumming(gear: GearRecord, factor: float) -> GearRecord:
 DOUBTS = (
     Doubt('drag of the net', 0.7, 2.0, _effect('net_drag', 'factor', 0.0)),
     Doubt('lift of the boards', 0.7, 1.3, _effect('board_damage', 'lift', 1.0)),
-    Doubt('normal drag of the warps', 1.0, STRUMMING / 1.2, _strumming),
+    Doubt('normal drag of the warps', 1.0, STRUMMING / 1.5, _strumming),
     Doubt('weights at the wings', 0.5, 2.0, _hung(FRONT)),
     Doubt('chain of the footrope', 0.5, 2.0, _hung('chain')),
     Doubt('buoyancy of the floats', 0.3, 1.5, _hung('floats')),

@@ -1,0 +1,1 @@
+"""Netting panels in a stream: published tests, and the model beside them."""

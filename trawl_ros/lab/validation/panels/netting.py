@@ -1,0 +1,240 @@
+"""Panels of netting: the model's drag and lift by angle and solidity, compared with tests."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi, radians
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.netting import NettingRecord
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
+from trawl_ros.lab.validation.panels.published import (
+    KnotRecord,
+    PanelRecord,
+    PublishedPanels,
+    netting_of,
+    published_panels,
+)
+from trawl_ros.lab.validation.panels.whole_nets import HIGH, LOW, NETS, nets_table, whole_nets
+from trawl_ros.model.net.panel import panel_loads
+from trawl_ros.report.pictures import Drawing
+
+GEAR = 'krill_800'
+"""Gear whose netting has the default law."""
+
+MEDIAN_PERCENT = 15.0
+"""Largest median error."""
+
+EXPONENTS = (1.4, 1.8)
+"""Exponents of drag in speed, as at sea and in flume tanks."""
+
+SMALL_ANGLES = (5.0, 30.0)
+"""Angles (degrees) of most netting of trawls to the flow."""
+
+KINDS = 'drag', 'lift'
+
+DIAMOND = pi / 4
+"""Angle of the bars of a diamond as wide as long."""
+
+
+@dataclass(frozen=True)
+class PanelPoint:
+    """Published coefficient of a panel at an angle (degrees), and that of the model, both on the
+    area of the source.
+    """
+
+    panel: PanelRecord
+    kind: str
+    angle: float
+    published: float
+    model: float
+
+    @property
+    def error(self) -> float:
+        """Error of the model, %."""
+        return 100.0 * (self.model / self.published - 1.0)
+
+
+def points_of(panel: PanelRecord, net: NettingRecord) -> list[PanelPoint]:
+    """All coefficients of a panel; a lift of zero has no error and is left out."""
+    across = panel_loads(panel.section, net, DIAMOND, 0.5 * pi, panel.speed_m_s)[0]
+    scale = {'outline': panel.solidity, 'twine': 1.0, 'across': 1.0 / across}[panel.area]
+    points = []
+    for n, angle in enumerate(panel.angle_deg):
+        loads = panel_loads(panel.section, net, DIAMOND, radians(angle), panel.speed_m_s)
+        for kind, values, load in zip(KINDS, (panel.drag, panel.lift), loads):
+            if values and values[n] > 0.0:
+                points.append(PanelPoint(panel, kind, angle, values[n], scale * float(load)))
+    return points
+
+
+def added_by_knots(knot: KnotRecord, net: NettingRecord) -> float:
+    """Drag of knotted netting over that of knotless netting, less one."""
+    with_knots, without = (
+        panel_loads(
+            netting_of(knot.solidity, 2.4e-3, knotless, square=False),
+            net,
+            DIAMOND,
+            radians(knot.angle_deg),
+            0.75,
+        )[0]
+        for knotless in (False, True)
+    )
+    return float(with_knots / without - 1.0)
+
+
+def run(small: bool) -> Findings:
+    """Compare every published panel with the model."""
+    published, net = published_panels(), load_gear(GEAR).netting
+    every = [point for panel in published.panels for point in points_of(panel, net)]
+    counted = [point for point in every if point.panel.use == 'counts']
+    low, high = SMALL_ANGLES
+    flat = [point for point in counted if low <= point.angle <= high]
+    groups = [
+        (f'{kind}, {low:g}° to {high:g}°', f'{kind}_small', [p for p in flat if p.kind == kind])
+        for kind in KINDS
+    ]
+    groups += [
+        ('drag and lift together, there', 'small', flat),
+        ('drag across the flow', 'across', [p for p in counted if p.angle == 90.0]),
+    ]
+    rows = [
+        MeasuredValue(
+            f'median error of {what}',
+            float(np.median(np.abs([p.error for p in some]))),
+            '%',
+            at_most(MEDIAN_PERCENT),
+            f'{len(some)} values; median with its sign {np.median([p.error for p in some]):+.1f} %',
+            key=key,
+        )
+        for what, key, some in groups
+    ]
+    rows.append(
+        MeasuredValue(
+            'solidities that count',
+            float(len({p.panel.solidity for p in flat})),
+            '',
+            at_least(3.0),
+            'Fits of Løland and of Aarsnes and others, whose tests are partly the same.',
+            key='solidities',
+        )
+    )
+    nets = whole_nets(tuple(NETS)[-2:] if small else tuple(NETS))
+    inside = [flag for net in nets for flag in net.inside]
+    rows += [
+        MeasuredValue(
+            f'whole nets as built between {LOW:g} of Reid and {HIGH:g} of MacLennan',
+            100.0 * float(np.mean(inside)),
+            '%',
+            at_least(100.0),
+            'At 2, 3 and 4 knots. Both formulas are of nets whose mouth closes with speed, which that '
+            'of a net as built does not; MacLennan counts ground gear.',
+            key='bands',
+        ),
+        MeasuredValue(
+            'median exponent of drag in speed, in equilibrium',
+            float(np.nanmedian([net.exponent for net in nets])),
+            '',
+            between(*EXPONENTS),
+            'By net: ' + ', '.join(f'{net.name} {net.exponent:.2f}' for net in nets) + '. Friction '
+            'grows with a power of 1.5, all else with 2; the rest is the shape.',
+            key='exponent',
+        ),
+    ]
+    return Findings(
+        rows=tuple(rows),
+        tables=(nets_table(nets), _table(every), _knots(published, net), _not_used(published, every)),
+        drawings=(
+            Drawing(
+                'panels',
+                'Drag and lift on the area of twine by the angle of the panel to the flow, 0 along '
+                'it; lines: the model.',
+                _figure(every, net),
+            ),
+        ),
+        text=(
+            'The panel of the model has the law of the netting of trawls: twines by their Reynolds '
+            'number, knots, wakes and lift of sheets (docs/model.md, Netting). Its coefficients '
+            'were chosen by these panels, and by nothing else; whole nets stand beside them. Most sources print formulas '
+            'fitted to their tests, which are compared at these angles.'
+        ),
+    )
+
+
+def _table(points: Sequence[PanelPoint]) -> TextTable:
+    return TextTable(
+        'Coefficients on the area of the source.',
+        ('panel', 'use', 'area', 'coefficient', 'angle (°)', 'published', 'model', 'error (%)'),
+        tuple(
+            (
+                one.panel.name,
+                one.panel.use,
+                one.panel.area,
+                one.kind,
+                f'{one.angle:g}',
+                f'{one.published:.3f}',
+                f'{one.model:.3f}',
+                f'{one.error:+.0f}',
+            )
+            for one in points
+        ),
+    )
+
+
+def _knots(published: PublishedPanels, net: NettingRecord) -> TextTable:
+    return TextTable(
+        'Drag that knots add to that of knotless netting.',
+        ('source', 'angle (°)', 'published (%)', 'model (%)'),
+        tuple(
+            (
+                one.name,
+                f'{one.angle_deg:g}',
+                f'{100 * one.more:.0f}',
+                f'{100 * added_by_knots(one, net):.0f}',
+            )
+            for one in published.knots
+        ),
+    )
+
+
+def _not_used(published: PublishedPanels, points: Sequence[PanelPoint]) -> TextTable:
+    lines = []
+    for panel in published.panels:
+        if panel.use == 'shown':
+            own = {k: [p.error for p in points if (p.panel, p.kind) == (panel, k)] for k in KINDS}
+            errors = [f'{np.median(some):+.0f}' if some else '' for some in own.values()]
+            lines.append((panel.name, *errors, panel.why))
+    return TextTable(
+        'Shown only, with the median error at all angles, or not used.',
+        ('source', 'drag (%)', 'lift (%)', 'why'),
+        (*lines, *((one.source.strip(), '', '', one.why.strip()) for one in published.not_used)),
+    )
+
+
+def _figure(points: Sequence[PanelPoint], net: NettingRecord) -> Figure:
+    panels = [p.panel for p in points if p.panel.area != 'across']
+    solidities = sorted({panel.solidity for panel in panels})
+    figure = Figure(figsize=(10.0, 4.4), layout='constrained')
+    angles = np.linspace(0.0, 90.0, 46)
+    for n, (axes, kind) in enumerate(zip(figure.subplots(1, 2), KINDS, strict=True)):
+        for k, solidity in enumerate(solidities):
+            netting = netting_of(solidity, 2.4e-3, knotless=True, square=True)
+            loads = [panel_loads(netting, net, DIAMOND, radians(a), 0.75)[n] for a in angles]
+            axes.plot(angles, loads, color=f'C{k}', label=f'model, S {solidity:g}')
+        for one in points:
+            if one.panel.area != 'across' and one.kind == kind:
+                scale = one.panel.solidity if one.panel.area == 'outline' else 1.0
+                colour = f'C{solidities.index(one.panel.solidity)}'
+                filled = colour if one.panel.use == 'counts' else 'none'
+                axes.plot(one.angle, one.published / scale, 'o', color=colour, mfc=filled, ms=4)
+        axes.set(xlabel='angle to the flow / °', ylabel=f'coefficient of {kind}')
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize='small')
+    return figure
+
+
+CASE = ValidationCase('netting', 'Netting panels', run)
