@@ -56,8 +56,9 @@ def sheets(model: GearModel, state: State) -> Iterator[tuple[SectionRecord, floa
     """Section, area of twine (m²), angle of its bars and slope (rad) of every row of the body."""
     net = model.gear.netting
     assert net.plan is not None
-    body = PlannedCloth(net, PlannedMouth(net.plan, net.around)).bodies['upper']
-    rows = rows_of(body, net.around, net.halved_at_circumference_m)
+    mouth = PlannedMouth(net.plan, net.around)
+    body = PlannedCloth(net, mouth).bodies['upper']
+    rows = rows_of(body, net.around, net.halved_at_circumference_m, mouth.corner)
     counts = [row.around for row in rows] + [rows[-1].columns]
     nodes = state.nodes[model.layout.net][: -net.codend_segments][-sum(counts) :]
     rings = np.split(nodes, np.cumsum(counts)[:-1])
