@@ -37,7 +37,7 @@ def plain_load(board: Board, side: float, turn, velocity, rate) -> tuple[list, l
     """Eq. 1-4 and 12-14 for one board, written out number by number, in fixed axes.
 
     The board's axes are n_x ahead, n_y outward, n_z up; the starboard ones (side = -1) are
-    left-handed, in which a moment's vector turns the other way round.
+    left-handed, in which a moment's vector turns the other way round. Loads act aft, outward, down.
     """
     axes = [turn[:, 0].tolist(), (side * turn[:, 1]).tolist(), turn[:, 2].tolist()]
     mean = [sum(board.points[k][i] for k in range(3)) / 3 for i in range(3)]
@@ -47,7 +47,6 @@ def plain_load(board: Board, side: float, turn, velocity, rate) -> tuple[list, l
     ux, uy, uz = (sum(relative[j] * axes[i][j] for j in range(3)) for i in range(3))  # eq. 3
     alpha = math.asin(uy / math.sqrt(ux**2 + uy**2))  # eq. 1
     beta = math.asin(uz / math.sqrt(ux**2 + uz**2))  # eq. 2
-    slip = board.slip_sign * beta
     a1, c1, a2, c2, b3, c3, a4, c4, b5, c5, a6, c6 = PRINTED
     pressure = DENSITY * 12.0 * (ux**2 + uy**2 + uz**2) / 2
     along = [ux / math.hypot(ux, uy), uy / math.hypot(ux, uy)]
@@ -56,13 +55,13 @@ def plain_load(board: Board, side: float, turn, velocity, rate) -> tuple[list, l
     force = [
         pressure * (drag * along[0] + lift * across[0]),
         pressure * (drag * along[1] + lift * across[1]),
-        pressure * (b3 * slip + c3),
+        -pressure * (b3 * beta + c3),
     ]
     b, chord = 5.63, 2.13
     moment = [
-        board.moment_signs[0] * pressure * (a4 * alpha + c4) * b,
-        board.moment_signs[1] * pressure * (b5 * slip + c5) * math.sqrt(b**2 + chord**2),
-        board.moment_signs[2] * pressure * (a6 * alpha + c6) * chord,
+        -pressure * (a4 * alpha + c4) * b,
+        pressure * (b5 * beta + c5) * math.sqrt(b**2 + chord**2),
+        -pressure * (a6 * alpha + c6) * chord,
     ]
     fixed_force = [sum(force[i] * axes[i][j] for i in range(3)) for j in range(3)]
     fixed_moment = [side * sum(moment[i] * axes[i][j] for i in range(3)) for j in range(3)]

@@ -87,7 +87,7 @@ def check_gear(path: str | Path) -> GearCheck:
     >>> import trawl_ros
     >>> check = trawl_ros.check_gear('kaifuha')
     >>> print(f'{check.twine_area:.0f} m² of twine')
-    679 m² of twine
+    678 m² of twine
     >>> check.findings
     ()
     """

@@ -103,6 +103,19 @@ def tension_at(
 
 
 @inner
+def spanned_at(vector: FloatArray, rest: float) -> float:
+    """Part of a bar's length that is drawn out between its ends: 1, or less where it is slack.
+
+    A slack twine hangs in a loop. Its drag across the flow is that of ∫ sin³θ ds over the loop, at
+    most ∫ sin θ ds, which is the distance of its ends.
+    """
+    span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    if span.real < rest.real:
+        return span / rest
+    return 1.0 + 0 * span
+
+
+@inner
 def drag_at(
     normal_area: float,
     sliding_area: float,

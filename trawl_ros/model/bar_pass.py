@@ -19,6 +19,7 @@ from trawl_ros.model.bar import (
     load_slopes_at,
     mass_at,
     pull_slopes_at,
+    spanned_at,
     tension_at,
     weight_at,
 )
@@ -67,7 +68,8 @@ def add_bar_forces(
         current_at(knots, cubics, height, flow, shear)
         for i in range(3):
             flow[i] -= velocity[i]
-        areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
+        spanned = spanned_at(vector, rest[n])
+        areas = spanned * normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
         viscous = normal_viscous[n], friction_viscous[n]
         drag_at(areas[0], areas[1], viscous[0], viscous[1], rest[n], here, flow, along, load)
         load[2] += weight_at(mass[n], volume[n], rest[n], here, gravity)
@@ -105,7 +107,7 @@ def add_bar_blocks(
     plain = len(order) - len(k_others)
     vector, stretching, velocity = np.empty(3), np.empty(3), np.empty(3)
     along, flow, load = np.empty(3), np.empty(3), np.empty(3)
-    shear, by_height = np.empty(3), np.empty(3)
+    shear, by_height, own = np.empty(3), np.empty(3), np.empty(3)
     by_vector, by_stretching = np.empty((3, 3)), np.empty((3, 3))
     load_by_vector, load_by_velocity = np.empty((3, 3)), np.empty((3, 3))
     k, c = np.empty((6, 6)), np.empty((6, 6))
@@ -120,7 +122,8 @@ def add_bar_blocks(
         current_at(knots, cubics, height, flow, shear)
         for i in range(3):
             flow[i] -= velocity[i]
-        areas = normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
+        spanned = spanned_at(vector, rest[n])
+        areas = spanned * normal_drag[n] * normal_area[n], friction[n] * wet_area[n]
         viscous = normal_viscous[n], friction_viscous[n]
         drag_at(areas[0], areas[1], viscous[0], viscous[1], rest[n], here, flow, along, load)
         pull_slopes_at(
@@ -149,6 +152,13 @@ def add_bar_blocks(
             load_by_vector,
             load_by_velocity,
         )
+        if spanned < 1.0:
+            # The drag across a slack bar goes with the distance of its ends.
+            whole = normal_drag[n] * normal_area[n]
+            drag_at(whole, 0.0, viscous[0], 0.0, 1.0, here, flow, along, own)
+            for i in range(3):
+                for j in range(3):
+                    load_by_vector[i, j] += own[i] * along[j]
         for i in range(3):
             by_height[i] = -gradient / here * load[i]
             for j in range(3):

@@ -296,7 +296,7 @@ def build_model(gear: GearRecord) -> GearModel:
     >>> import trawl_ros
     >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
     >>> model.nodes, model.dof == 3 * model.nodes + 12
-    (142, True)
+    (169, True)
     """
     water, board = build_water(gear), build_board(gear)
     # Without a chord both points of the kite are the headrope's centre.

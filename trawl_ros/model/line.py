@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.bar import drag_at, taut_at, tension_at
+from trawl_ros.model.bar import drag_at, spanned_at, taut_at, tension_at
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.water import Water
 
@@ -139,6 +139,7 @@ def drag(bars: BarProperties, motion: BarMotion, along: FloatArray, water: Water
         bars.normal_viscous,
         bars.friction_viscous,
         motion.rest,
+        motion.vector,
         water.density_at(motion.height),
         water.current(motion.height) - motion.velocity,
         along,
@@ -155,6 +156,7 @@ def _drag(
     normal_viscous: FloatArray,
     friction_viscous: FloatArray,
     rest: FloatArray,
+    vector: FloatArray,
     density: FloatArray,
     flow: FloatArray,
     along: FloatArray,
@@ -162,7 +164,7 @@ def _drag(
 ) -> None:
     for n in range(len(rest)):
         drag_at(
-            normal_area[n],
+            spanned_at(vector[n], rest[n]) * normal_area[n],
             sliding_area[n],
             normal_viscous[n],
             friction_viscous[n],

@@ -6,7 +6,8 @@ same angle as the real ones, and ``real meshes around / around`` real bars lie s
 each numerical bar: twine length, area, volume, stiffness and knots are kept, row by row.
 
 Toward the codend rows get short, which would not make the answer better: where the gear file
-says so, two numerical meshes are joined to one, which is twice as long.
+says so, two numerical meshes are joined to one, which is twice as long. Every second line of bars
+ends there; those from the corners of the wings, which carry much, go on.
 
 Nodes of even rows lie at multiples of the angular pitch from the top, those of odd rows half
 a pitch further, so the net is its own mirror image and has a node at the headrope's centre.
@@ -50,8 +51,8 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
         return _planned_net(net, net.plan, kite_chord)
     n = net.around
     body = Profile(net.body, net)
-    rows = rows_of(body, n, net.halved_at_circumference_m)
     wing_rows = n // 12
+    rows = rows_of(body, n, net.halved_at_circumference_m, n // 2 - 2 * wing_rows)
     wing_row = net.body[0].front_circumference_m / (2 * n)
     wings = [
         NettingRow(k * wing_row, (k + 1) * wing_row, n, k % 2 == 1, False)
@@ -72,7 +73,7 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
     made = weave(net, body, wings, rows, lambda k, j: _in_wing(k, j, n, wing_rows), sums)
     index, last = made.index, rows[-1]
     ring = [index[len(rows), j] for j in range(last.columns)]
-    add_codend(net, Profile((*body.behind(last.back), *net.codend), net, closed=True), ring, made)
+    add_codend(net, Profile(net.codend, net, closed=True), ring, made)
     top, bottom = 0, n // 2
     rim_top = _rim(index, n, wing_rows, top)
     rim_bottom = _rim(index, n, wing_rows, bottom)
@@ -105,7 +106,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
     drawn = next((n for n, section in enumerate(sections) if section.square), len(sections))
     body = Profile(sections[:drawn], net)
     halved = net.halved_at_circumference_m or (plan.circumference / 2, plan.circumference / 4)
-    rows = rows_of(body, net.around, halved)
+    rows = rows_of(body, net.around, halved, mouth.corner)
     wings = [
         NettingRow(k * mouth.row, (k + 1) * mouth.row, net.around, k % 2 == 1, False)
         for k in range(-mouth.foremost, 0)
@@ -124,7 +125,7 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
     made = weave(net, body, wings, rows, lambda k, j: mouth.holds(k, 2 * j + k % 2), sums, rest)
     last, codend = rows[-1], sections_of(net, plan, 'codend', 'upper')
     ring = [made.index[len(rows), j] for j in range(last.columns)]
-    line = *body.behind(last.back), *sections[drawn:], *codend.sections
+    line = *sections[drawn:], *codend.sections
     add_codend(net, Profile(line, net, closed=True), ring, made)
 
     def nodes(places: tuple[Place, ...], *, mirrored: bool = False) -> list[int]:

@@ -179,6 +179,14 @@ class PlannedMouth:
             return k % 2
         return max(_near(self._gap_half(panel, k), k), 2 + k % 2)
 
+    @property
+    def corner(self) -> int:
+        """Half pitches from the middle of the upper panel to the corner at the mouth between the
+        wing's inner edge and the bosom; of the lower panel where the upper one has no bosom.
+        """
+        top, _, _, bottom = self.edges[-1]
+        return (top - 1) or (self.around - bottom - 1)
+
     def holds(self, k: int, half: int) -> bool:
         """True for a node that belongs to the net."""
         if k >= 0:

@@ -13,9 +13,6 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.twine_drag import viscous
 from trawl_ros.model.net.wake import bar_angle, exposure
 
-SLICES = 64
-"""Slices along a row over which the sections' properties are summed."""
-
 LEAST_ROWS = 3
 """So that the top has two nodes for the kite's carrying points."""
 
@@ -64,17 +61,6 @@ class Profile:
         """Stretched length of the netting, m."""
         return self.edges[-1]
 
-    def behind(self, x: float) -> tuple[SectionRecord, ...]:
-        """Sections behind ``x``, the first one cut there."""
-        left = []
-        for section, front, back in zip(self.sections, self.edges, self.edges[1:], strict=False):
-            if back > x:
-                start = max(x, front)
-                _, circumference = self.at(start)
-                changes = {'length_m': back - start, 'front_circumference_m': circumference}
-                left.append(section.model_copy(update=changes))
-        return tuple(left)
-
     def at(self, x: float) -> tuple[SectionRecord, float]:
         """Section at ``x`` and its stretched circumference there."""
         k = min(max(bisect_right(self.edges, x) - 1, 0), len(self.sections) - 1)
@@ -87,13 +73,13 @@ class Profile:
     def per_mesh_column(self, front: float, back: float, around: int) -> dict[str, float]:
         """Sums over [front, back] per bar, for two bars in each of ``around`` meshes.
 
-        Netting ahead of the mouth is taken to be like that at the mouth.
+        Netting ahead of the mouth is taken to be like that at the mouth. All sums are linear in
+        the circumference, so the middle of a section's piece gives them exactly.
         """
         sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
         # Of the area what is left of the drag of single twines across them, and along.
         total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift', 'knot_root'), 0.0)
-        dx = (back - front) / SLICES
-        for section, parallel in self._slices(front, back, around):
+        for section, parallel, dx in self._pieces(front, back, around):
             left, d = exposure(section, self.net, self._closing), section.twine_diameter_m
             twine, area = np.pi / 4 * d**2, parallel * d * dx
             total['area'] += area
@@ -112,26 +98,28 @@ class Profile:
             total['knot_volume'] += knots * np.pi / 6 * d**3
         return total
 
-    def _slices(
+    def _pieces(
         self, front: float, back: float, around: int
-    ) -> Iterator[tuple[SectionRecord, float]]:
-        """Sections in the middles of slices of [front, back], and bars side by side there."""
-        dx = (back - front) / SLICES
-        for x in front + (np.arange(SLICES) + 0.5) * dx:
-            section, circumference = self.at(float(x))
+    ) -> Iterator[tuple[SectionRecord, float, float]]:
+        """Sections of [front, back], each with the mean number of its bars that lie side by side,
+        and its length (m).
+        """
+        cuts = [front, *(edge for edge in self.edges if front < edge < back), back]
+        for start, end in pairwise(cuts):
+            section, circumference = self.at(0.5 * (start + end))
             # Square meshes have a bar along and one across for each bar's length.
             bars = section.twines * (2.0 if section.square else 1.0)
-            yield section, circumference / section.mesh_m / around * bars
+            yield section, circumference / section.mesh_m / around * bars, end - start
 
     def line_drag(self, front: float, back: float) -> tuple[float, float]:
         """Drag area C_D S (m²) of the twines over [front, back] as they lie in the flow, and its
         viscous part (m² √(m/s)), both as `lump_pass` has them.
         """
         net, area, viscous_area = self.net, 0.0, 0.0
-        for section, parallel in self._slices(front, back, 1):
+        for section, parallel, dx in self._pieces(front, back, 1):
             left, d = exposure(section, net, self._closing), section.twine_diameter_m
             # Two bars make a mesh.
-            twine = 2.0 * parallel * d * (back - front) / SLICES
+            twine = 2.0 * parallel * d * dx
             angle = bar_angle(section, net)
             angles = np.array([0.0, 0.5 * np.pi] if section.square else [angle])
             sine, cosine = np.sin(angles), np.abs(np.cos(angles))
@@ -145,9 +133,12 @@ class Profile:
         return float(area), float(viscous_area)
 
 
-def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tuple[NettingRow, ...]:
-    """Rows as long as makes ``around`` meshes as wide as the real ones, as many as fit into the
-    body.
+def rows_of(
+    profile: Profile, around: int, halved_at: tuple[float, ...], corner: int
+) -> tuple[NettingRow, ...]:
+    """Rows as long as makes ``around`` meshes as wide as the real ones.
+
+    The last row ends where the body does and is half as long to one and a half times as long.
 
     Parameters
     ----------
@@ -157,6 +148,10 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
         Numerical meshes around the mouth.
     halved_at
         Stretched circumferences (m), falling, below which half as many meshes go around.
+    corner
+        Half pitches from the middle of the upper or lower panel to the corner between wing and
+        bosom. There the frame rope leaves much of its tension to one line of bars. Of two such
+        lines one ends where meshes are joined, so they are joined where this one does not.
 
     Raises
     ------
@@ -165,27 +160,28 @@ def rows_of(profile: Profile, around: int, halved_at: tuple[float, ...]) -> tupl
     """
     rows = _of_ropes(profile, around)
     ropes, nodes = len(rows), around * len(rows)
-    x, odd, pending = rows[-1].back if rows else 0.0, False, list(halved_at)
-    while True:
+    x, line, odd, pending = rows[-1].back if rows else 0.0, corner, False, list(halved_at)
+    while x < profile.length:
         _, circumference = profile.at(x)
         # The circumference shrinks along the row: use the one at its middle.
         _, middle = profile.at(min(x + circumference / (4 * around), profile.length))
         end = x + middle / (2 * around)
-        if end > profile.length:
-            break
+        last = profile.length - x < 1.5 * (end - x)
         nodes += around
         if nodes > GEAR_NODES.value:
             raise _too_fine(profile, end - x)
-        joins = bool(pending) and circumference <= pending[0] and odd and around % 2 == 0
-        rows.append(NettingRow(x, end, around, odd, joins))
-        x, odd = end, not odd
+        due = bool(pending) and circumference <= pending[0] and around % 2 == 0
+        # Nodes with an even number (here ``line // 2``) go on toward the middle, as the line does.
+        joins = due and line % 4 == 1 and not last
+        rows.append(NettingRow(x, profile.length if last else end, around, odd, joins))
+        x, line, odd = rows[-1].back, line - 1, not odd
         if joins:
-            around, odd = around // 2, False
+            around, line, odd = around // 2, line // 2, False
             del pending[0]
     if len(rows) - ropes < LEAST_ROWS:
         behind = profile.length - (rows[ropes - 1].back if ropes else 0.0)
         raise GearError(
-            f'netting.body: {behind:g} m of netting are {len(rows) - ropes} rows of the mesh, '
+            f'netting.body: found {len(rows) - ropes} rows of the mesh in {behind:g} m of netting, '
             f'expected at least {LEAST_ROWS}: more meshes around or more netting'
         )
     return tuple(rows)
