@@ -5,9 +5,9 @@ import pytest
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
+from trawl_ros.lab.validation.panels.panel import panel_loads
 from trawl_ros.lab.validation.panels.published import netting_of
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.net.panel import panel_loads
 from trawl_ros.model.net.twine_drag import VISCOSITY, viscous
 from trawl_ros.model.net.wake import exposure, exposure_of, sheet, slowed
 

@@ -94,11 +94,11 @@ class GearModel:
 
     ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
-    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m²,
-    ``lump_viscous_area`` m² √(m/s), for ``drag_area`` |u| + ``viscous_area`` √|u|, ``lump_added``
-    kg per kg/m³ of water; ``floats`` (4, n) are those of the floats among them, in this order.
-    ``sheets`` are those of the netting at the nodes. ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
-    codend.
+    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m² and
+    ``lump_viscous_area`` m² √(m/s) of `lump_pass`, ``lump_added`` kg per kg/m³ of water; ``floats``
+    (4, n) are those of the floats among them, in this order. ``sheets`` are those of the netting at
+    the nodes, ``node_forces`` lift on ropes and forces beyond the paper's, ``catch`` what lies in
+    the codend.
 
     Examples
     --------

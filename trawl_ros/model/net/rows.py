@@ -48,8 +48,8 @@ class NettingRow:
 
 
 class Profile:
-    """Real netting as functions of the stretched distance from the mouth, or that of a codend, which
-    is ``closed`` behind.
+    """Real netting as functions of the stretched distance from the mouth, or that of a codend,
+    which is ``closed`` behind.
     """
 
     def __init__(
