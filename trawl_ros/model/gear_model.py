@@ -319,15 +319,17 @@ def build_model(gear: GearRecord) -> GearModel:
     net = build.nodes(len(mesh.positions))
 
     record = gear.netting
-    added, drag = (record.added_mass_normal, 0.0), (record.normal_drag, record.friction)
+    added = (record.added_mass_normal, 0.0)
     first, before, nodes = len(build.ends), len(build.lines), net.tolist()
     for bar in mesh.bars:
         # The codend's drag is on its nodes, its volume and stiffness in its bars.
         area = 0.0 if bar.group == 'codend' else bar.area
-        areas = (area * bar.normal, np.pi * area * bar.sliding)
-        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, *areas, *drag, *added)
+        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
+        drag = (record.normal_drag * bar.normal, record.friction * bar.sliding)
         growth = viscous(record, bar.diameter)
-        build.bar(nodes[bar.start], nodes[bar.end], bar.rest, (*row, bar.bow, *growth))
+        build.bar(
+            nodes[bar.start], nodes[bar.end], bar.rest, (*row, *drag, *added, bar.bow, *growth)
+        )
     rests_of, sides = _frame_rests(gear, mesh), mesh.wing_ends
     for name, rope, rim, rests in (
         ('headrope', gear.headrope, mesh.headrope, rests_of[0]),
