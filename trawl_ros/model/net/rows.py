@@ -57,7 +57,8 @@ class Profile:
     ) -> None:
         self.sections, self.net = sections, net
         self.edges: list[float] = np.cumsum([0.0, *(s.length_m for s in sections)]).tolist()
-        self._closing = sections[-1].back_circumference_m / self.length if closed else 0.0
+        closing = sections[-1].back_circumference_m / self.length if closed else 0.0
+        self._exposures = {id(s): exposure(s, net, closing) for s in sections}
 
     @property
     def length(self) -> float:
@@ -94,7 +95,7 @@ class Profile:
         total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift', 'knot_root'), 0.0)
         dx = (back - front) / SLICES
         for section, parallel in self._slices(front, back, around):
-            left, d = exposure(section, self.net, self._closing), section.twine_diameter_m
+            left, d = self._exposures[id(section)], section.twine_diameter_m
             twine, area = np.pi / 4 * d**2, parallel * d * dx
             total['area'] += area
             total['normal'] += area * left.normal
@@ -129,7 +130,7 @@ class Profile:
         """
         net, area, viscous_area = self.net, 0.0, 0.0
         for section, parallel in self._slices(front, back, 1):
-            left, d = exposure(section, net, self._closing), section.twine_diameter_m
+            left, d = self._exposures[id(section)], section.twine_diameter_m
             # Two bars make a mesh.
             twine = 2.0 * parallel * d * (back - front) / SLICES
             angle = bar_angle(section, net)

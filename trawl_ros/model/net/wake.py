@@ -20,8 +20,9 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 
-ROUNDS, SHARE = 200, 0.2
-"""Rounds in which water and loads agree, and the share of the way that each of them goes."""
+ROUNDS, SHARE, CLOSE = 500, 0.2, 1e-9
+"""Rounds in which water and loads agree at most, the share of the way that each of them goes, and
+the change of speeds behind which they do."""
 
 SMALL = 0.1
 """Slope (rad) at which the lift of bars is looked up."""
@@ -125,7 +126,10 @@ def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
         load = sheet.solidity * loads(net, sheet, flow).sum(axis=0)[[0, 2]]
         passing = 4.0 * (left[1] * sine + net.wake_exchange)
         taken = load / np.maximum(passing * np.array([cosine, sine]), 1e-12)
-        lost += SHARE * (np.minimum(taken, 0.95) - lost)
+        change = np.minimum(taken, 0.95) - lost
+        lost += SHARE * change
+        if np.abs(change).max() < CLOSE:
+            break
     return flow
 
 
