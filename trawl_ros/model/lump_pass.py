@@ -93,16 +93,18 @@ def area_at(
     x: FloatArray,
     around: IntArray,
     weights: FloatArray,
+    n: int,
     long: FloatArray,
     wide: FloatArray,
     area: FloatArray,
 ) -> None:
-    """Fill in both sides (3,) of a sheet and its area (3,)."""
-    for i in range(3):
-        long[i] = wide[i] = 0.0
-        for m in range(len(around)):
-            long[i] += weights[0, m] * x[around[m], i]
-            wide[i] += weights[1, m] * x[around[m], i]
+    """Fill in both sides (3,) of the n-th sheet and its area (3,)."""
+    long[:], wide[:] = 0.0, 0.0
+    for m in range(around.shape[1]):
+        node, first, second = around[n, m], weights[n, 0, m], weights[n, 1, m]
+        for i in range(3):
+            long[i] += first * x[node, i]
+            wide[i] += second * x[node, i]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         area[i] = long[j] * wide[k] - long[k] * wide[j]
@@ -125,7 +127,7 @@ def add_sheet_forces(
     long, wide, area = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
     for n in range(len(around)):
         node = around[n, 0]
-        area_at(x, around[n], weights[n], long, wide, area)
+        area_at(x, around, weights, n, long, wide, area)
         current_at(knots, cubics, x[node, 2], flow, shear)
         through = 0 * x[node, 2]
         square, size = STILL**2 + through, CLOSED**2 + through
@@ -164,7 +166,7 @@ def add_sheet_slopes(
     by_area, by_flow, turned = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
     for n in range(len(around)):
         node = around[n, 0]
-        area_at(x, around[n], weights[n], long, wide, area)
+        area_at(x, around, weights, n, long, wide, area)
         here = density - gradient * x[node, 2]
         current_at(knots, cubics, x[node, 2], flow, shear)
         through, square, size = 0.0, STILL**2, CLOSED**2
@@ -189,7 +191,7 @@ def add_sheet_slopes(
                 by_area[i, j] = scale * (p * (i == j) + area[i] * p_area - flow[i] * q_area)
                 by_area[i, j] -= 2.0 * force[i] * area[j] / square_sum
                 by_flow[i, j] = scale * (area[i] * p_flow - flow[i] * q_flow - q * (i == j))
-        for m in range(len(around[n])):
+        for m in range(around.shape[1]):
             first, second = weights[n, 0, m], weights[n, 1, m]
             if first == 0.0 and second == 0.0:
                 continue
