@@ -17,8 +17,8 @@ from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.net.planned_cloth import PlannedCloth, mesh_angle, section_of
-from trawl_ros.model.net.wake import Exposure, exposure
 from trawl_ros.model.net.planned_mouth import PlannedMouth
+from trawl_ros.model.net.wake import Exposure, exposure
 from trawl_ros.solver.equilibrium import steady_state
 
 AROUND = (24, 36, 48)
@@ -463,20 +463,24 @@ def test_half_of_the_bars_of_square_meshes_lie_across() -> None:
     square = last.model_copy(update={'orientation': 'square', **counts})
     assert square.length == last.length
     assert square.twine_length == pytest.approx(2 * last.twine_length)
-    pieces = (*plan.pieces[:-1], square)
-    netting = gear.netting.model_copy(update={'plan': plan.model_copy(update={'pieces': pieces})})
-    changed = gear.model_copy(update={'netting': netting})
+    gear, changed = (
+        gear.model_copy(
+            update={
+                'netting': gear.netting.model_copy(
+                    update={'plan': plan.model_copy(update={'pieces': some, 'shielded': False})}
+                )
+            }
+        )
+        for some in (plan.pieces, (*plan.pieces[:-1], square))
+    )
     net = gear.netting
     angle = np.radians(net.codend_mesh_angle_deg)
 
-    def drag(across: float, along: float, piece: PieceRecord) -> float:
-        left = exposed(piece, net)
-        return piece.twine_area * (
-            net.normal_drag * across * left.normal + net.friction * np.pi * along * left.friction
-        )
+    def drag(across: float, along: float) -> float:
+        return net.normal_drag * across + net.friction * np.pi * along
 
-    before = drag(np.sin(angle) ** 3, np.cos(angle) ** 3, last)
-    after = drag(0.5, 0.5, square)
+    before = drag(np.sin(angle) ** 3, np.cos(angle) ** 3) * last.twine_area
+    after = drag(0.5, 0.5) * square.twine_area
     assert codend_drag(changed) - codend_drag(gear) == pytest.approx(after - before, rel=0.05)
 
 

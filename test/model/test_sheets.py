@@ -9,8 +9,8 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.bar_pass import water_of
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.lump_pass import add_sheet_forces
 from trawl_ros.model.numerics import STEP
-from trawl_ros.model.sheet_pass import add_sheet_forces
 from trawl_ros.model.water import Water
 
 

@@ -13,8 +13,9 @@ class SectionRecord(Record):
     """A section of netting, from front to back; its stretched circumference tapers linearly.
 
     ``shielding`` is the part of the drag of single twines that is left in this netting, that of
-    `trawl_ros.model.net.wake` where the file does not give it; ``twines`` the number of them side by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of
-    their own, or lie along and across (``square``). ``ropes`` of a plan have no meshes:
+    `trawl_ros.model.net.wake` where the file does not give it; ``twines`` the number of them side
+    by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of their own, or lie along
+    and across (``square``). ``ropes`` of a plan have no meshes:
     ``mesh_m`` is what one of them takes of the circumference at the mouth.
     """
 
@@ -46,11 +47,11 @@ class NettingRecord(Record):
     around as before it. ``bowing_pressure_pa`` is the load of the water across twine, per
     projected area, under which it bows between its knots; without it bars are straight.
 
-    ``normal_drag`` (eq. 23) and ``friction`` (eq. 24) are the coefficients at high Reynolds numbers.
-    Both grow as these fall, ``viscous`` times as Choo and Casarella (1971) have it, and so does
-    ``knot_drag`` of bare knots; ``wake_exchange`` is that of the water along a sheet with the water outside
-    (`trawl_ros.model.net.wake`). ``lift`` is the coefficient of lift that sheets have, by the square of
-    their solidity. Panels in config/panels bear out what is not given.
+    ``normal_drag`` (eq. 23), ``friction`` (eq. 24) and ``knot_drag`` are the coefficients at high
+    Reynolds numbers. They grow as these fall, ``viscous`` times as `trawl_ros.model.net.twine_drag`
+    has it. ``wake_exchange`` is the exchange of water along a sheet with the water outside
+    (`trawl_ros.model.net.wake`), ``lift`` the lift of sheets by the square of their solidity.
+    Defaults are those that panels bear out (config/panels).
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]

@@ -21,11 +21,15 @@ from trawl_ros.model.bar_pass import add_bar_blocks, add_bar_forces, add_bar_mas
 from trawl_ros.model.compiled import alike, compiled
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarMotion
-from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
+from trawl_ros.model.lump_pass import (
+    add_sheet_forces,
+    add_sheet_slopes,
+    fill_lump_forces,
+    fill_lump_slopes,
+)
 from trawl_ros.model.numerics import STEP, skew, stepped
 from trawl_ros.model.point_pass import fill_board_masses, fill_masses, fill_points, gather_loads
 from trawl_ros.model.rotations import rotation
-from trawl_ros.model.sheet_pass import add_sheet_forces, add_sheet_slopes
 from trawl_ros.model.state import State, Tow
 
 

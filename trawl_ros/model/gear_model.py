@@ -94,11 +94,11 @@ class GearModel:
 
     ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
     0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
-    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m²,
-    ``lump_viscous_area`` m² √(m/s), for ``drag_area`` |u| + ``viscous_area`` √|u|, ``lump_added``
-    kg per kg/m³ of water; ``floats`` (4, n) are those of the floats among them, in this order.
-    ``sheets`` are those of the netting at the nodes. ``node_forces`` are lift on ropes and forces beyond the paper's, ``catch`` what lies in the
-    codend.
+    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m² and
+    ``lump_viscous_area`` m² √(m/s) of `lump_pass`, ``lump_added`` kg per kg/m³ of water; ``floats``
+    (4, n) are those of the floats among them, in this order. ``sheets`` are those of the netting at
+    the nodes, ``node_forces`` lift on ropes and forces beyond the paper's, ``catch`` what lies in
+    the codend.
 
     Examples
     --------
@@ -318,15 +318,17 @@ def build_model(gear: GearRecord) -> GearModel:
     net = build.nodes(len(mesh.positions))
 
     record = gear.netting
-    added, drag = (record.added_mass_normal, 0.0), (record.normal_drag, record.friction)
+    added = (record.added_mass_normal, 0.0)
     first, before, nodes = len(build.ends), len(build.lines), net.tolist()
     for bar in mesh.bars:
         # The codend's drag is on its nodes, its volume and stiffness in its bars.
         area = 0.0 if bar.group == 'codend' else bar.area
-        areas = (area * bar.normal, np.pi * area * bar.sliding)
-        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, *areas, *drag, *added)
+        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
+        drag = (record.normal_drag * bar.normal, record.friction * bar.sliding)
         growth = viscous(record, bar.diameter)
-        build.bar(nodes[bar.start], nodes[bar.end], bar.rest, (*row, bar.bow, *growth))
+        build.bar(
+            nodes[bar.start], nodes[bar.end], bar.rest, (*row, *drag, *added, bar.bow, *growth)
+        )
     rests_of, sides = _frame_rests(gear, mesh), mesh.wing_ends
     for name, rope, rim, rests in (
         ('headrope', gear.headrope, mesh.headrope, rests_of[0]),

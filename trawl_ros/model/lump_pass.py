@@ -1,12 +1,26 @@
-"""One pass over the nodes of a gear: knots, floats and weights (eq. 22, 28) and their slopes."""
+"""One pass over the nodes of a gear: knots, floats and weights (eq. 22, 28), lift of the sheets of
+netting at nodes, and their slopes.
+
+The lift that a sheet has by its solidity is added to the loads of its bars. With the area a of the
+sheet that belongs to a node (a vector across it), its twine A, the flow u and the coefficient κ,
+
+    F = ½ ρ κ A² / (|a|² + A²) (u · a / |a|) (|u| a - (a · u) u / |u|)
+
+is a load across the flow of ½ ρ κ S² / (1 + S²) |a| |u|² sin θ cos θ, with the solidity
+S = A / |a|. The area is d₁ × d₂; both sides are weighted sums of the places of the node and of
+those tied to it, so that its slopes lie on the bars' pattern.
+"""
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar import STILL
 from trawl_ros.model.bar_pass import WaterTable
-from trawl_ros.model.compiled import compiled
+from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.current import current_at
+
+CLOSED = 1e-4
+"""Area (m²) below which a sheet counts as closed, so that its direction has a derivative."""
 
 
 @compiled
@@ -72,3 +86,126 @@ def fill_lump_slopes(
                 by_height += by_flow * shear[j]
             stiffness[n, i, 2] = -by_height
         stiffness[n, 2, 2] += gravity * gradient * volume[n]
+
+
+@inner
+def area_at(
+    x: FloatArray,
+    around: IntArray,
+    weights: FloatArray,
+    n: int,
+    long: FloatArray,
+    wide: FloatArray,
+    area: FloatArray,
+) -> None:
+    """Fill in both sides (3,) of the n-th sheet and its area (3,)."""
+    long[:], wide[:] = 0.0, 0.0
+    for m in range(around.shape[1]):
+        node, first, second = around[n, m], weights[n, 0, m], weights[n, 1, m]
+        for i in range(3):
+            long[i] += first * x[node, i]
+            wide[i] += second * x[node, i]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        area[i] = long[j] * wide[k] - long[k] * wide[j]
+
+
+@compiled
+def add_sheet_forces(
+    x: FloatArray,
+    v: FloatArray,
+    around: IntArray,
+    weights: FloatArray,
+    lift: FloatArray,
+    twine: FloatArray,
+    water: WaterTable,
+    total: FloatArray,
+) -> None:
+    """Add the lift of sheets to the nodes ``around[:, 0]`` that they belong to."""
+    density, gradient, _, knots, cubics = water
+    flow, shear = np.empty(3, x.dtype), np.empty(3)
+    long, wide, area = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
+    for n in range(len(around)):
+        node = around[n, 0]
+        area_at(x, around, weights, n, long, wide, area)
+        current_at(knots, cubics, x[node, 2], flow, shear)
+        through = 0 * x[node, 2]
+        square, size = STILL**2 + through, CLOSED**2 + through
+        for i in range(3):
+            flow[i] -= v[node, i]
+            through += flow[i] * area[i]
+            square += flow[i] ** 2
+            size += area[i] ** 2
+        speed, size = np.sqrt(square), np.sqrt(size)
+        solidity = twine[n] ** 2 / (size**2 + twine[n] ** 2)
+        scale = 0.5 * (density - gradient * x[node, 2]) * lift[n] * solidity * through / size
+        for i in range(3):
+            total[node, i] += scale * (speed * area[i] - through / speed * flow[i])
+
+
+@compiled
+def add_sheet_slopes(
+    x: FloatArray,
+    v: FloatArray,
+    around: IntArray,
+    weights: FloatArray,
+    lift: FloatArray,
+    twine: FloatArray,
+    water: WaterTable,
+    slots: IntArray,
+    total: FloatArray,
+    stiffness_data: FloatArray,
+    damping_data: FloatArray,
+) -> None:
+    """The same, with K = -∂F/∂x and C = -∂F/∂v of the sheets; ``slots`` (n, m, 3, 3) are those of
+    the blocks of their own node's force by the places of all nodes around it.
+    """
+    density, gradient, _, knots, cubics = water
+    flow, shear, force = np.empty(3), np.empty(3), np.empty(3)
+    long, wide, area = np.empty(3), np.empty(3), np.empty(3)
+    by_area, by_flow, turned = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
+    for n in range(len(around)):
+        node = around[n, 0]
+        area_at(x, around, weights, n, long, wide, area)
+        here = density - gradient * x[node, 2]
+        current_at(knots, cubics, x[node, 2], flow, shear)
+        through, square, size = 0.0, STILL**2, CLOSED**2
+        for i in range(3):
+            flow[i] -= v[node, i]
+            through += flow[i] * area[i]
+            square += flow[i] ** 2
+            size += area[i] ** 2
+        speed, size = np.sqrt(square), np.sqrt(size)
+        square_sum = size**2 + twine[n] ** 2
+        scale = 0.5 * here * lift[n] * twine[n] ** 2 / square_sum
+        # F = scale (p a - q u)
+        p, q = through * speed / size, through**2 / (size * speed)
+        for i in range(3):
+            force[i] = scale * (p * area[i] - q * flow[i])
+            total[node, i] += force[i]
+            for j in range(3):
+                p_area = speed / size * flow[j] - p / size**2 * area[j]
+                q_area = 2.0 * through / (size * speed) * flow[j] - q / size**2 * area[j]
+                p_flow = speed / size * area[j] + through / (size * speed) * flow[j]
+                q_flow = 2.0 * through / (size * speed) * area[j] - q / square * flow[j]
+                by_area[i, j] = scale * (p * (i == j) + area[i] * p_area - flow[i] * q_area)
+                by_area[i, j] -= 2.0 * force[i] * area[j] / square_sum
+                by_flow[i, j] = scale * (area[i] * p_flow - flow[i] * q_flow - q * (i == j))
+        for m in range(around.shape[1]):
+            first, second = weights[n, 0, m], weights[n, 1, m]
+            if first == 0.0 and second == 0.0:
+                continue
+            # The area changes by turned × dx.
+            for i in range(3):
+                turned[i] = second * long[i] - first * wide[i]
+            for i in range(3):
+                a, b, c = by_area[i, 0], by_area[i, 1], by_area[i, 2]
+                stiffness_data[slots[n, m, i, 0]] -= b * turned[2] - c * turned[1]
+                stiffness_data[slots[n, m, i, 1]] -= c * turned[0] - a * turned[2]
+                stiffness_data[slots[n, m, i, 2]] -= a * turned[1] - b * turned[0]
+        for i in range(3):
+            by_height = -gradient / here * force[i]
+            for j in range(3):
+                by_height += by_flow[i, j] * shear[j]
+                damping_data[slots[n, 0, i, j]] += by_flow[i, j]
+            stiffness_data[slots[n, 0, i, 2]] -= by_height

@@ -16,8 +16,11 @@ from trawl_ros.model.assembly import points_of, rest_lengths, sheets_of
 from trawl_ros.model.bar_pass import add_bar_blocks, water_of
 from trawl_ros.model.compiled import compiled
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.lump_pass import fill_lump_forces, fill_lump_slopes
-from trawl_ros.model.sheet_pass import add_sheet_forces
+from trawl_ros.model.lump_pass import (
+    add_sheet_forces,
+    fill_lump_forces,
+    fill_lump_slopes,
+)
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.frontal.one_front import dense_solution
 
@@ -197,8 +200,11 @@ class _PatchForces:
         add_sheet_forces(self.x, self.v, *sheets_of(model), water, total)
         here = self.x[patch], self.v[patch]
         force, (own, slowed) = np.empty_like(new), np.empty((2, len(patch), 3, 3))
-        shape = model.lump_volume[patch], model.lump_drag_area[patch]
-        shape += (model.lump_viscous_area[patch],)
+        shape = (
+            model.lump_volume[patch],
+            model.lump_drag_area[patch],
+            model.lump_viscous_area[patch],
+        )
         fill_lump_forces(*here, model.lump_mass[patch], *shape, water, force)
         fill_lump_slopes(*here, *shape, water, own, slowed)
         faster = step.by_velocity / step.by_position

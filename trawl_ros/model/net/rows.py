@@ -45,8 +45,8 @@ class NettingRow:
 
 
 class Profile:
-    """Real netting as functions of the stretched distance from the mouth, or that of a codend, which
-    is ``closed`` behind.
+    """Real netting as functions of the stretched distance from the mouth, or that of a codend,
+    which is ``closed`` behind.
     """
 
     def __init__(
@@ -54,7 +54,8 @@ class Profile:
     ) -> None:
         self.sections, self.net = sections, net
         self.edges: list[float] = np.cumsum([0.0, *(s.length_m for s in sections)]).tolist()
-        self._closing = sections[-1].back_circumference_m / self.length if closed else 0.0
+        closing = sections[-1].back_circumference_m / self.length if closed else 0.0
+        self._exposures = {id(s): exposure(s, net, closing) for s in sections}
 
     @property
     def length(self) -> float:
@@ -80,7 +81,7 @@ class Profile:
         # Of the area what is left of the drag of single twines across them, and along.
         total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift', 'knot_root'), 0.0)
         for section, parallel, dx in self._pieces(front, back, around):
-            left, d = exposure(section, self.net, self._closing), section.twine_diameter_m
+            left, d = self._exposures[id(section)], section.twine_diameter_m
             twine, area = np.pi / 4 * d**2, parallel * d * dx
             total['area'] += area
             total['normal'] += area * left.normal
@@ -117,7 +118,7 @@ class Profile:
         """
         net, area, viscous_area = self.net, 0.0, 0.0
         for section, parallel, dx in self._pieces(front, back, 1):
-            left, d = exposure(section, net, self._closing), section.twine_diameter_m
+            left, d = self._exposures[id(section)], section.twine_diameter_m
             # Two bars make a mesh.
             twine = 2.0 * parallel * d * dx
             angle = bar_angle(section, net)

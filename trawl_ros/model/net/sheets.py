@@ -17,7 +17,7 @@ class NetSheets:
     around : (n, 5) array
         Node that each belongs to, and the nodes tied to it; itself again where there are fewer.
     weights : (n, 2, 5) array
-        Weights of their places in both sides of `trawl_ros.model.sheet_pass`.
+        Weights of their places in both sides of `trawl_ros.model.lump_pass`.
     lift, twine : (n,) array
         Coefficient κ there, and the area of twine, m².
     """

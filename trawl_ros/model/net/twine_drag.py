@@ -1,10 +1,10 @@
-"""Growth of a twine's drag as its Reynolds number falls, after Choo and Casarella (1971).
+"""Growth of the drag of twine and knots as their Reynolds number Re falls.
 
-Hydrodynamic resistance of towed cables, Journal of Hydronautics 5(4): with Re of the motion across
-the cylinder the coefficient of the drag is 1.1 + 4 Re^-1/2 for 30 to 100 000, and the laminar part of
-the pull per length along it π μ 0.55 Re^1/2 U_t. Both go with the root of the motion across, so that
-the bars' loops need one more root and no Reynolds number. Knots are spheres, whose coefficient goes with
-0.4 + 6 / (1 + Re^1/2), about 0.4 (1 + 15 Re^-1/2), as Balash and others (2009) take it for knots.
+Across a cylinder C_n is 1.1 + 4 Re^-1/2, with Re of the motion across; the laminar part of the pull
+along it is π μ 0.55 Re^1/2 U_t per length (Choo and Casarella 1971, Hydrodynamic resistance of
+towed cables, Journal of Hydronautics 5(4)). Both go with the root of the motion across, so that the
+loops over bars need one more root and no Reynolds number. Knots are taken for spheres, as Balash
+and others (2009) do: C_D goes with 0.4 + 6 / (1 + Re^1/2), about 0.4 (1 + 15 Re^-1/2).
 """
 
 from math import sqrt
@@ -15,8 +15,9 @@ VISCOSITY = 1.36e-6
 """Kinematic viscosity of sea water of 35 g/kg at 10 °C, m²/s (ITTC 7.5-02-01-03)."""
 
 ACROSS, ALONG, KNOTS = 4.0, 1.1, 15.0
-"""Factors of Re^-1/2 in the coefficient across, of Re^1/2 over the Reynolds number of the motion along
-in that of friction on the wetted surface, and of Re^-1/2 in that of knots, over what this is without."""
+"""Factors of Re^-1/2 in the coefficient across, of Re^1/2 over the Reynolds number of the motion
+along in that of friction on the wetted surface, and of Re^-1/2 in that of knots, relative to its
+value at high Re."""
 
 
 def viscous(net: NettingRecord, diameter: float) -> tuple[float, float]:

@@ -1,14 +1,14 @@
 """Sheets of netting in flowing water: how much of the load of single twines and knots is left.
 
-Twines of a sheet lie in each other's wakes, and the water squeezes through between them. Along the
-sheet it has 1 - a of its speed, through it 1 - b, which the twines speed up by 1 / (1 - S) with the
-solidity S. What the sheet takes is what the water loses that comes by: with the slope θ of the sheet
-to the flow, by its own motion through the sheet and by turbulent exchange,
+Twines lie in each other's wakes, and water squeezes through between them. Along a sheet it has
+1 - a of its speed, through it 1 - b, which the twines speed up by 1 / (1 - S), with the solidity S.
+The sheet takes the momentum that the water loses. Water passes by its own motion through the sheet,
+which has the slope θ to the flow, and by turbulent exchange e:
 
     S C_t = 4 a cos θ ((1 - b) sin θ + e),   S C_n = 4 b sin θ ((1 - b) sin θ + e)
 
-where C_t and C_n are the loads along and across the sheet per area of twine. Across the flow this is
-Taylor's screen (1944); e is what panels that lie along the flow have (config/panels).
+C_t and C_n are the loads along and across the sheet per area of twine. Across the flow this is
+Taylor's screen (1944); e is chosen by panels that lie along the flow (config/panels).
 """
 
 from dataclasses import dataclass, replace
@@ -20,8 +20,9 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 
-ROUNDS, SHARE = 200, 0.2
-"""Rounds in which water and loads agree, and the share of the way that each of them goes."""
+ROUNDS, SHARE, CLOSE = 500, 0.2, 1e-9
+"""Rounds in which water and loads agree at most, the share of the way that each of them goes, and
+the change of speeds behind which they do."""
 
 SMALL = 0.1
 """Slope (rad) at which the lift of bars is looked up."""
@@ -35,8 +36,8 @@ DENSEST = 0.9
 
 @dataclass(frozen=True)
 class Exposure:
-    """Parts of the drag of single twines, across them and by friction, and of single knots that are
-    left in a sheet, of twine without what its knots hide; and the coefficient κ of the sheet itself.
+    """Shares of the drag of single twines, across them and by friction, and of single knots that
+    are left in a sheet, without the twine that knots hide; and the coefficient κ of its lift.
     """
 
     normal: float = 1.0
@@ -47,8 +48,9 @@ class Exposure:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Sheet of netting: unit vectors (n, 3) along its bars, in its own axes along, around and across
-    it; its ``slope`` to the flow (rad), its ``solidity``, and the ``knots``' area per area of twine.
+    """Sheet of netting: unit vectors (n, 3) along its bars, in its own axes along, around and
+    across it; its ``slope`` to the flow (rad), its ``solidity``, and the area of ``knots`` per area
+    of twine.
     """
 
     bars: FloatArray
@@ -124,7 +126,10 @@ def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
         load = sheet.solidity * loads(net, sheet, flow).sum(axis=0)[[0, 2]]
         passing = 4.0 * (left[1] * sine + net.wake_exchange)
         taken = load / np.maximum(passing * np.array([cosine, sine]), 1e-12)
-        lost += SHARE * (np.minimum(taken, 0.95) - lost)
+        change = np.minimum(taken, 0.95) - lost
+        lost += SHARE * change
+        if np.abs(change).max() < CLOSE:
+            break
     return flow
 
 
@@ -156,7 +161,7 @@ def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, floa
 
 @lru_cache(1000)
 def exposure(section: SectionRecord, net: NettingRecord, closing: float = 0.0) -> Exposure:
-    """Exposure of the netting of a section; that of single twines where the file switches it off."""
+    """Exposure of the netting of a section, or that which the file gives."""
     if section.ropes:
         return Exposure()
     if section.shielding is not None:

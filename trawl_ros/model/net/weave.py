@@ -14,9 +14,9 @@ from trawl_ros.model.net.rows import NettingRow, Profile
 
 @dataclass(frozen=True)
 class NetBar:
-    """A numerical bar between two net nodes, with the properties of `line.BarProperties`; ``normal``
-    and ``sliding`` are the parts of its area that single twines with as much drag have, across them
-    and along, ``diameter`` (m) is that of its twine, and ``lift`` the κ of its sheet.
+    """A numerical bar between two net nodes, with the properties of `line.BarProperties`;
+    ``normal`` and ``sliding`` are the parts of its area that single twines with as much drag have,
+    across them and along, ``diameter`` (m) is that of its twine, and ``lift`` the κ of its sheet.
     """
 
     start: int
@@ -39,13 +39,13 @@ class NetMesh:
     """Nodes and bars of the net.
 
     ``positions`` (n, 3) is a first guess, x forward from the wing tips, y to port, z up; ``bars``
-    its netting; ``knot_area`` (m²), ``knot_root`` (m^1.5, the area over
-    the root of the diameter) and ``knot_volume`` (m³) per node; ``line_drag_area`` C_D S
-    (m²) of the codend's nodes and ``line_viscous_area`` its viscous part (m² √(m/s)); ``headrope`` and ``footrope`` the nodes from port to starboard
-    wing tip, ``edge_rest`` the length of a bar of a wing's edge; ``wing_ends`` the nodes joined
-    by the wing-end lines or side ropes, from the top down; ``kite`` what carries the kite;
-    ``tips`` the nodes that bridles are shackled to: port upper and lower, starboard upper and
-    lower; ``knot_density`` the density of knots (kg/m³); ``frame`` headrope, footrope and side
+    its netting; ``knot_area`` (m²), ``knot_root`` (m^1.5, the area over the root of the diameter)
+    and ``knot_volume`` (m³) per node; ``line_drag_area`` C_D S (m²) of the codend's nodes and
+    ``line_viscous_area`` its viscous part (m² √(m/s)); ``headrope`` and ``footrope`` the nodes from
+    port to starboard wing tip, ``edge_rest`` the length of a bar of a wing's edge; ``wing_ends``
+    the nodes joined by the wing-end lines or side ropes, from the top down; ``kite`` what carries
+    the kite; ``tips`` the nodes that bridles are shackled to: port upper and lower, starboard upper
+    and lower; ``knot_density`` the density of knots (kg/m³); ``frame`` headrope, footrope and side
     rope of a planned net.
     """
 

@@ -24,7 +24,7 @@ def add_bar_inertia(
     """Add to the points (p, 3) at both ends of the bars half of their mass, with the added one,
     times the point's acceleration.
     """
-    _, _, mass, volume, _, _, _, _, added_normal, added_tangential, _ = bars
+    mass, volume, added_normal, added_tangential = bars[2], bars[3], bars[8], bars[9]
     vector, matrix = np.empty(3, x.dtype), np.empty((3, 3), x.dtype)
     for n in range(len(ends)):
         start, end = ends[n, 0], ends[n, 1]

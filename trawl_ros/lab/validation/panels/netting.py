@@ -12,6 +12,7 @@ from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
+from trawl_ros.lab.validation.panels.panel import panel_loads
 from trawl_ros.lab.validation.panels.published import (
     KnotRecord,
     PanelRecord,
@@ -20,7 +21,6 @@ from trawl_ros.lab.validation.panels.published import (
     published_panels,
 )
 from trawl_ros.lab.validation.panels.whole_nets import HIGH, LOW, NETS, nets_table, whole_nets
-from trawl_ros.model.net.panel import panel_loads
 from trawl_ros.report.pictures import Drawing
 
 GEAR = 'krill_800'
@@ -131,8 +131,8 @@ def run(small: bool) -> Findings:
             100.0 * float(np.mean(inside)),
             '%',
             at_least(100.0),
-            'At 2, 3 and 4 knots. Both formulas are of nets whose mouth closes with speed, which that '
-            'of a net as built does not; MacLennan counts ground gear.',
+            'At 2, 3 and 4 knots. Both formulas are of nets whose mouth closes with speed, which '
+            'that of a net as built does not; MacLennan counts ground gear.',
             key='bands',
         ),
         MeasuredValue(
@@ -147,7 +147,12 @@ def run(small: bool) -> Findings:
     ]
     return Findings(
         rows=tuple(rows),
-        tables=(nets_table(nets), _table(every), _knots(published, net), _not_used(published, every)),
+        tables=(
+            nets_table(nets),
+            _table(every),
+            _knots(published, net),
+            _not_used(published, every),
+        ),
         drawings=(
             Drawing(
                 'panels',
@@ -159,8 +164,8 @@ def run(small: bool) -> Findings:
         text=(
             'The panel of the model has the law of the netting of trawls: twines by their Reynolds '
             'number, knots, wakes and lift of sheets (docs/model.md, Netting). Its coefficients '
-            'were chosen by these panels, and by nothing else; whole nets stand beside them. Most sources print formulas '
-            'fitted to their tests, which are compared at these angles.'
+            'were chosen by these panels, and by nothing else; whole nets are compared with '
+            'formulas. Most sources print fits to their tests, which are compared at these angles.'
         ),
     )
 

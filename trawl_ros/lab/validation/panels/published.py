@@ -92,7 +92,7 @@ class PublishedPanels(Record):
 
     @model_validator(mode='after')
     def _named(self) -> 'PublishedPanels':
-        named = {one.source for one in (*self.panels, *self.knots)}
+        named = {one.source for one in self.panels} | {one.source for one in self.knots}
         if named - set(self.sources):
             raise ValueError(
                 f'sources: found none named {", ".join(sorted(named - set(self.sources)))}'

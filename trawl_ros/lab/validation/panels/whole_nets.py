@@ -1,4 +1,4 @@
-"""Drag of whole nets by speed, as built and in equilibrium, compared with formulas of trawls at sea."""
+"""Drag of whole nets by speed, as built and in equilibrium, compared with formulas of trawls."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,8 +29,8 @@ FINENESS = 0.5
 
 @dataclass(frozen=True)
 class WholeNet:
-    """Net with its area of twine (m²), and its drag (N) by speed (knots), as built and in equilibrium;
-    speeds without a steady state are missing there.
+    """Net with its area of twine (m²), and its drag (N) by speed (knots), as built and in
+    equilibrium; speeds without a steady state are missing there.
     """
 
     name: str

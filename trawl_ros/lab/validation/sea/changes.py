@@ -67,10 +67,11 @@ CHANGES = (
     Change(f'net drag × {NET_DRAG:g}', _net_drag),
     Change(f'{100 * (FASTER - 1):.0f} % faster', speed=FASTER),
     Change('the last three', lambda gear: _strumming(_net_drag(gear)), FASTER),
-    Change('no growth of twine\'s drag at low Reynolds numbers', _netting('viscous')),
+    Change("no growth of twine's drag at low Reynolds numbers", _netting('viscous')),
     Change('no lift of sheets', _netting('lift')),
     Change('no floats', _no_floats),
 )
+
 
 def changed_hauls(
     gear: GearRecord, haul: HaulRecord, changes: Sequence[Change] = CHANGES
