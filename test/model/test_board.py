@@ -101,17 +101,6 @@ def test_the_gear_file_has_the_printed_coefficients_and_table_1(
     )
 
 
-def test_forces_along_the_boards_own_axes_when_the_gear_file_says_so(board: Board) -> None:
-    still = np.tile([0.0, 0.0, -50.0], (2, 1))
-    turns = np.stack([about_axis(2, side * 0.3) for side in OUTWARD])
-    args = (OUTWARD, still, turns, np.tile([2.0, 0.0, 0.0], (2, 1)), np.zeros((2, 3)), Water())
-    flow = flow_at(board, *args)
-    force, _ = hydrodynamics(replace(board, flow_axes=False), PRINTED, flow)
-    pressure = 0.5 * DENSITY * 12.0 * 4.0
-    np.testing.assert_allclose(force[:, 0], pressure * (1.19 * 0.3 + 0.041))
-    np.testing.assert_allclose(force[:, 1], pressure * (2.47 * 0.3 + 0.67))
-
-
 def directions(count: int, seed: int = 0) -> np.ndarray:
     flow = np.random.default_rng(seed).normal(size=(count, 3))
     return flow / np.linalg.norm(flow, axis=1)[:, None]

@@ -120,14 +120,16 @@ def fill_loads(
     fill_attack_angles(setting, pitched, front, rear, flow, attack)
     for n in range(len(force)):
         here = density - gradient * 0.5 * (front[n, 2] + rear[n, 2])
-        square = flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2
+        speed_square = flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2
         pressure = 0.5 * here * area
         straight = normal_slope * np.sin(attack[n])
-        normal = straight / (1.0 + (straight / normal_limit) ** 4) ** 0.25
+        # Products and roots, for a complex power of a negative number has an imaginary part.
+        square = (straight / normal_limit) * (straight / normal_limit)
+        normal = straight / np.sqrt(np.sqrt(1.0 + square * square))
         drag = drag_base + normal * np.sin(attack[n])
         for i in range(3):
-            force[n, i] = pressure * drag * np.sqrt(square + 1e-18) * flow[n, i]
-        raised = pressure * normal * np.cos(attack[n]) * square
+            force[n, i] = pressure * drag * np.sqrt(speed_square + 1e-18) * flow[n, i]
+        raised = pressure * normal * np.cos(attack[n]) * speed_square
         force[n, 2] += raised - (mass - here * volume) * gravity
 
 
