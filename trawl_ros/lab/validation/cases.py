@@ -25,7 +25,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
             'degrees_of_freedom',
             'identified',
             'sentences',
-            'moment_signs',
+            'board_frame',
         ),
         'peers': ('moordyn_wire', 'moorpy_wire'),
         'branches': ('steady_states', 'fastening_points'),

@@ -13,11 +13,11 @@ FIGURES = {
     'degrees_of_freedom': ('fig13_to_16', 'all_states'),
     'identified': ('fig4', 'fig5'),
     'sentences': (),
-    'moment_signs': (),
+    'board_frame': (),
 }
 
 
-LONG = ('degrees_of_freedom', 'identified', 'moment_signs')
+LONG = ('degrees_of_freedom', 'identified', 'board_frame')
 """Cases that take more than ten seconds even in small."""
 
 
