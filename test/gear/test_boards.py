@@ -25,7 +25,7 @@ FOIL = {'kind': 'foil', 'max_lift': 1.68, 'stall_deg': 20.0, 'camber': 0.15}
 def with_law(folder: Path, law: dict[str, Any], **changes: object) -> GearRecord:
     """The default gear with a law, and without what can be derived."""
     data = yaml.safe_load(share_path('config', 'gear', 'kaifuha.yaml').read_text())
-    for key in ('coefficients', 'inertia', 'added_mass_kg', 'force_axes', 'moment_signs'):
+    for key in ('coefficients', 'inertia', 'added_mass_kg'):
         del data['board'][key]
     del data['identification']
     data['board'] |= {'law': law, **changes}
@@ -97,8 +97,16 @@ def test_the_centre_of_pressure_turns_the_board_as_its_force_does(
     force, moment = hydrodynamics(board, np.zeros(12), flow_at_twenty)
     # Ahead of the centre of gravity by a tenth of the chord, the outward force turns the nose out.
     assert moment[0, 2] == pytest.approx(0.1 * board.chord * force[0, 1], rel=1e-12)
-    flipped = replace(board, law=replace(board.law, signs=(-1, 1, -1)), moment_signs=(-1, 1, -1))
-    np.testing.assert_allclose(hydrodynamics(flipped, np.zeros(12), flow_at_twenty)[1], moment)
+
+
+@pytest.mark.parametrize(
+    ('key', 'value'), [('force_axes', 'flow'), ('moment_signs', [-1, 1, 1]), ('slip_sign', -1)]
+)
+def test_keys_of_0_1_are_refused_with_what_to_change(
+    tmp_path: Path, key: str, value: object
+) -> None:
+    with pytest.raises(GearError, match=rf'board: .*found {key}.*trawl trim.*c3, b5, a6 and c6'):
+        with_law(tmp_path, FOIL, **{key: value})
 
 
 def test_what_is_not_given_is_that_of_a_plate(tmp_path: Path) -> None:

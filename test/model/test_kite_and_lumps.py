@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trawl_ros.gear.records import FloatRecord
 from trawl_ros.model import kite as kite_physics
 from trawl_ros.model.assembly import forces, lump_forces
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -75,6 +76,8 @@ def test_the_kite_lifts_whatever_the_course() -> None:
 def test_the_headropes_centre_and_a_point_behind_it_share_the_kite(
     model: GearModel, random_case
 ) -> None:
+    kite = model.gear.kite.model_copy(update={'chord_m': 24.0})
+    model = build_model(model.gear.model_copy(update={'kite': kite}))
     model, state, tow = random_case(model, 11)
     bare = replace(model, kite=replace(model.kite, area=0.0, mass=0.0, volume=0.0))
     change = forces(model, state, tow) - forces(bare, state, tow)
@@ -96,7 +99,18 @@ def test_the_headropes_centre_and_a_point_behind_it_share_the_kite(
     assert np.abs(change[: 3 * model.nodes]).max() == 0.0
 
 
+def test_a_kite_without_a_chord_keeps_its_setting_to_the_flow(model: GearModel, random_case) -> None:
+    model, state, _ = random_case(model, 11)
+    held = model.layout.kite
+    front, rear = held.weights @ state.nodes[held.nodes]
+    np.testing.assert_array_equal(front, rear)
+    level = kite_physics.attack_angle(model.kite, front, rear, np.array([-2.0, 0.5, 0.0]))
+    assert level == pytest.approx(model.kite.setting)
+
+
 def test_clumps_pull_down_and_floats_up_by_what_the_gear_file_says(model: GearModel) -> None:
+    floats = FloatRecord(buoyancy_n=14000.0, density_kg_m3=300.0, drag_area_m2=1.4)
+    model = build_model(model.gear.model_copy(update={'floats': floats}))
     bare = model.gear.model_copy(
         update={
             'clump': model.gear.clump.model_copy(update={'weight_in_water_n': 0.0}),

@@ -9,19 +9,22 @@ from trawl_ros.core.errors import NoSteadyState, sentence_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import SteadyState, find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint, remedy_command
 from trawl_ros.solver.stability import stability
 
 
 def test_an_unstable_root_is_refused(model: GearModel, steady: SteadyState) -> None:
-    # With the printed sign of b3 the board is pushed on by flow along its span.
-    printed = model.with_board(slip_sign=1.0)
+    # With the other sign of b3 the board is pushed on by flow along its span.
+    values = model.coefficients.copy()
+    values[COEFFICIENTS.index('b3')] *= -1.0
+    driven = model.with_coefficients(values)
     point = OperatingPoint(500.0, 500.0, 2.1)
-    root = find_equilibrium(printed, point, steady.equilibrium)
-    assert not stability(printed, root.state, root.tow).stable
+    root = find_equilibrium(driven, point, steady.equilibrium)
+    assert not stability(driven, root.state, root.tow).stable
     with pytest.raises(NoSteadyState, match=r'warp 500 m at 2.1 m/s: the steady state is unstable'):
-        steady_state(printed, 500.0, 2.1, start=steady.equilibrium)
+        steady_state(driven, 500.0, 2.1, start=steady.equilibrium)
 
 
 @pytest.mark.parametrize(('warp', 'speed'), [(200.0, 4.0), (200.0, 3.5)])

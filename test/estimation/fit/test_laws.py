@@ -71,5 +71,5 @@ def test_working_angles_are_means_over_boards_and_states():
         replace(still, port_attack=0.2, starboard_attack=0.4, port_slip=0.1, starboard_slip=0.1),
         replace(still, port_attack=0.5, starboard_attack=0.5, port_slip=0.0, starboard_slip=0.2),
     ]
-    found = working_angles(seen, slip_sign=-1)
-    assert (found.attack, found.slip) == pytest.approx((0.4, -0.1))
+    found = working_angles(seen)
+    assert (found.attack, found.slip) == pytest.approx((0.4, 0.1))

@@ -39,7 +39,7 @@ def test_it_has_the_coefficients_of_the_mean_angles(model: GearModel, points: Ge
     a1, c1, a2, c2, b3, c3 = model.coefficients[:6]
     pressure = 0.5 * model.water.density * model.board.area * SPEED**2
     drag, lift = a1 * ATTACK + c1, a2 * ATTACK + c2
-    span = b3 * model.board.slip_sign * SLIP + c3
+    span = -(b3 * SLIP + c3)
     heavy = (model.board.mass - model.water.density * model.board.volume) * model.water.gravity
     for side, outward in enumerate((1.0, -1.0)):
         expected = pressure * np.array([-drag, outward * lift, span]) - [0.0, 0.0, heavy]
