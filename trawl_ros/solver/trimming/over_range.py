@@ -19,6 +19,7 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.model.board import Board
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
+from trawl_ros.solver.first_guess import coarser_model
 from trawl_ros.solver.trim import roll_for
 from trawl_ros.solver.trimming.held_boards import HeldBoard
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at, coarsest_model
@@ -198,7 +199,9 @@ def trim_over_range(
     on_progress(WorkProgress('riggings', len(UNKNOWN), len(UNKNOWN)))
     assert best is not None
     wanted = attack, roll_for(inclination, pitch), pitch
-    points = released_points(coarse, best.points, hole_limits(model.board), wanted, places)
+    # Boards answer to the pull of the bridles, which the coarsest net has by some per cent only.
+    finer = coarser_model(model) or model
+    points = released_points(finer, best.points, hole_limits(model.board), wanted, places)
     whole = held if coarse is model else HeldGear(model, rotations, places)
     return max((_released(whole, found) for found in (points, best.points)), key=_worth)
 

@@ -30,6 +30,13 @@ class ReleasedTrim:
         Height (m) above ``clearance`` that counts as one.
     clearance : float
         Depth (m) above which the highest point of the gear ought not to come.
+    upset : float
+        Turn (rad, ε) of the boards against their rigging that they ought to stand: attack falls by
+        as much when warp is paid out, for tension falls sooner than the flow.
+    least_roll, least_attack : float
+        Roll and attack (rad) that boards turned so ought to keep.
+    short_of_roll, short_of_attack : float
+        Lack (rad) of these that counts as one.
     lost : float
         Residual of a place without an equilibrium.
     moved : float
@@ -43,8 +50,13 @@ class ReleasedTrim:
     attack: float = np.radians(4.0)
     roll: float = np.radians(8.0)
     pitch: float = np.radians(10.0)
-    surfaced: float = 5.0
-    clearance: float = 2.0
+    surfaced: float = 3.0
+    clearance: float = 5.0
+    upset: float = np.radians(-5.0)
+    least_roll: float = np.radians(5.0)
+    least_attack: float = np.radians(12.0)
+    short_of_roll: float = np.radians(6.0)
+    short_of_attack: float = np.radians(3.0)
     lost: float = 10.0
     moved: float = 50.0
     step: float = 2e-4
@@ -82,30 +94,29 @@ def released_points(
     (3, 3) array
         Points; the first ones where no operating point has an equilibrium with them.
     """
-    roots: dict[tuple[float, float], State] = {}
+    upset = model.with_board(installation=tuple(np.add(model.board.installation, (options.upset, 0, 0))))
+    roots: dict[tuple[bool, tuple[float, float]], State] = {}
     for place in places:
         try:
-            roots[place] = _root(model, start, place, None).state
+            roots[False, place] = _root(model, start, place, None).state
+            roots[True, place] = _root(upset, start, place, roots[False, place]).state
         except NoSteadyState:
             continue
     if not roots:
         return start
-    angles = np.array([options.attack, options.roll, options.pitch])
     best, least = start, np.inf
 
     def residuals(x: FloatArray) -> FloatArray:
         nonlocal best, least
         points, rows, states = x.reshape(3, 3), [], {}
-        for place, near in roots.items():
+        for (turned, place), near in roots.items():
             try:
-                found = _root(model, points, place, near)
+                found = _root(upset if turned else model, points, place, near)
             except NoSteadyState:
-                rows.append(np.full(4, options.lost))
+                rows.append(np.full(2 if turned else 4, options.lost))
                 continue
-            states[place], seen = found.state, found.observables
-            turned = np.array([seen.port_attack, seen.port_roll, seen.port_pitch])
-            high = max(0.0, found.highest + options.clearance) / options.surfaced
-            rows.append(np.append((turned - wanted) / angles, high))
+            states[turned, place] = found.state
+            rows.append(_lack(found, options) if turned else _miss(found, wanted, options))
         left = np.concatenate([*rows, (x - start.ravel()) / options.moved])
         if len(states) == len(roots) and (value := float(left @ left)) < least:
             best, least = points.copy(), value
@@ -123,6 +134,32 @@ def released_points(
         max_nfev=options.evaluations,
     )
     return best
+
+
+def _miss(
+    found: Equilibrium, wanted: tuple[float, float, float], options: ReleasedTrim
+) -> FloatArray:
+    """Weighted differences (4,) from the wanted angles, and height above the clearance."""
+    seen = found.observables
+    return np.array(
+        [
+            (seen.port_attack - wanted[0]) / options.attack,
+            (seen.port_roll - wanted[1]) / options.roll,
+            (seen.port_pitch - wanted[2]) / options.pitch,
+            max(0.0, found.highest + options.clearance) / options.surfaced,
+        ]
+    )
+
+
+def _lack(found: Equilibrium, options: ReleasedTrim) -> FloatArray:
+    """Weighted lack (2,) of roll and attack of boards that are upset."""
+    seen = found.observables
+    return np.array(
+        [
+            max(0.0, options.least_roll - seen.port_roll) / options.short_of_roll,
+            max(0.0, options.least_attack - seen.port_attack) / options.short_of_attack,
+        ]
+    )
 
 
 def _root(
