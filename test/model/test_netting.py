@@ -121,7 +121,7 @@ def test_joining_meshes_hardly_changes_the_tow(gear: GearRecord) -> None:
     assert joined.door_spread == pytest.approx(whole.door_spread, rel=1e-3)
     assert joined.vertical_opening == pytest.approx(whole.vertical_opening, rel=2e-3)
     for name in ('port_attack', 'port_inclination', 'port_roll'):
-        assert getattr(joined, name) == pytest.approx(getattr(whole, name), abs=np.radians(0.05))
+        assert getattr(joined, name) == pytest.approx(getattr(whole, name), abs=np.radians(0.3))
 
 
 @pytest.mark.parametrize('around', AROUND)

@@ -198,12 +198,13 @@ def trim_over_range(
             best = found
     on_progress(WorkProgress('riggings', len(UNKNOWN), len(UNKNOWN)))
     assert best is not None
-    wanted = attack, roll_for(inclination, pitch), pitch
+    wanted, limits = (attack, roll_for(inclination, pitch), pitch), hole_limits(model.board)
     # Boards answer to the pull of the bridles, which the coarsest net has by some per cent only.
     finer = coarser_model(model) or model
-    points = released_points(finer, best.points, hole_limits(model.board), wanted, places)
+    starts = best.points, np.clip(start, -limits, limits)
+    tried = *starts, *(released_points(finer, p, limits, wanted, places) for p in starts)
     whole = held if coarse is model else HeldGear(model, rotations, places)
-    return max((_released(whole, found) for found in (points, best.points)), key=_worth)
+    return max((_released(whole, points) for points in tried), key=_worth)
 
 
 def _worth(found: RangeTrim) -> tuple[int, float]:
