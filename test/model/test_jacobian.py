@@ -55,7 +55,7 @@ def test_central_differences_agree(model: GearModel, random_case) -> None:
             np.arange(3 * model.nodes, model.dof),
         ]
     )
-    h, v = 4e-5, 2.5e-4
+    h, v = 2e-5, 2.5e-4
     k, c = [], []
     for column in np.eye(model.dof)[columns]:
         low, high = (forces(model, state.moved(s * h * column), tow) for s in (-1, 1))

@@ -13,6 +13,9 @@ from trawl_ros.model.compiled import compiled, inner
 SLACK_WIDTH = 1e-4
 """Half the range of strain over which slack passes smoothly into taut; eq. 20 has a kink."""
 
+SLACKEST_STRAIGHT = 1.0 - SLACK_WIDTH
+"""Length over length at rest from which a bar counts as straight: where the rounding ends."""
+
 SURELY = 1e-8
 """Step of Newton's method, as a share of what it seeks, after which the next, which is about its
 square, would lie below rounding."""
@@ -110,8 +113,9 @@ def spanned_at(vector: FloatArray, rest: float) -> float:
     most ∫ sin θ ds, which is the distance of its ends.
     """
     span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
-    if span.real < rest.real:
-        return span / rest
+    straight = SLACKEST_STRAIGHT * rest
+    if span.real < straight.real:
+        return span / straight
     return 1.0 + 0 * span
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar import (
+    SLACKEST_STRAIGHT,
     between,
     drag_at,
     load_slopes_at,
@@ -154,7 +155,7 @@ def add_bar_blocks(
         )
         if spanned < 1.0:
             # The drag across a slack bar goes with the distance of its ends.
-            whole = normal_drag[n] * normal_area[n]
+            whole = normal_drag[n] * normal_area[n] / SLACKEST_STRAIGHT
             drag_at(whole, 0.0, viscous[0], 0.0, 1.0, here, flow, along, own)
             for i in range(3):
                 for j in range(3):
