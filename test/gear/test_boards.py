@@ -1,6 +1,5 @@
 """Boards of a gear file: laws from tables and foils, and what is derived from the plate."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from trawl_ros.core.errors import GearError
 from trawl_ros.core.resources import share_path
 from trawl_ros.gear.boards import CORRECTIONS, plate_added_mass
 from trawl_ros.gear.load import load_gear
-from trawl_ros.gear.polars import load_door, polar_of
+from trawl_ros.gear.polars import UPRIGHT, load_door, polar_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import hydrodynamics
 from trawl_ros.model.board_law import LAW_RANGE
@@ -46,6 +45,18 @@ def test_a_door_of_the_catalogue_has_its_published_points(tmp_path: Path, name: 
     np.testing.assert_allclose(found[:, 1], [point.lift for point in door.points], rtol=1e-12)
 
 
+def test_a_law_may_replace_the_heel_of_its_door(tmp_path: Path) -> None:
+    law = {'kind': 'table', 'door': 'low_aspect_cambered'}
+    polar = polar_of(with_law(tmp_path, law).board)
+    own = polar_of(with_law(tmp_path, law | {'heel': [{'tilt_deg': 0.0, 'upward': 0.1}]}).board)
+    assert polar is not None
+    assert own is not None
+    np.testing.assert_allclose(np.degrees(np.arcsin(polar.heel.sine)), [0.0, 5.0, 10.0])
+    assert polar.heel.upward.tolist() == [0.0, 0.16, 0.25]
+    assert own.heel.upward.tolist() == [0.1]
+    assert polar.trim is own.trim is UPRIGHT
+
+
 def test_between_its_points_a_table_has_no_peak_of_its_own(tmp_path: Path) -> None:
     law = build_board(with_law(tmp_path, {'kind': 'table', 'door': 'flat_wooden'})).law
     assert law is not None
@@ -55,7 +66,14 @@ def test_between_its_points_a_table_has_no_peak_of_its_own(tmp_path: Path) -> No
     assert np.count_nonzero(np.diff(np.sign(np.diff(lift)))) == 1
 
 
-@pytest.mark.parametrize('law', [{'kind': 'table', 'door': 'flat_wooden'}, FOIL])
+@pytest.mark.parametrize(
+    'law',
+    [
+        {'kind': 'table', 'door': 'flat_wooden'},
+        {'kind': 'table', 'door': 'low_aspect_cambered'},
+        FOIL,
+    ],
+)
 def test_a_law_has_its_derivative_everywhere(tmp_path: Path, law: dict[str, Any]) -> None:
     table = build_board(with_law(tmp_path, law)).law
     assert table is not None
@@ -129,6 +147,11 @@ def test_corrections_to_a_law_have_a_prior(tmp_path: Path) -> None:
         ({'kind': 'table'}, 'board.law: a table needs either door or points, found 0'),
         ({'kind': 'table', 'door': 'nothing_like_it'}, 'comes with no such file'),
         ({'kind': 'foil', 'max_lift': 1.5}, 'board.law: a foil needs max_lift and stall_deg'),
+        (
+            {'kind': 'table', 'door': 'flat_wooden', 'heel': [{'tilt_deg': 5.0, 'upward': 0.2}]},
+            'board.law.heel: found tilt_deg [5.0], expected rising angles around 0',
+        ),
+        (FOIL | {'trim': [{'tilt_deg': 0.0, 'upward': 0.0}]}, 'found door, points, heel or trim'),
         ({'kind': 'spline'}, "board.law.kind: found 'spline', expected 'table' or 'foil'"),
         (
             {
@@ -163,4 +186,4 @@ def flow_at_twenty() -> Any:
 
     attack = np.radians([20.0])
     flow = 2.0 * np.stack([-np.cos(attack), np.sin(attack), 0 * attack], 1)
-    return BoardFlow(attack, 0 * attack, flow, np.array([1025.0]), 0 * attack)
+    return BoardFlow(attack, 0 * attack, flow, np.array([1025.0]), 0 * attack, 0 * attack)

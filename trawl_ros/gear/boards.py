@@ -99,6 +99,31 @@ class PolarPointRecord(Record):
     ahead_chords: Annotated[float, Field(ge=-1, le=1)] | None = None
 
 
+class TiltPointRecord(Record):
+    """Loads of a tilted board in a level flow, along the axes of the flume tank.
+
+    ``tilt_deg`` is the heel, positive with the outward normal up (upper edge inward), or the trim,
+    positive with the nose up. ``lift_factor`` multiplies the horizontal lift of the upright board;
+    ``upward`` is the whole vertical force coefficient C_Z, upward, on the board's area.
+    """
+
+    tilt_deg: Annotated[float, Field(ge=-45, le=45)]
+    lift_factor: Annotated[float, Field(ge=0.2, le=3)] = 1.0
+    upward: Annotated[float, Field(ge=-2, le=2)]
+
+
+Tilts = Annotated[tuple[TiltPointRecord, ...], Field(max_length=30)]
+
+
+def _tilts_rise(**tables: tuple[TiltPointRecord, ...]) -> None:
+    for name, points in tables.items():
+        tilts = [point.tilt_deg for point in points]
+        if tilts and (any(b <= a for a, b in pairwise(tilts)) or not tilts[0] <= 0 <= tilts[-1]):
+            raise ValueError(
+                f'{name}: found tilt_deg {tilts}, expected rising angles around 0, or 0 at an end'
+            )
+
+
 def _rising(points: tuple[PolarPointRecord, ...]) -> None:
     attacks = [point.attack_deg for point in points]
     if any(b <= a for a, b in pairwise(attacks)):
@@ -108,16 +133,22 @@ def _rising(points: tuple[PolarPointRecord, ...]) -> None:
 
 
 class DoorRecord(Record):
-    """A door of the catalogue: published lift and drag, with their source."""
+    """A door of the catalogue: published lift and drag, with their source.
+
+    ``heel`` and ``trim`` say how they change in a tilted board, where that was measured.
+    """
 
     name: str
     source: str
     aspect_ratio: Positive | None = None
     points: Annotated[tuple[PolarPointRecord, ...], Field(min_length=2, max_length=60)]
+    heel: Tilts = ()
+    trim: Tilts = ()
 
     @model_validator(mode='after')
     def _angles_rise(self) -> 'DoorRecord':
         _rising(self.points)
+        _tilts_rise(heel=self.heel, trim=self.trim)
         return self
 
 
@@ -125,12 +156,15 @@ class BoardLawRecord(Record):
     """Law of a board in place of the straight lines of eq. 14, which are then added to it.
 
     ``table`` takes the points of a flume tank, or those of a ``door`` of the catalogue; ``foil``
-    makes them for a cambered board that stalls at ``stall_deg`` with the lift ``max_lift``.
+    makes them for a cambered board that stalls at ``stall_deg`` with the lift ``max_lift``. A table
+    may add ``heel`` and ``trim``, which replace those of its door.
     """
 
     kind: Literal['table', 'foil']
     door: str | None = None
     points: Annotated[tuple[PolarPointRecord, ...], Field(max_length=60)] = ()
+    heel: Tilts = ()
+    trim: Tilts = ()
     max_lift: Annotated[float, Field(gt=0.3, le=4)] | None = None
     stall_deg: Annotated[float, Field(gt=5, le=40)] | None = None
     camber: Annotated[float, Field(ge=0, le=0.3)] = 0.0
@@ -143,11 +177,12 @@ class BoardLawRecord(Record):
             raise ValueError(f'a table needs either door or points, found {given} of them')
         if self.kind == 'table' and self.door is None and len(self.points) < 2:
             raise ValueError(f'points: a table needs at least 2, found {len(self.points)}')
-        if self.kind == 'foil' and given:
-            raise ValueError('a foil makes its points itself, found door or points')
+        if self.kind == 'foil' and (given or self.heel or self.trim):
+            raise ValueError('a foil makes its points itself, found door, points, heel or trim')
         if self.kind == 'foil' and (self.max_lift is None or self.stall_deg is None):
             raise ValueError('a foil needs max_lift and stall_deg, found none of one of them')
         _rising(self.points)
+        _tilts_rise(heel=self.heel, trim=self.trim)
         return self
 
 

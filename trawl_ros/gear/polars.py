@@ -8,7 +8,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import load_yaml, validated
-from trawl_ros.gear.boards import BoardLawRecord, BoardRecord, DoorRecord
+from trawl_ros.gear.boards import BoardLawRecord, BoardRecord, DoorRecord, TiltPointRecord
 
 AHEAD, AHEAD_STALLED = 0.15, 0.0
 """Centre of pressure (chords ahead of the middle) at no attack and from 45°, where none is given:
@@ -25,15 +25,34 @@ PLATE = 0.85
 
 
 @dataclass(frozen=True)
+class Tilt:
+    """Loads of a tilted board in a level flow: ``sine`` (m,) of the tilt, rising; ``lift_factor``
+    of its horizontal lift and its ``upward`` force coefficient C_Z, each (m,).
+    """
+
+    sine: FloatArray
+    lift_factor: FloatArray
+    upward: FloatArray
+
+
+UPRIGHT = Tilt(np.zeros(1), np.ones(1), np.zeros(1))
+"""Of a board whose loads turn with it whatever its tilt, since none was measured."""
+
+
+@dataclass(frozen=True)
 class Polar:
     """Polar of a board: ``attack`` (n,) rad, rising; ``lift`` C_L, ``drag`` C_D and ``ahead``, the
     centre of pressure in chords ahead of the centre of gravity, each (n,).
+
+    ``heel`` is by the vertical part of the outward normal, ``trim`` by that of the forward axis.
     """
 
     attack: FloatArray
     lift: FloatArray
     drag: FloatArray
     ahead: FloatArray
+    heel: Tilt = UPRIGHT
+    trim: Tilt = UPRIGHT
 
 
 def load_door(name: str) -> DoorRecord:
@@ -55,7 +74,8 @@ def polar_of(board: BoardRecord) -> Polar | None:
         return None
     if law.kind == 'foil':
         return _foil(law, board.span_m**2 / board.area_m2)
-    points = load_door(law.door).points if law.door is not None else law.points
+    table = law if law.door is None else load_door(law.door)
+    points = table.points
     attack = np.array([point.attack_deg for point in points])
     given = [point.ahead_chords for point in points]
     ahead = [_usual_ahead(a) if x is None else x for a, x in zip(attack, given, strict=True)]
@@ -64,6 +84,18 @@ def polar_of(board: BoardRecord) -> Polar | None:
         np.array([point.lift for point in points]),
         np.array([point.drag for point in points]),
         np.array(ahead),
+        _tilt(law.heel or table.heel),
+        _tilt(law.trim or table.trim),
+    )
+
+
+def _tilt(points: tuple[TiltPointRecord, ...]) -> Tilt:
+    if not points:
+        return UPRIGHT
+    return Tilt(
+        np.sin(np.radians([point.tilt_deg for point in points])),
+        np.array([point.lift_factor for point in points]),
+        np.array([point.upward for point in points]),
     )
 
 

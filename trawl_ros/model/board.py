@@ -172,7 +172,8 @@ def mirrored_axes(outward: FloatArray) -> FloatArray:
 @dataclass(frozen=True)
 class BoardFlow:
     """Relative flow at boards: angles α, β (rad), flow in the outward frame (..., 3) m/s,
-    density (kg/m³), and the vertical part ``lean`` of the outward normal.
+    density (kg/m³), and the vertical parts ``lean`` of the outward normal and ``rise`` of the
+    forward axis.
     """
 
     attack: FloatArray
@@ -180,6 +181,7 @@ class BoardFlow:
     flow: FloatArray
     density: FloatArray
     lean: FloatArray
+    rise: FloatArray
 
 
 def flow_at(
@@ -217,6 +219,7 @@ def flow_at(
         flow=_like(given, flow).reshape(*shape, 3),
         density=np.broadcast_to(water.density_at(position[..., 2]), shape),
         lean=outward * rotation[..., 2, 1],
+        rise=np.broadcast_to(rotation[..., 2, 0], shape),
     )
 
 
@@ -224,8 +227,10 @@ def hydrodynamics(
     board: Board, values: FloatArray, flow: BoardFlow
 ) -> tuple[FloatArray, FloatArray]:
     """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
-    law = coefficients_at if board.law is None else board.law
-    coefficients = law(values, flow.attack, flow.slip)
+    if board.law is None:
+        coefficients = coefficients_at(values, flow.attack, flow.slip)
+    else:
+        coefficients = board.law(values, flow.attack, flow.slip, flow.lean, flow.rise)
     if board.bend is not None:
         coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
     given = flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)

@@ -4,6 +4,10 @@ Between its points the table follows monotone cubics, so that it has no peak tha
 and a derivative everywhere. The straight lines of eq. 14 are added as corrections, which
 identification refits. Outside the table lift and moments fade and drag stays, as those of
 `board_law` do outside the range of eq. 14.
+
+Loads of a tilted board are measured along the axes of a flume tank. Most of the upward C_Z is the
+force across the board's face, which tilts with it. So the loads are turned into the board's axes,
+and the rest acts along the span. The tilt is the board's attitude, as it is in the tank.
 """
 
 from dataclasses import dataclass
@@ -12,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.gear.polars import Polar
+from trawl_ros.gear.polars import Polar, Tilt
 from trawl_ros.model.board_law import SLIP_LIMIT, fading, settled
 from trawl_ros.model.compiled import alike, compiled, inner
 
@@ -30,27 +34,56 @@ class TableLaw:
 
     @cached_property
     def cubics(self) -> FloatArray:
-        """Polynomials (n, 3, 4) of lift, drag and centre of pressure behind each point, the last
-        being constant.
-        """
-        # Imported here: it takes long, and boards by formula have no use for it.
-        from scipy.interpolate import PchipInterpolator
-
+        """Polynomials (n, 3, 4) of lift, drag and centre of pressure behind each point."""
         values = np.stack([self.polar.lift, self.polar.drag, self.polar.ahead], 1)
-        pieces = PchipInterpolator(self.polar.attack, values).c
-        last = np.zeros((1, 3, 4))
-        last[0, :, 3] = values[-1]
-        return np.concatenate([np.moveaxis(pieces, 0, -1), last])
+        return _cubics(self.polar.attack, values)
 
-    def __call__(self, values: FloatArray, attack: FloatArray, slip: FloatArray) -> FloatArray:
-        """Force and moment coefficients (..., 6), as `board.coefficients_at` has them."""
-        shape = np.broadcast_shapes(np.shape(attack), np.shape(slip))
-        values, *angles = alike(
-            values, *(np.broadcast_to(given, shape).ravel() for given in (attack, slip))
-        )
+    @cached_property
+    def tilts(self) -> tuple[FloatArray, ...]:
+        """Knots (m,) and polynomials (m, 5, 4) of heel, then of trim."""
+        return *_tilt_table(self.polar.heel), *_tilt_table(self.polar.trim)
+
+    def __call__(
+        self,
+        values: FloatArray,
+        attack: FloatArray,
+        slip: FloatArray,
+        lean: FloatArray | float = 0.0,
+        rise: FloatArray | float = 0.0,
+    ) -> FloatArray:
+        """Force and moment coefficients (..., 6), as `board.coefficients_at` has them.
+
+        ``lean`` and ``rise`` (...) are the vertical parts of the outward normal and the forward
+        axis, the sines of heel and trim.
+        """
+        given = attack, slip, lean, rise
+        shape = np.broadcast_shapes(*map(np.shape, given))
+        values, *angles = alike(values, *(np.broadcast_to(part, shape).ravel() for part in given))
         coefficients = np.empty((*angles[0].shape, 6), values.dtype)
-        _fill(self.polar.attack, self.cubics, values, *angles, coefficients)
+        _fill(self.polar.attack, self.cubics, *self.tilts, values, *angles, coefficients)
         return coefficients.reshape(*shape, 6)
+
+
+def _tilt_table(tilt: Tilt) -> tuple[FloatArray, FloatArray]:
+    """Knots and cubics over the sine of a tilt t: factor of lift, cos t - 1, sin t, C_Z sin t and
+    C_Z cos t. They end level, so that the derivative goes on where they end.
+    """
+    sine, upward = tilt.sine, tilt.upward
+    cosine = np.sqrt(1 - sine**2)
+    values = np.stack([tilt.lift_factor, cosine - 1, sine, upward * sine, upward * cosine], 1)
+    knots = np.concatenate([[sine[0] - 1], sine, [sine[-1] + 1]])
+    return knots, _cubics(knots, np.pad(values, ((1, 1), (0, 0)), 'edge'))
+
+
+def _cubics(knots: FloatArray, values: FloatArray) -> FloatArray:
+    """Polynomials (n, columns, 4) of monotone cubics behind each knot, the last being constant."""
+    # Imported here: it takes long, and boards by formula have no use for it.
+    from scipy.interpolate import PchipInterpolator
+
+    pieces = PchipInterpolator(knots, values).c
+    last = np.zeros((1, values.shape[1], 4))
+    last[0, :, 3] = values[-1]
+    return np.concatenate([np.moveaxis(pieces, 0, -1), last])
 
 
 @inner
@@ -65,13 +98,28 @@ def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> f
     return value
 
 
+@inner
+def _turned(
+    knots: FloatArray, cubics: FloatArray, sine: float, force: float
+) -> tuple[float, float]:
+    """Change of a force that a tilt turns, and the force up the span that it leaves."""
+    own = force * _piece(knots, cubics, 1, sine) + _piece(knots, cubics, 3, sine)
+    return own, _piece(knots, cubics, 4, sine) - force * _piece(knots, cubics, 2, sine)
+
+
 @compiled
 def _fill(
     knots: FloatArray,
     cubics: FloatArray,
+    heel: FloatArray,
+    heeled: FloatArray,
+    trim: FloatArray,
+    trimmed: FloatArray,
     values: FloatArray,
     attack: FloatArray,
     slip: FloatArray,
+    lean: FloatArray,
+    rise: FloatArray,
     coefficients: FloatArray,
 ) -> None:
     low, high = knots[0], knots[-1]
@@ -84,10 +132,19 @@ def _fill(
         folded = alpha if attack[n].real >= 0.0 else settled(-attack[n], low, high)
         drag = _piece(knots, cubics, 1, folded) + values[0] * folded + values[1]
         ahead = _piece(knots, cubics, 2, alpha)
-        across = lift * np.cos(alpha) + drag * np.sin(alpha)
+        lift *= _piece(heel, heeled, 0, lean[n]) * _piece(trim, trimmed, 0, rise[n])
+        cosine, sine = np.cos(alpha), np.sin(alpha)
+        # Heel turns the force across the board's face, trim that forward along its chord.
+        outward, span = _turned(heel, heeled, lean[n], lift * cosine + drag * sine)
+        forward, more = _turned(trim, trimmed, rise[n], lift * sine - drag * cosine)
+        lift += outward * cosine + forward * sine
+        drag += (outward * sine - forward * cosine) * fade
+        span += more
+        across = lift * cosine + drag * sine
         coefficients[n, 0] = drag if drag.real > 0.0 else 0 * drag
         coefficients[n, 1] = lift * fade
-        coefficients[n, 2] = values[4] * beta * fade + values[5]
+        # Loads of eq. 12 act down.
+        coefficients[n, 2] = (values[4] * beta - span) * fade + values[5]
         coefficients[n, 3] = (values[6] * alpha + values[7]) * fade
         coefficients[n, 4] = values[8] * beta * fade + values[9]
         # C_z^M of eq. 12 turns the other way than a force ahead of the centre of gravity does.
