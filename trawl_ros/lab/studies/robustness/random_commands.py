@@ -1,6 +1,6 @@
 """An hour of random commands: hauled, veered, slowed down and turned, in calm and in swell."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,31 @@ from trawl_ros.simulation.simulation import CALM, Simulation
 from trawl_ros.solver.stepper import StepFailed
 
 START = Command(500.0, 500.0, 2.1)
+
+
+@dataclass(frozen=True)
+class CommandLimits:
+    """Limits within which the default gear is commanded.
+
+    Attributes
+    ----------
+    warps, speeds
+        Shortest and longest warp (m), lowest and highest speed (m/s).
+    speed_step
+        Largest change of speed at once, m/s.
+    turn_rate, turn
+        Largest rate of turn (rad/s) and change of course by one command (rad): in a longer turn
+        at that rate the gear comes to lie within the ship's circle, and its inner board falls.
+    uneven
+        Largest difference of the warps, as a part of their length.
+    """
+
+    warps: tuple[float, float] = (150.0, 1000.0)
+    speeds: tuple[float, float] = (1.5, 2.8)
+    speed_step: float = 0.3
+    turn_rate: float = np.radians(0.25)
+    turn: float = np.radians(45.0)
+    uneven: float = 0.03
 
 RECOVERY = Command(500.0, 500.0, 2.4)
 """Command of the last part of an hour: straight on, and faster."""
@@ -37,7 +62,12 @@ class CommandedHour:
 
 
 def commanded_hour(
-    model: GearModel, seed: int, *, duration: float = 3600.0, recovery: float = 900.0
+    model: GearModel,
+    seed: int,
+    *,
+    duration: float = 3600.0,
+    recovery: float = 900.0,
+    limits: CommandLimits = CommandLimits(),
 ) -> CommandedHour:
     """Tow under random commands, and at last for ``recovery`` seconds straight on and faster."""
     draws = np.random.default_rng(seed)
@@ -47,13 +77,17 @@ def commanded_hour(
         sea = Sea(heave=irregular_heave(height, peak, draws, begin=60.0, growth=60.0))
         period = SWELL_PERIOD
     simulation = Simulation(model, START, period=period, sea=sea)
-    time, following, fallen_s, fallen = 0.0, 0.0, 0.0, False
+    time, following, straight, fallen_s, fallen = 0.0, 0.0, np.inf, 0.0, False
     while time < duration:
         if time >= duration - recovery:
             simulation.command = RECOVERY
         elif time >= following:
-            simulation.command = _command(draws)
+            simulation.command = _command(draws, simulation.command.speed, limits)
             following = time + draws.uniform(60.0, 600.0)
+            rate = abs(simulation.command.turn_rate)
+            straight = time + limits.turn / rate if rate else np.inf
+        elif time >= straight:
+            simulation.command, straight = replace(simulation.command, turn_rate=0.0), np.inf
         try:
             for _ in range(round(GLANCE / period)):
                 now = simulation.advance()
@@ -68,8 +102,12 @@ def commanded_hour(
     return CommandedHour('', time, fallen_s, fallen)
 
 
-def _command(draws: np.random.Generator) -> Command:
-    port = draws.uniform(150.0, 1000.0)
-    uneven = draws.uniform(-0.03, 0.03) if draws.random() < 0.3 else 0.0
-    turn = np.radians(draws.uniform(-0.25, 0.25)) if draws.random() < 0.5 else 0.0
-    return Command(port, port * (1.0 + uneven), draws.uniform(1.4, 2.8), float(turn))
+def _command(draws: np.random.Generator, speed: float, limits: CommandLimits) -> Command:
+    """Draw a command after one with a speed."""
+    port = draws.uniform(*limits.warps)
+    uneven = draws.uniform(-limits.uneven, limits.uneven) if draws.random() < 0.3 else 0.0
+    rate = draws.uniform(-limits.turn_rate, limits.turn_rate) if draws.random() < 0.5 else 0.0
+    step = draws.uniform(-limits.speed_step, limits.speed_step)
+    return Command(
+        port, port * (1.0 + uneven), float(np.clip(speed + step, *limits.speeds)), float(rate)
+    )
