@@ -99,7 +99,9 @@ def test_the_headropes_centre_and_a_point_behind_it_share_the_kite(
     assert np.abs(change[: 3 * model.nodes]).max() == 0.0
 
 
-def test_a_kite_without_a_chord_keeps_its_setting_to_the_flow(model: GearModel, random_case) -> None:
+def test_a_kite_without_a_chord_keeps_its_setting_to_the_flow(
+    model: GearModel, random_case
+) -> None:
     model, state, _ = random_case(model, 11)
     held = model.layout.kite
     front, rear = held.weights @ state.nodes[held.nodes]

@@ -112,7 +112,7 @@ def spanned_at(vector: FloatArray, rest: float) -> float:
     A slack twine hangs in a loop. Its drag across the flow is that of ∫ sin³θ ds over the loop, at
     most ∫ sin θ ds, which is the distance of its ends.
     """
-    span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    span: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     straight = SLACKEST_STRAIGHT * rest
     if span.real < straight.real:
         return span / straight

@@ -22,7 +22,8 @@ STILL = 1e-6
 @dataclass(frozen=True)
 class Kite:
     """Properties of a kite: area (m²), mass (kg), volume (m³), setting angle (rad), whether it
-    pitches with the line through its two carrying nodes, and slope (1/rad) and limit of its normal force and its base drag.
+    pitches with the line through its two carrying nodes, slope (1/rad) and limit of its normal
+    force, and its base drag.
     """
 
     area: float

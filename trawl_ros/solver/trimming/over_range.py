@@ -89,9 +89,7 @@ class RangeTrim:
         rests = np.abs(self.points) > hole_limits(self.model.board) - AT_BOUND
         return tuple(
             f'{point} {axis} {value:.3f} m'
-            for (point, axis), value, bound in zip(
-                names, self.points.flat, rests.flat, strict=True
-            )
+            for (point, axis), value, bound in zip(names, self.points.flat, rests.flat, strict=True)
             if bound
         )
 

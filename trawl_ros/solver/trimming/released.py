@@ -94,7 +94,9 @@ def released_points(
     (3, 3) array
         Points; the first ones where no operating point has an equilibrium with them.
     """
-    upset = model.with_board(installation=tuple(np.add(model.board.installation, (options.upset, 0, 0))))
+    upset = model.with_board(
+        installation=tuple(np.add(model.board.installation, (options.upset, 0, 0)))
+    )
     roots: dict[tuple[bool, tuple[float, float]], State] = {}
     for place in places:
         try:

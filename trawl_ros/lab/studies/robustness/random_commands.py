@@ -39,6 +39,7 @@ class CommandLimits:
     turn: float = np.radians(45.0)
     uneven: float = 0.03
 
+
 RECOVERY = Command(500.0, 500.0, 2.4)
 """Command of the last part of an hour: straight on, and faster."""
 

@@ -1,4 +1,4 @@
-"""Readings of the board's frame, compared by the places that can be towed and by section IV.C and D.
+"""Readings of the board's frame, compared by places that can be towed and by section IV.
 
 The model has one reading (docs/model.md). Another one differs from it by the signs of some printed
 coefficients, so it is that board with these coefficients reversed, rigged again by the same search.
@@ -83,7 +83,7 @@ class Judgement:
     missed
         Keys of those that do not hold.
     refusal
-        Why the checks could not be made, or ''.
+        Reason for which the checks could not be made, or ''.
     """
 
     name: str
@@ -198,4 +198,6 @@ def _table(found: list[Judgement]) -> TextTable:
     return TextTable('Readings of the frame of the loads', head, rows)
 
 
-CASE = ValidationCase('board_frame', "Frame of the board's loads, with section IV as the judge", run)
+CASE = ValidationCase(
+    'board_frame', "Frame of the board's loads, with section IV as the judge", run
+)
